@@ -1,0 +1,1 @@
+"""Dimensions, section blocks, meshes and fiber curves of the actuator. A leaf: no FEniCSx here."""
