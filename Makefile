@@ -1,0 +1,42 @@
+# The commands of this project; `make help` lists them.
+SHELL := /bin/bash
+BIN := .venv/bin
+
+# mpirun refuses root and more ranks than cores unless told; containers often have both.
+export OMPI_ALLOW_RUN_AS_ROOT := 1
+export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
+export OMPI_MCA_rmaps_base_oversubscribe := 1
+
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test verify check format schema clean
+
+help: ## list the commands
+	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
+
+setup: ## install what is needed; under a second when nothing is to do
+	@./setup.sh
+
+demo: setup ## bend the baseline actuator: curves, pictures and fields in runs/free_bending
+	$(BIN)/fiberbend run cases/free_bending.yaml --out runs/free_bending --overwrite
+
+test: setup ## run the tests, on one rank and on two
+	$(BIN)/python -m pytest
+
+verify: setup ## run the slow convergence ladders against exact solutions
+	$(BIN)/python -m pytest -m verify
+
+check: setup ## lint, format and types
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+format: setup ## put the code in its format
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+schema: setup ## rewrite the JSON schema that editors use
+	$(BIN)/fiberbend schema > cases/case.schema.json
+
+clean: ## remove .venv, caches and runs
+	rm -rf .venv runs build *.egg-info .pytest_cache .mypy_cache .ruff_cache
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

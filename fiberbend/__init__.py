@@ -1,0 +1,1 @@
+"""Soft fiber-reinforced bending actuators."""
