@@ -1,0 +1,119 @@
+"""A section as quadrilateral blocks with straight or circular sides.
+
+Corners and sides follow the UFC quadrilateral: corners (0,0), (1,0), (0,1), (1,1); sides v = 0,
+u = 0, u = 1, v = 1. Blocks meet in whole sides, so meshes conform and names follow from the
+layout. A new section shape is a new function that returns a `Layout`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+Point = tuple[float, float]
+
+SIDES = ((0, 1), (0, 2), (1, 3), (2, 3))
+"""Corners at the ends of each side."""
+
+_MIRRORED_SIDES = (0, 2, 1, 3)
+
+
+@dataclasses.dataclass(frozen=True)
+class Block:
+    """One block of a layout.
+
+    Attributes:
+        region: name of its region.
+        corners: numbers of its four corner points; the block must be positively oriented.
+        divisions: number of quads along u and v.
+        centers: for each side the centre of its circle, or None for a straight side.
+        names: for each side the surfaces it belongs to.
+        fill: True for a block that closes the chamber, present in the caps only.
+    """
+
+    region: str
+    corners: tuple[int, int, int, int]
+    divisions: tuple[int, int]
+    centers: tuple[Point | None, Point | None, Point | None, Point | None]
+    names: tuple[tuple[str, ...], ...]
+    fill: bool = False
+
+
+class Layout:
+    """Points and blocks of a section.
+
+    Attributes:
+        points: coordinates in mm of the corner points.
+        blocks: the blocks, in the order of their cells.
+        half: True when only x ≥ 0 is laid out and x = 0 is a mirror plane.
+    """
+
+    def __init__(self, half: bool = False) -> None:
+        self.points: list[Point] = []
+        self.blocks: list[Block] = []
+        self.half = half
+        self._numbers: dict[Point, int] = {}
+
+    def add(
+        self,
+        region: str,
+        corners: tuple[Point, Point, Point, Point],
+        divisions: tuple[int, int],
+        centers: dict[int, Point],
+        names: dict[int, tuple[str, ...]],
+        fill: bool = False,
+    ) -> None:
+        """Append a block given by coordinates.
+
+        Args:
+            region: name of its region.
+            corners: its corner points in mm, in UFC order.
+            divisions: number of quads along u and v.
+            centers: centre in mm of each curved side.
+            names: surfaces of each named side.
+            fill: the block closes the chamber.
+        """
+        a, b, c, d = (self._number(p) for p in corners)
+        self.blocks.append(
+            Block(
+                region,
+                (a, b, c, d),
+                divisions,
+                (centers.get(0), centers.get(1), centers.get(2), centers.get(3)),
+                tuple(names.get(side, ()) for side in range(4)),
+                fill,
+            )
+        )
+
+    def _number(self, point: Point) -> int:
+        key = (round(point[0], 9), round(point[1], 9))
+        if key not in self._numbers:
+            self._numbers[key] = len(self.points)
+            self.points.append(point)
+        return self._numbers[key]
+
+    def mirrored(self) -> Layout:
+        """The full section of a half one: its blocks, then their images in x = 0."""
+        full = Layout()
+        for block in self.blocks:
+            names = {i: tuple(n for n in s if n != "symmetry") for i, s in enumerate(block.names)}
+            centers = {i: c for i, c in enumerate(block.centers) if c is not None}
+            a, b, c, d = (self.points[i] for i in block.corners)
+            full.add(block.region, (a, b, c, d), block.divisions, centers, names, block.fill)
+        for block in full.blocks[:]:
+            a, b, c, d = ((-full.points[i][0], full.points[i][1]) for i in block.corners)
+            sides = [_MIRRORED_SIDES[i] for i in range(4)]
+            names = {i: block.names[side] for i, side in enumerate(sides)}
+            centers = {
+                i: (-center[0], center[1])
+                for i, side in enumerate(sides)
+                if (center := block.centers[side]) is not None
+            }
+            full.add(block.region, (b, a, d, c), block.divisions, centers, names, block.fill)
+        return full
+
+    def without_fill(self) -> Layout:
+        """The same layout with an open chamber."""
+        ring = Layout(self.half)
+        ring.points = self.points
+        ring.blocks = [block for block in self.blocks if not block.fill]
+        return ring

@@ -1,0 +1,95 @@
+"""How fine a mesh is, and whether it can hold the dimensions of an actuator."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+from geometry.dimensions import Actuator
+
+MAX_ASPECT = 25.0
+
+
+@dataclasses.dataclass(frozen=True)
+class MeshSize:
+    """Fineness of a mesh.
+
+    Attributes:
+        axial: target length of the elements along z in mm.
+        section: refinement of the section; n gives n quads through wall, floor and sheath, 4 n
+            along a quarter arc and 3 n along the half floor.
+        element: "hexahedron" or "tetrahedron".
+        half: mesh x ≥ 0 only.
+
+    Raises:
+        ValueError: a value outside these meanings.
+    """
+
+    axial: float = 1.5
+    section: int = 1
+    element: str = "hexahedron"
+    half: bool = True
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.axial) and self.axial > 0):
+            raise ValueError(f"axial {self.axial} mm: expected a positive length")
+        if self.section < 1:
+            raise ValueError(f"section refinement {self.section}: expected at least 1")
+        if self.element not in ("hexahedron", "tetrahedron"):
+            raise ValueError(
+                f"element {self.element!r}: expected 'hexahedron' or 'tetrahedron'"
+            )
+
+
+@dataclasses.dataclass(frozen=True)
+class Strips:
+    """Strips of the outer surface on which a blocked tip is held; lengths in mm.
+
+    Attributes:
+        roof_half_width: the roof is |x| ≤ this on the top of the outermost arc, 0 ≤ z ≤ L.
+        post_length: the post is the last part of the tip cap's underside, this long.
+    """
+
+    roof_half_width: float
+    post_length: float
+
+
+def elements_through(thickness: str, size: MeshSize) -> int:
+    """Number of quads through a "wall", "floor", "sheath" or "layer"."""
+    return 1 if thickness == "layer" else size.section
+
+
+def check_size(actuator: Actuator, size: MeshSize, strips: Strips | None = None) -> None:
+    """Refuse a mesh whose elements would be too flat, or strips that do not fit.
+
+    Raises:
+        ValueError: says which dimension, and the least value it can have with this mesh.
+    """
+    for name in ("wall", "floor", "sheath", "layer"):
+        thickness = getattr(actuator, name)
+        if thickness is None:
+            continue
+        least = size.axial * elements_through(name, size) / MAX_ASPECT
+        if thickness < least:
+            raise ValueError(
+                f"{name} {thickness:g} mm is too thin for elements {size.axial:g} mm long: "
+                f"expected at least {least:g} mm"
+            )
+    if strips is None:
+        return
+    widest = actuator.outer_radius * math.sin(math.pi / 4)
+    if not 0 < strips.roof_half_width < widest:
+        raise ValueError(
+            f"roof half width {strips.roof_half_width:g} mm: expected more than 0 and less than "
+            f"{widest:.4g} mm"
+        )
+    if not 0 < strips.post_length < actuator.cap:
+        raise ValueError(
+            f"post length {strips.post_length:g} mm: expected more than 0 and less than the cap, "
+            f"{actuator.cap:g} mm"
+        )
+
+
+def divisions(length: float, target: float) -> int:
+    """Number of elements not longer than `target` that fill a length."""
+    return max(1, math.ceil(length / target - 1e-9))
