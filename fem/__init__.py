@@ -1,0 +1,1 @@
+"""Finite elements on dolfinx: kinematics, effects, scene, Newton, march and measures."""

@@ -1,0 +1,262 @@
+"""The only file that knows dolfinx versions; each function says what it bridges."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import hashlib
+import logging
+import os
+import platform
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import basix
+import dolfinx
+import dolfinx.cpp
+import dolfinx.fem as dfem
+import dolfinx.fem.petsc
+import dolfinx.jit
+import dolfinx.mesh
+import ffcx
+import numpy as np
+import numpy.typing as npt
+import ufl
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from geometry.mesh import FACET_VERTICES, reference_nodes, vertex_positions
+
+COMPILER_FLAGS = ["-O3", "-march=native", "-g0"]
+
+for _name in ("FFCx", "ffcx", "UFL", "UFL_LEGACY"):
+    logging.getLogger(_name).setLevel(logging.ERROR)
+
+_BASIX_CELLS = {
+    "quadrilateral": basix.CellType.quadrilateral,
+    "hexahedron": basix.CellType.hexahedron,
+    "tetrahedron": basix.CellType.tetrahedron,
+}
+
+
+def node_permutation(cell_type: str) -> npt.NDArray[np.int64]:
+    """Position in `geometry.mesh` order of each node of the order-2 basix cell."""
+    element = basix.create_element(
+        basix.ElementFamily.P, _BASIX_CELLS[cell_type], 2, basix.LagrangeVariant.equispaced
+    )
+    ours = reference_nodes(cell_type)
+    return np.array([np.argmin(np.abs(ours - point).sum(axis=1)) for point in element.points])
+
+
+def create_mesh(
+    comm: MPI.Comm, cell_type: str, nodes: npt.NDArray[np.float64], cells: npt.NDArray[np.int64]
+) -> Any:
+    """Distribute a mesh of order-2 cells; bridges create_mesh's signature and the node order.
+
+    Args:
+        comm: communicator.
+        cell_type: cell name of `geometry.mesh`.
+        nodes: (n, d), the same on every rank.
+        cells: (m, nodes per cell), the same on every rank, in `geometry.mesh` order.
+    """
+    element = ufl.VectorElement("Lagrange", cell_type, 2)
+    share = np.array_split(np.arange(len(cells)), comm.size)[comm.rank]
+    points = np.array_split(np.arange(len(nodes)), comm.size)[comm.rank]
+    return dolfinx.mesh.create_mesh(
+        comm,
+        np.ascontiguousarray(cells[share][:, node_permutation(cell_type)]),
+        np.ascontiguousarray(nodes[points]),
+        ufl.Mesh(element),
+        dolfinx.mesh.GhostMode.none,
+        dolfinx.cpp.mesh.create_cell_partitioner(),
+    )
+
+
+def input_cells(mesh: Any) -> npt.NDArray[np.int64]:
+    """Input number of every local cell (owned, then ghosts)."""
+    return np.asarray(mesh.topology.original_cell_index, dtype=np.int64)
+
+
+def input_nodes(mesh: Any) -> npt.NDArray[np.int64]:
+    """Input number of every local geometry node."""
+    return np.asarray(mesh.geometry.input_global_indices, dtype=np.int64)
+
+
+def _rows(adjacency: Any, count: int) -> npt.NDArray[np.int32]:
+    """A dofmap as an array; dolfinx before 0.8 returns an adjacency list."""
+    return np.asarray(getattr(adjacency, "array", adjacency)).reshape(count, -1)
+
+
+def geometry_dofmap(mesh: Any) -> npt.NDArray[np.int32]:
+    """Geometry node numbers of every local cell, (cells, nodes), basix order."""
+    return _rows(mesh.geometry.dofmap, len(input_cells(mesh)))
+
+
+def cell_facets(mesh: Any) -> npt.NDArray[np.int32]:
+    """Facet number of every local cell's local facets, (cells, facets per cell)."""
+    tdim = mesh.topology.dim
+    mesh.topology.create_connectivity(tdim, tdim - 1)
+    mesh.topology.create_connectivity(tdim - 1, tdim)
+    return _rows(mesh.topology.connectivity(tdim, tdim - 1), len(input_cells(mesh)))
+
+
+def owned_cells(mesh: Any) -> int:
+    """Number of cells that this rank owns."""
+    return int(mesh.topology.index_map(mesh.topology.dim).size_local)
+
+
+def meshtags(mesh: Any, dim: int, entities: Any, values: Any) -> Any:
+    """Tags on mesh entities; wants sorted unique entities and int32 values."""
+    entities = np.asarray(entities, dtype=np.int32)
+    order = np.argsort(entities)
+    return dolfinx.mesh.meshtags(
+        mesh, dim, entities[order], np.asarray(values, dtype=np.int32)[order]
+    )
+
+
+def mixed_space(mesh: Any, elements: Sequence[Any]) -> Any:
+    """One mixed space; a single element is wrapped too, so that block sizes are always 1."""
+    return _jit(mesh.comm, lambda _: dfem.FunctionSpace(mesh, ufl.MixedElement(*elements)))
+
+
+def field_dofs(space: Any, index: int, components: int) -> npt.NDArray[np.int32]:
+    """Local dofs of one field of a mixed space for every cell, (cells, nodes, components)."""
+    collapsed, parent = _jit(space.mesh.comm, lambda _: space.sub(index).collapse())
+    parent = np.asarray(parent, dtype=np.int32)
+    rows = _rows(collapsed.dofmap.list, len(input_cells(space.mesh)))
+    return parent[components * rows[:, :, None] + np.arange(components)]
+
+
+def cell_field(mesh: Any, values: npt.NDArray[np.float64]) -> Any:
+    """A piecewise constant coefficient from one value per local cell."""
+    space = _jit(mesh.comm, lambda _: dfem.FunctionSpace(mesh, ("DG", 0)))
+    function = dfem.Function(space)
+    dofs = _rows(space.dofmap.list, len(input_cells(mesh)))[:, 0]
+    function.x.array[dofs] = values
+    return function
+
+
+def cache_folder() -> Path:
+    """Folder of compiled kernels, keyed by versions, compiler flags and processor."""
+    model = platform.processor()
+    with contextlib.suppress(OSError):
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        model = "".join(s for s in lines[:30] if s.startswith(("model name", "flags")))
+    key = "|".join([dolfinx.__version__, ffcx.__version__, ufl.__version__, np.__version__])
+    digest = hashlib.sha1(f"{key}|{COMPILER_FLAGS}|{model}".encode()).hexdigest()[:12]
+    root = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
+    return root / "fiberbend" / digest
+
+
+@contextlib.contextmanager
+def _compiler_lock(comm: MPI.Comm, folder: Path) -> Iterator[None]:
+    """Let one process group at a time compile, and clear what a killed compiler left."""
+    if comm.rank != 0:
+        yield
+        return
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        for source in folder.glob("*.c"):
+            if not source.with_suffix(".c.cached").exists():
+                source.unlink()
+        yield
+
+
+def _jit(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
+    folder = cache_folder()
+    options = {
+        "cache_dir": str(folder),
+        "cffi_extra_compile_args": COMPILER_FLAGS,
+        "timeout": 3600,
+    }
+    # elements and coordinate maps are compiled behind the scenes, with the defaults
+    for name, value in options.items():
+        _, doc = dolfinx.jit.DOLFINX_DEFAULT_JIT_PARAMETERS[name]
+        dolfinx.jit.DOLFINX_DEFAULT_JIT_PARAMETERS[name] = (value, doc)
+    previous = logging.root.manager.disable
+    logging.disable(logging.INFO)  # the C compiler's calls
+    try:
+        with _compiler_lock(comm, folder):
+            return make(options)
+    finally:
+        logging.disable(previous)
+
+
+def compile_form(mesh: Any, form: Any) -> Any:
+    """Compile a UFL form under the cache lock; bridges jit_params and jit_options."""
+    return _jit(mesh.comm, lambda options: dfem.form(form, jit_params=options))
+
+
+class PointValues:
+    """A UFL expression at fixed points of every owned cell; bridges Expression.eval."""
+
+    def __init__(self, mesh: Any, expression: Any, points: npt.NDArray[np.float64]) -> None:
+        self._cells = np.arange(owned_cells(mesh), dtype=np.int32)
+        self._points = len(points)
+        self._expression = _jit(
+            mesh.comm, lambda options: dfem.Expression(expression, points, jit_params=options)
+        )
+
+    def __call__(self) -> npt.NDArray[np.float64]:
+        """Values now, (owned cells, points, components)."""
+        if not len(self._cells):
+            return np.zeros((0, self._points, 1))
+        values = self._expression.eval(self._cells)
+        return np.asarray(values).reshape(len(self._cells), self._points, -1)
+
+
+def quadrature_points(cell_type: str, degree: int) -> npt.NDArray[np.float64]:
+    """Points of the scheme that a measure of this degree uses."""
+    points, _ = basix.make_quadrature(_BASIX_CELLS[cell_type], degree)
+    return np.asarray(points)
+
+
+def facet_quadrature(
+    cell_type: str, facet: int, degree: int
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Points (q, d) in the cell, weights (q,) and axes (d, 2) of a scheme on a local facet."""
+    vertices = reference_nodes(cell_type)[vertex_positions(cell_type)]
+    corners = vertices[list(FACET_VERTICES[cell_type][facet])]
+    kind = basix.CellType.triangle if len(corners) == 3 else basix.CellType.quadrilateral
+    points, weights = basix.make_quadrature(kind, degree)
+    axes = (corners[1:3] - corners[0]).T
+    return corners[0] + np.asarray(points) @ axes.T, np.asarray(weights), axes
+
+
+def tabulate_gradient(
+    cell_type: str, points: npt.NDArray[np.float64]
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Order-2 basis and reference gradient, (points, nodes) and (points, nodes, d), own order."""
+    element = basix.create_element(
+        basix.ElementFamily.P, _BASIX_CELLS[cell_type], 2, basix.LagrangeVariant.equispaced
+    )
+    table = element.tabulate(1, points)[..., 0]
+    ours = np.argsort(node_permutation(cell_type))
+    return table[0][:, ours], np.moveaxis(table[1:], 0, -1)[:, ours]
+
+
+def dirichlet(space: Any, dofs: npt.NDArray[np.int32]) -> Any:
+    """A constraint of these local dofs, for zeroing matrix rows and columns at assembly."""
+    return dfem.dirichletbc(dfem.Function(space), np.unique(dofs).astype(np.int32))
+
+
+def assemble_matrix(matrix: PETSc.Mat, form: Any, constraint: Any) -> None:
+    """Add a form to a zeroed matrix; constrained rows and columns get a unit diagonal."""
+    dolfinx.fem.petsc.assemble_matrix(matrix, form, [constraint])
+
+
+def assemble_vector(vector: PETSc.Vec, form: Any) -> None:
+    """Add a form's local and ghost contributions to a vector, without communication."""
+    dolfinx.fem.petsc.assemble_vector(vector, form)
+
+
+def create_matrix(form: Any) -> PETSc.Mat:
+    """An empty matrix with the form's sparsity."""
+    return dolfinx.fem.petsc.create_matrix(form)
+
+
+def assemble_scalar(form: Any) -> float:
+    """This rank's part of a functional."""
+    return float(dfem.assemble_scalar(form))

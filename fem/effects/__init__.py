@@ -1,0 +1,1 @@
+"""The effects a scene can contain, one small class in one file each."""

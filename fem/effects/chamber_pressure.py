@@ -1,0 +1,29 @@
+"""Pressure in a closed chamber, following the deformed wall."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fem.effect import Effect
+from fem.kinematics import Body
+
+
+class ChamberPressure(Effect):
+    """Π = −P V with V the enclosed volume: an exact follower load with a symmetric tangent.
+
+    P is the global scalar 'pressure' in MPa. Whether it is given or found so that V (or an angle)
+    takes a given value is the march's affair.
+
+    Args:
+        surface: named closed surface of the cavity.
+    """
+
+    scalar = "pressure"
+
+    def __init__(self, surface: str = "chamber") -> None:
+        self.surface = surface
+
+    def potential(self, body: Body) -> Any:
+        """−P V as a form over the cavity's surface."""
+        pressure = body.scalar(self.scalar)
+        return -pressure * body.volume_density(self.surface) * body.ds(self.surface)

@@ -1,0 +1,67 @@
+"""Supports: displacement components held on named surfaces."""
+
+from __future__ import annotations
+
+from fem.effect import Constraint, Effect
+
+
+class Clamp(Effect):
+    """All displacement components held on a surface.
+
+    Args:
+        surface: named surface, by default the root cap's outer face.
+    """
+
+    def __init__(self, surface: str = "clamp") -> None:
+        self.surface = surface
+
+    @property
+    def key(self) -> str:
+        """Several clamps may exist, one a surface."""
+        return f"Clamp[{self.surface}]"
+
+    def constraints(self) -> tuple[Constraint, ...]:
+        """u = 0."""
+        return tuple(Constraint("clamp", self.surface, i) for i in range(3))
+
+
+class Symmetry(Effect):
+    """A mirror plane: the displacement across it is held.
+
+    Args:
+        surface: named surface in the plane.
+        component: axis normal to the plane.
+    """
+
+    def __init__(self, surface: str = "symmetry", component: int = 0) -> None:
+        self.surface = surface
+        self.component = component
+
+    @property
+    def key(self) -> str:
+        """Several mirror planes may exist, one a surface."""
+        return f"Symmetry[{self.surface}]"
+
+    def constraints(self) -> tuple[Constraint, ...]:
+        """No displacement across the plane."""
+        return (Constraint("symmetry", self.surface, self.component),)
+
+
+class BlockedTip(Effect):
+    """A straight roof over the body and a post under the tip (paper III-C, V-C, Fig. 11a).
+
+    Guided form: the vertical displacement v is held on a strip along the crown and on a strip at
+    the distal end of the tip cap's underside; u and w stay free.
+
+    Args:
+        roof: named surface of the strip under the roof.
+        post: named surface of the strip over the post.
+    """
+
+    def __init__(self, roof: str = "roof", post: str = "post") -> None:
+        self.roof = roof
+        self.post = post
+
+    def constraints(self) -> tuple[Constraint, ...]:
+        """v = 0 on both strips."""
+        return (Constraint("roof", self.roof, 1), Constraint("post", self.post, 1))

@@ -1,0 +1,133 @@
+"""Rotation and centre of the cross-sections along a body, and a state rebuilt from them."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import numpy.typing as npt
+from mpi4py import MPI
+from scipy.interpolate import CubicSpline
+from scipy.spatial.transform import Rotation, Slerp
+
+from fem.kinematics import Body
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclasses.dataclass
+class Shape:
+    """A deformed body as a rod with warped sections.
+
+    Attributes:
+        rotation: of every station's section, (k, 3, 3).
+        centre: deformed position of the axis point (0, 0, z), mm, (k, 3).
+        warp: what is left, in the section's own frame, mm, (owned nodes, 3).
+    """
+
+    rotation: Floats
+    centre: Floats
+    warp: Floats
+
+
+class Frames:
+    """Stations along z with hat-function weights; works for any mesh and any number of ranks.
+
+    Args:
+        body: kinematics with the displacement.
+
+    Attributes:
+        z: reference positions of the stations, mm, (k,).
+    """
+
+    def __init__(self, body: Body) -> None:
+        self._body = body
+        nodes = body.domain.data.nodes
+        low, high = nodes.min(axis=0), nodes.max(axis=0)
+        spacing = max(float(max(high[:2] - low[:2])) / 4, (high[2] - low[2]) / 200)
+        count = max(2, int(np.ceil((high[2] - low[2]) / spacing)) + 1)
+        self.z = np.linspace(low[2], high[2], count)
+        self._nodes: Floats = nodes[body.owned_nodes]
+        position = (self._nodes[:, 2] - low[2]) / (self.z[1] - self.z[0])
+        self._below = np.clip(position.astype(int), 0, count - 2)
+        self._above_share = position - self._below
+        section = self._nodes.copy()
+        section[:, 2] = 0.0
+        self._section = section
+
+    def _station_sums(self, values: Floats) -> Floats:
+        """Hat-weighted sums over all ranks of nodal values (n, m), (stations, m)."""
+        sums = np.zeros((len(self.z), values.shape[1]))
+        np.add.at(sums, self._below, (1 - self._above_share)[:, None] * values)
+        np.add.at(sums, self._below + 1, self._above_share[:, None] * values)
+        return self._body.domain.comm.allreduce(sums, MPI.SUM)  # type: ignore[no-any-return]
+
+    def _at_nodes(self, rotation: Floats, centre: Floats) -> tuple[Floats, Floats]:
+        z = self._nodes[:, 2]
+        spin = Slerp(self.z, Rotation.from_matrix(rotation))
+        return spin(np.clip(z, self.z[0], self.z[-1])).as_matrix(), CubicSpline(self.z, centre)(z)
+
+    def fit(self, displacement: Floats) -> Shape:
+        """Best-fit rotation (Kabsch) and centre of every station; the rest is warp.
+
+        Args:
+            displacement: of the owned nodes, mm, (n, 3).
+        """
+        x = self._nodes + displacement
+        ref = self._nodes
+        outer = (ref[:, :, None] * x[:, None, :]).reshape(-1, 9)
+        ones = np.ones((len(ref), 1))
+        sums = self._station_sums(np.hstack([ones, ref, x, outer]))
+        weight = sums[:, :1]
+        mean_ref, mean_x = sums[:, 1:4] / weight, sums[:, 4:7] / weight
+        moment = (sums[:, 7:] / weight).reshape(-1, 3, 3)
+        moment -= mean_ref[:, :, None] * mean_x[:, None, :]
+        left, _, right = np.linalg.svd(moment)
+        sign = np.ones((len(weight), 3))
+        sign[:, 2] = np.sign(np.linalg.det(left) * np.linalg.det(right))
+        rotation = np.einsum("kia,ki,kbi->kab", right, sign, left)
+        arm = np.column_stack([np.zeros((len(self.z), 2)), self.z]) - mean_ref
+        centre = mean_x + np.einsum("kab,kb->ka", rotation, arm)
+        spin, middle = self._at_nodes(rotation, centre)
+        warp = np.einsum("nba,nb->na", spin, x - middle) - self._section
+        return Shape(rotation, centre, warp)
+
+    def rebuild(self, shape: Shape) -> Floats:
+        """Displacement of the owned nodes of a shape, mm, (n, 3)."""
+        spin, middle = self._at_nodes(shape.rotation, shape.centre)
+        x: Floats = middle + np.einsum("nab,nb->na", spin, self._section + shape.warp)
+        return x - self._nodes
+
+    def extrapolate(self, shapes: list[Shape], weights: Floats) -> Shape:
+        """Weighted sum of shapes (weights add to 1), rotations on the group.
+
+        The centre-line is summed by its steps from station to station in the turning frame, so
+        that a bending arc stays an arc.
+        """
+        base = Rotation.from_matrix(shapes[-1].rotation)
+        turn = np.zeros((len(self.z), 3))
+        step = np.zeros((len(self.z) - 1, 3))
+        for shape, weight in zip(shapes, weights, strict=True):
+            rotation = Rotation.from_matrix(shape.rotation)
+            turn += weight * (rotation * base.inv()).as_rotvec()
+            step += weight * self._middle(rotation).inv().apply(np.diff(shape.centre, axis=0))
+        rotation = Rotation.from_rotvec(turn) * base
+        start = sum(w * shape.centre[0] for shape, w in zip(shapes, weights, strict=True))
+        steps = self._middle(rotation).apply(step)
+        centre = np.vstack([start, start + np.cumsum(steps, axis=0)])
+        warp = sum(w * shape.warp for shape, w in zip(shapes, weights, strict=True))
+        return Shape(rotation.as_matrix(), centre, np.asarray(warp))
+
+    @staticmethod
+    def _middle(rotation: Rotation) -> Rotation:
+        """Rotation half-way between neighbouring stations."""
+        step = (rotation[1:] * rotation[:-1].inv()).as_rotvec()
+        return Rotation.from_rotvec(step / 2) * rotation[:-1]
+
+    def bending(self, shape: Shape) -> Floats:
+        """Rotation about x of every station, unwrapped along the body from the root, rad, (k,)."""
+        rotation = Rotation.from_matrix(shape.rotation)
+        first = rotation[0].as_rotvec()[0]
+        steps = (rotation[1:] * rotation[:-1].inv()).as_rotvec()[:, 0]
+        angles: Floats = first + np.concatenate([[0.0], np.cumsum(steps)])
+        return angles

@@ -1,0 +1,157 @@
+"""How positions follow from the unknowns: the three-dimensional body."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import dolfinx.fem as dfem
+import numpy as np
+import numpy.typing as npt
+import ufl
+from mpi4py import MPI
+
+from fem import compat
+from fem.domain import Domain
+
+Floats = npt.NDArray[np.float64]
+Dofs = npt.NDArray[np.int32]
+
+
+def _displacement(cell: str) -> tuple[Any, int]:
+    return ufl.VectorElement("Lagrange", cell, 2), 3
+
+
+def _pressure(cell: str) -> tuple[Any, int]:
+    """P1 discontinuous on bricks (Q2–P1disc), continuous on tetrahedra (Taylor–Hood)."""
+    family = "DPC" if cell == "hexahedron" else "Lagrange"
+    return ufl.FiniteElement(family, cell, 1), 1
+
+
+FIELDS: dict[str, Callable[[str], tuple[Any, int]]] = {"u": _displacement, "p": _pressure}
+"""Element and number of components of each field that an effect may ask for."""
+
+
+class Body:
+    """The 3-D body: F = I + ∂u/∂X, x = X + u.
+
+    Only the fields that some effect asks for exist.
+
+    Attributes:
+        domain: the mesh with names.
+        space: the one mixed space of all fields.
+        w: all unknown fields together, a dolfinx function.
+        names: the fields present, in their order within the space.
+        scalars: values of the global scalars, by name, that the effects declared.
+    """
+
+    def __init__(self, domain: Domain, fields: Iterable[str]) -> None:
+        self.domain = domain
+        cell = domain.data.cell_type
+        wanted = set(fields)
+        self.names = [name for name in FIELDS if name in wanted]
+        elements = [FIELDS[name](cell) for name in self.names]
+        self.space = compat.mixed_space(domain.mesh, [element for element, _ in elements])
+        self.w = dfem.Function(self.space)
+        self._parts = dict(zip(self.names, ufl.split(self.w), strict=True))
+        self._dofs = {
+            name: compat.field_dofs(self.space, i, components)
+            for i, (name, (_, components)) in enumerate(zip(self.names, elements, strict=True))
+        }
+        self.scalars: dict[str, Any] = {}
+        self._variables: dict[str, Any] = {}
+
+        order = np.argsort(compat.node_permutation(cell))
+        self.cell_dofs: Dofs = self._dofs["u"][:, order]
+        """Displacement dofs of every local cell, (cells, nodes, 3), `geometry.mesh` order."""
+        self.node_dofs: Dofs = np.full((len(domain.data.nodes), 3), -1, dtype=np.int32)
+        """Local displacement dofs of every input node, (n, 3); -1 where the node is not here."""
+        self.node_dofs[domain.data.cells[domain.cells]] = self.cell_dofs
+        index_map = self.space.dofmap.index_map
+        self.owned = int(index_map.size_local)
+        self.local = self.owned + int(index_map.num_ghosts)
+        self.size = int(index_map.size_global)
+        here = self.node_dofs[:, 0]
+        self.owned_nodes = np.flatnonzero((here >= 0) & (here < self.owned))
+        """Input numbers of the nodes whose displacement this rank owns."""
+
+    # --- what effects ask for ---------------------------------------------------------------
+
+    @property
+    def u(self) -> Any:
+        """Displacement, a UFL vector in mm."""
+        return self._parts["u"]
+
+    @property
+    def p(self) -> Any:
+        """Pressure-like multiplier of J = 1, a UFL scalar in MPa.
+
+        Raises:
+            KeyError: no effect of the scene asked for it.
+        """
+        return self._parts["p"]
+
+    @property
+    def x(self) -> Any:
+        """Deformed position, a UFL vector in mm."""
+        return ufl.SpatialCoordinate(self.domain.mesh) + self.u
+
+    @property
+    def F(self) -> Any:  # noqa: N802
+        """Deformation gradient, a UFL 3×3 tensor."""
+        return ufl.Identity(3) + ufl.grad(self.u)
+
+    def dx(self) -> Any:
+        """Reference volume measure, mm³."""
+        return self.domain.dx()
+
+    def ds(self, surface: str) -> Any:
+        """Reference area measure of a named boundary surface, mm²."""
+        return self.domain.ds(surface)
+
+    def volume_density(self, surface: str) -> Any:
+        """Density per reference area of the volume a closed cavity surface encloses.
+
+        V = −∮ x_x (cof F · N)_x dS with N out of the solid: x e_x has no flux through planes
+        y = const or z = const that close the cavity, nor through x = 0.
+        """
+        normal = ufl.FacetNormal(self.domain.mesh)
+        return -self.x[0] * ufl.dot(ufl.cofac(self.F).T, normal)[0]
+
+    def coefficient(self, by_region: dict[str, float]) -> Any:
+        """A material constant as a piecewise constant field, one value per region."""
+        return compat.cell_field(self.domain.mesh, self.domain.cell_values(by_region))
+
+    def scalar(self, name: str) -> Any:
+        """The UFL variable of a global scalar, such as the chamber pressure in MPa."""
+        if name not in self.scalars:
+            self.scalars[name] = dfem.Constant(self.domain.mesh, 0.0)
+            self._variables[name] = ufl.variable(self.scalars[name])
+        return self._variables[name]
+
+    # --- what measures and predictors ask for ---------------------------------------------
+
+    def dofs(self, field: str) -> Dofs:
+        """Local dofs of a field for every local cell, (cells, nodes, components), basix order."""
+        return self._dofs[field]
+
+    def displacement(self) -> Floats:
+        """Displacement of the owned nodes in mm, (len(owned_nodes), 3)."""
+        values: Floats = self.w.x.array[self.node_dofs[self.owned_nodes]]
+        return values
+
+    def set_displacement(self, values: Floats) -> None:
+        """Set the displacement of the owned nodes in mm, and update the ghosts."""
+        self.w.x.array[self.node_dofs[self.owned_nodes]] = values
+        self.w.x.scatter_forward()
+
+    def det_f(self) -> Callable[[], float]:
+        """A function that returns the least det F over the quadrature points of all ranks."""
+        points = compat.quadrature_points(self.domain.data.cell_type, self.domain.degree)
+        values = compat.PointValues(self.domain.mesh, ufl.det(self.F), points)
+        def least() -> float:
+            here = values()
+            mine = float(here.min()) if here.size else np.inf
+            return float(self.domain.comm.allreduce(mine, MPI.MIN))
+
+        return least

@@ -1,0 +1,85 @@
+"""One sparse factorisation by MUMPS, with the inertia that tells stability."""
+
+from __future__ import annotations
+
+import time
+
+from petsc4py import PETSc
+
+ORDERING_PORD = 4
+
+
+class Factor:
+    """A factorisation K = L D Lᵀ (or L U) that is renewed in place.
+
+    Args:
+        matrix: the matrix; its values may change between calls of `renew`.
+        symmetric: LDLᵀ; False: LU, for loads without a potential.
+
+    Attributes:
+        seconds: wall time spent in factorisations and solves.
+    """
+
+    def __init__(self, matrix: PETSc.Mat, symmetric: bool = True) -> None:
+        self._matrix = matrix
+        self._symmetric = symmetric
+        self._ksp: PETSc.KSP | None = None
+        self.seconds = {"factor": 0.0, "solve": 0.0}
+        self.renewed = 0
+
+    def _create(self) -> PETSc.KSP:
+        self._matrix.setOption(PETSc.Mat.Option.SYMMETRIC, self._symmetric)
+        ksp = PETSc.KSP().create(self._matrix.getComm())
+        ksp.setOperators(self._matrix)
+        ksp.setType(PETSc.KSP.Type.PREONLY)
+        pc = ksp.getPC()
+        pc.setType(PETSc.PC.Type.CHOLESKY if self._symmetric else PETSc.PC.Type.LU)
+        pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
+        pc.setFactorSetUpSolverType()
+        factor = pc.getFactorMatrix()
+        factor.setMumpsIcntl(7, ORDERING_PORD)
+        factor.setMumpsIcntl(12, 1)  # else a serial LDLᵀ silently takes another ordering
+        factor.setMumpsIcntl(13, 1)  # else the root front hides negative pivots from the count
+        factor.setMumpsIcntl(14, 60)
+        factor.setMumpsIcntl(24, 0)
+        return ksp
+
+    def renew(self) -> None:
+        """Factorise the matrix as it is now.
+
+        Raises:
+            RuntimeError: MUMPS did not take the ordering asked for.
+            ZeroDivisionError: the matrix is singular.
+        """
+        start = time.perf_counter()
+        first = self._ksp is None
+        if self._ksp is None:
+            self._ksp = self._create()
+        self._ksp.setOperators(self._matrix)
+        self._ksp.setUp()
+        factor = self._ksp.getPC().getFactorMatrix()
+        if first and factor.getMumpsInfog(7) != ORDERING_PORD:
+            raise RuntimeError(f"MUMPS took ordering {factor.getMumpsInfog(7)} instead of PORD")
+        if factor.getMumpsInfog(1) < 0:
+            raise ZeroDivisionError(f"MUMPS: INFOG(1) = {factor.getMumpsInfog(1)}")
+        self.renewed += 1
+        self.seconds["factor"] += time.perf_counter() - start
+
+    @property
+    def negative_pivots(self) -> int:
+        """Number of negative eigenvalues of the factorised matrix (Sylvester's inertia)."""
+        assert self._ksp is not None, "renew first"
+        return int(self._ksp.getPC().getFactorMatrix().getMumpsInfog(12))
+
+    def solve(self, b: PETSc.Vec, x: PETSc.Vec) -> None:
+        """Solve K x = b with the last factor."""
+        assert self._ksp is not None, "renew first"
+        start = time.perf_counter()
+        self._ksp.solve(b, x)
+        self.seconds["solve"] += time.perf_counter() - start
+
+    def destroy(self) -> None:
+        """Free the factor."""
+        if self._ksp is not None:
+            self._ksp.destroy()
+            self._ksp = None

@@ -1,0 +1,383 @@
+"""Load stepping: ramps, adaptive increments, exact roll-back, requested outputs hit exactly."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from fem.frames import Frames, Shape
+from fem.newton import Newton, Outcome
+from fem.scene import Scene
+
+Floats = npt.NDArray[np.float64]
+
+
+class Functional(Protocol):
+    """A scalar measure with its gradient, such as the bending angle."""
+
+    def value(self) -> float: ...
+    def row(self) -> Floats: ...
+
+
+@dataclasses.dataclass
+class State:
+    """A converged state, this rank's part.
+
+    Attributes:
+        w: owned coefficients.
+        scalars: values of the global scalars.
+        measures: values that ramps and requests refer to, by name.
+        shape: rod description of the displacement.
+        discrete: memory of the discrete potentials, by effect.
+    """
+
+    w: Floats
+    scalars: dict[str, float]
+    measures: dict[str, float]
+    shape: Shape
+    discrete: dict[str, dict[str, Floats]]
+
+
+@dataclasses.dataclass(frozen=True)
+class Ramp:
+    """One load: a scalar driven to a target, directly or through its conjugate.
+
+    Attributes:
+        scalar: name of the global scalar, such as 'pressure'.
+        target: its final value, or its conjugate's (the chamber volume).
+        drive: 'value', or 'conjugate' to find the scalar so that its conjugate follows the ramp.
+        first: first increment of the driven quantity; None: from the linear response.
+        largest: greatest increment; None: a fifth of the ramp.
+        stops: values of the driven quantity to be hit exactly.
+        at: values of the followed functional to be hit exactly.
+        until: value of the followed functional at which the ramp ends; None: at the target.
+    """
+
+    scalar: str
+    target: float
+    drive: str = "value"
+    first: float | None = None
+    largest: float | None = None
+    stops: tuple[float, ...] = ()
+    at: tuple[float, ...] = ()
+    until: float | None = None
+
+
+@dataclasses.dataclass(frozen=True)
+class Rules:
+    """Incrementation as in Abaqus and CalculiX.
+
+    Attributes:
+        easy: iterations up to which the next increment grows by `grow`.
+        slow: iterations from which it shrinks by `shrink`.
+        cut: factor after a failed increment.
+        cutbacks: consecutive failed increments after which the march gives up.
+        turn: greatest change of the followed functional that the predictor may aim at.
+    """
+
+    easy: int = 5
+    grow: float = 1.5
+    slow: int = 8
+    shrink: float = 0.6
+    cut: float = 0.25
+    cutbacks: int = 6
+    turn: float = np.deg2rad(45.0)
+    first_turn: float = np.deg2rad(20.0)
+
+
+@dataclasses.dataclass
+class Report:
+    """How a march ended.
+
+    Attributes:
+        status: 'converged', or 'failed'.
+        reason: cause of the failure, or empty.
+        steps: converged increments.
+        iterations: Newton iterations, failed increments included.
+        cutbacks: failed increments.
+    """
+
+    status: str = "converged"
+    reason: str = ""
+    steps: int = 0
+    iterations: int = 0
+    cutbacks: int = 0
+    per_step: list[int] = dataclasses.field(default_factory=list)
+
+
+class _Conjugate:
+    """Closing equation: the conjugate of a scalar takes a value."""
+
+    def __init__(self, scene: Scene, name: str, target: float) -> None:
+        self._scene, self._name, self._target = scene, name, target
+        self._scale = max(abs(target), 1e-30)
+
+    def value(self) -> float:
+        return (self._scene.conjugate(self._name) - self._target) / self._scale
+
+    def row(self) -> Floats:
+        return -self._scene.load(self._name) / self._scale
+
+
+class _Target:
+    """Closing equation: a functional takes a value."""
+
+    def __init__(self, functional: Functional, target: float) -> None:
+        self._functional, self._target = functional, target
+
+    def value(self) -> float:
+        return self._functional.value() - self._target
+
+    def row(self) -> Floats:
+        return self._functional.row()
+
+
+class March:
+    """Drives a scene along its ramps.
+
+    Args:
+        scene: the problem, at rest.
+        newton: solver of that problem.
+        frames: rod frames for the predictor.
+        followed: functional that requests refer to (the bending angle), or None.
+        rules: incrementation.
+        on_step: called after every converged increment with the state and its outcome.
+        warn: called with a line of text when an increment fails.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        newton: Newton,
+        frames: Frames,
+        followed: Functional | None,
+        rules: Rules,
+        on_step: Callable[[State, Outcome], None],
+        warn: Callable[[str], None],
+    ) -> None:
+        self.scene = scene
+        self.newton = newton
+        self.frames = frames
+        self.followed = followed
+        self.rules = rules
+        self.on_step = on_step
+        self.warn = warn
+        self.states: list[State] = []
+        self.report = Report()
+        self.increment: float | None = None
+
+    # --- states --------------------------------------------------------------------------------
+
+    def capture(self) -> State:
+        """The present state of the scene."""
+        scene = self.scene
+        scalars = {name: scene.scalar(name) for name in scene.body.scalars}
+        measures = {f"value {name}": value for name, value in scalars.items()}
+        measures |= {f"conjugate {name}": scene.conjugate(name) for name in scalars}
+        if self.followed is not None:
+            measures["followed"] = self.followed.value()
+        return State(
+            w=scene.w.copy(),
+            scalars=scalars,
+            measures=measures,
+            shape=self.frames.fit(scene.body.displacement()),
+            discrete={key: item.state() for key, item in scene.discrete.items()},
+        )
+
+    def restore(self, state: State) -> None:
+        """Put the scene back to a captured state, exactly."""
+        for name, value in state.scalars.items():
+            self.scene.set_scalar(name, value)
+        self.scene.set(state.w)
+
+    def _tangent_state(self, scalar: str) -> State:
+        """A neighbour of the last state along the linear response to a scalar."""
+        base = self.states[-1]
+        self.restore(base)
+        for discrete in self.scene.discrete.values():
+            discrete.predict(None)
+        self.scene.assemble_tangent()
+        self.newton.factor.renew()
+        rate = -self.newton.solve_linear(self.scene.load(scalar))
+        body = self.scene.body
+        motion = np.zeros(body.local)
+        motion[: body.owned] = rate
+        nodal = motion[body.node_dofs[body.owned_nodes]]
+        top = float(np.max(np.abs(nodal), initial=0.0))
+        largest = max(self.scene.domain.comm.allgather(top))
+        step = 1e-5 * float(self.frames.z[-1] - self.frames.z[0]) / max(largest, 1e-300)
+        self.scene.set(base.w + step * rate)
+        self.scene.set_scalar(scalar, base.scalars[scalar] + step)
+        state = self.capture()
+        self.restore(base)
+        return state
+
+    def _predict(self, abscissa: str, target: float, history: list[State]) -> tuple[Floats, float]:
+        """Set the scene to the extrapolated state; returns its coefficients and |weights|."""
+        t = np.array([state.measures[abscissa] for state in history])
+        weights = np.array(
+            [np.prod([(target - b) / (a - b) for b in np.delete(t, i)]) for i, a in enumerate(t)]
+        )
+        body = self.scene.body
+        shape = self.frames.extrapolate([state.shape for state in history], weights)
+        w = sum((c * state.w for c, state in zip(weights, history, strict=True)), np.zeros(0))
+        self.scene.set(w)
+        body.set_displacement(self.frames.rebuild(shape))
+        self.scene.set(self.scene.w.copy())
+        for name in body.scalars:
+            values = [state.scalars[name] for state in history]
+            self.scene.set_scalar(name, float(weights @ values))
+        for key, discrete in self.scene.discrete.items():
+            discrete.extrapolate([state.discrete[key] for state in history], weights)
+        return self.scene.w.copy(), float(np.abs(weights).sum())
+
+    def _history(self, abscissa: str) -> list[State]:
+        """The last states with distinct abscissae, at most three, oldest first."""
+        chosen: list[State] = []
+        for state in reversed(self.states):
+            value = state.measures[abscissa]
+            scale = 1e-9 * max(abs(value), 1e-30)
+            if all(abs(value - other.measures[abscissa]) > scale for other in chosen):
+                chosen.insert(0, state)
+            if len(chosen) == 3:
+                break
+        return chosen
+
+    # --- increments ----------------------------------------------------------------------------
+
+    def _solve(self, ramp: Ramp, kind: str, target: float) -> Outcome:
+        """Predict and solve one increment; kind is 'value', 'conjugate' or 'followed'."""
+        abscissa = kind if kind == "followed" else f"{kind} {ramp.scalar}"
+        start, _ = self._predict(abscissa, target, self._history(abscissa))
+        if kind == "value":
+            self.scene.set_scalar(ramp.scalar, target)
+            return self.newton.solve(start)
+        if kind == "conjugate":
+            closure: _Conjugate | _Target = _Conjugate(self.scene, ramp.scalar, target)
+        else:
+            assert self.followed is not None
+            closure = _Target(self.followed, target)
+        return self.newton.solve(start, [ramp.scalar], [closure])
+
+    def _guess(self, ramp: Ramp, kind: str, target: float, wanted: str) -> float:
+        """Extrapolated value of a measure where the increment would end."""
+        abscissa = kind if kind == "followed" else f"{kind} {ramp.scalar}"
+        history = self._history(abscissa)
+        t = [state.measures[abscissa] for state in history]
+        y = [state.measures[wanted] for state in history]
+        return float(np.polynomial.Polynomial(_interpolate(t, y))(target - t[-1]))
+
+    def start(self) -> None:
+        """Capture the state at rest; without it nothing can be predicted."""
+        self.scene.set(self.scene.w.copy())
+        self.states = [self.capture()]
+
+    def run(self, ramps: Sequence[Ramp]) -> Report:
+        """March through all ramps in order, earlier loads held."""
+        if not self.states:
+            self.start()
+        for ramp in ramps:
+            if not self._ramp(ramp):
+                break
+        return self.report
+
+    def _ramp(self, ramp: Ramp) -> bool:
+        drive = f"{ramp.drive} {ramp.scalar}"
+        now = self.states[-1].measures[drive]
+        span = ramp.target - now
+        if span == 0:
+            return True
+        seed = self._tangent_state(ramp.scalar)
+        size = abs(ramp.first) if ramp.first else self._first_size(seed, drive, abs(span))
+        largest = abs(ramp.largest) if ramp.largest else abs(span) / 5
+        sign = np.sign(span)
+        size = min(size, largest, abs(span))
+        self.states = [*self.states[:-1], seed, self.states[-1]]
+        failures = 0
+        pending = sorted(ramp.at)
+        if ramp.until is not None:
+            pending = sorted({*(a for a in ramp.at if a < ramp.until), ramp.until})
+        while True:
+            state = self.states[-1]
+            now = state.measures[drive]
+            left = abs(ramp.target - now)
+            if left <= 1e-12 * abs(span):
+                return True
+            stops = [s for s in (*ramp.stops, ramp.target) if sign * (s - now) > 1e-9 * abs(span)]
+            nearest = min(stops, key=lambda s: abs(s - now))
+            target = now + sign * size
+            if sign * (target - nearest) > -0.2 * size:
+                target = nearest
+            kind = ramp.drive
+            goal = self._due(pending, state)
+            if goal is not None and self._guess(ramp, kind, target, "followed") > goal - 0.02:
+                kind, aim = "followed", goal
+            else:
+                aim = float(target)
+            outcome = self._solve(ramp, kind, aim)
+            self.report.iterations += outcome.iterations
+            accepted = outcome.converged
+            overshot = False
+            if accepted:
+                new = self.capture()
+                if goal is not None and kind != "followed":
+                    overshot = new.measures["followed"] > goal + 1e-9
+                if kind == "followed" and sign * (new.measures[drive] - ramp.target) > 0:
+                    # the angle lies beyond the load's end: go there by the load instead
+                    pending = [a for a in pending if a < goal - 1e-12] if goal else []
+                    overshot = True
+            if not accepted or overshot:
+                self.restore(state)
+                if overshot:
+                    continue
+                failures += 1
+                self.report.cutbacks += 1
+                self.warn(f"increment cut back: {outcome.reason}")
+                if failures > self.rules.cutbacks:
+                    self.report.status = "failed"
+                    self.report.reason = outcome.reason
+                    return False
+                size *= self.rules.cut
+                continue
+            failures = 0
+            self.states = [s for s in self.states if s is not seed or len(self.states) < 4]
+            self.states = [*self.states[-3:], new]
+            self.report.steps += 1
+            self.report.per_step.append(outcome.iterations)
+            self.on_step(new, outcome)
+            if outcome.iterations <= self.rules.easy:
+                size = min(size * self.rules.grow, largest)
+            elif outcome.iterations >= self.rules.slow:
+                size *= self.rules.shrink
+            if kind == "followed" and ramp.until is not None and aim >= ramp.until - 1e-9:
+                return True
+
+    def _due(self, pending: list[float], state: State) -> float | None:
+        """The next requested value of the followed functional."""
+        if self.followed is None:
+            return None
+        here = state.measures["followed"]
+        return next((a for a in pending if a > here + 1e-9), None)
+
+    def _first_size(self, seed: State, drive: str, span: float) -> float:
+        """First increment: the linear response turns the followed functional by `first_turn`."""
+        base = self.states[-1]
+        if self.followed is None:
+            return span / 20
+        turned = seed.measures["followed"] - base.measures["followed"]
+        driven = seed.measures[drive] - base.measures[drive]
+        if abs(turned) < 1e-14 or abs(driven) < 1e-300:
+            return span / 20
+        return float(abs(driven / turned) * self.rules.first_turn)
+
+
+def _interpolate(t: list[float], y: list[float]) -> Floats:
+    """Coefficients in (x − t[-1]) of the polynomial through the points, lowest first."""
+    x = np.array(t) - t[-1]
+    scale = np.max(np.abs(x)) or 1.0
+    powers = np.vander(x / scale, increasing=True)
+    return np.linalg.solve(powers, np.array(y)) / scale ** np.arange(len(x))

@@ -1,0 +1,149 @@
+"""Quantities that a user reads off a state: angle, tip, reactions."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import numpy.typing as npt
+from mpi4py import MPI
+
+from fem.domain import Domain
+from fem.frames import Frames
+from fem.kinematics import Body
+from fem.scene import Scene
+
+Floats = npt.NDArray[np.float64]
+
+
+class _SectionAngle:
+    """Rotation about x of one plane section: best fit of its nodes, area weighted.
+
+    tan α = Σ m (Y − Ȳ) z / Σ m (Y − Ȳ) y, positive toward −y; two linear functionals.
+    """
+
+    def __init__(self, body: Body, surface: str) -> None:
+        self._body = body
+        domain = body.domain
+        weights = domain.surface_weights(surface)
+        y = domain.data.nodes[:, 1]
+        lever = weights * (y - (weights @ y) / weights.sum())
+        nodes = body.owned_nodes[lever[body.owned_nodes] != 0]
+        self._lever = lever[nodes]
+        self._dofs = body.node_dofs[nodes]
+        self._nodes = domain.data.nodes[nodes]
+
+    def sums(self) -> tuple[float, float]:
+        """(Σ m Y' y, Σ m Y' z) of the deformed section."""
+        x = self._nodes + self._body.w.x.array[self._dofs]
+        mine = self._lever @ x[:, 1:]
+        total = self._body.domain.comm.allreduce(mine, MPI.SUM)
+        return float(total[0]), float(total[1])
+
+    def angle(self) -> float:
+        """The rotation in (−π, π], rad."""
+        y, z = self.sums()
+        return float(np.arctan2(z, y))
+
+    def add_row(self, row: Floats, factor: float) -> None:
+        """Add factor · ∂α/∂w to owned dofs."""
+        y, z = self.sums()
+        square = y * y + z * z
+        row[self._dofs[:, 2]] += factor * self._lever * y / square
+        row[self._dofs[:, 1]] -= factor * self._lever * z / square
+
+
+class BendingAngle:
+    """θ: rotation of the section z = L against z = 0, positive toward −y, unwrapped.
+
+    Args:
+        body: kinematics of a mesh with the surfaces 'section_root' and 'section_tip'.
+        frames: stations, to count full turns along the body.
+    """
+
+    def __init__(self, body: Body, frames: Frames) -> None:
+        self._body = body
+        self._frames = frames
+        self._root = _SectionAngle(body, "section_root")
+        self._tip = _SectionAngle(body, "section_tip")
+        nodes = body.domain.data.nodes
+        self._ends = [
+            float(nodes[body.domain.surface_nodes(name), 2].mean())
+            for name in ("section_root", "section_tip")
+        ]
+
+    def value(self) -> float:
+        """θ at the present state, rad."""
+        wrapped = self._tip.angle() - self._root.angle()
+        along = self._frames.bending(self._frames.fit(self._body.displacement()))
+        root, tip = np.interp(self._ends, self._frames.z, along)
+        turns = np.round((tip - root - wrapped) / (2 * np.pi))
+        return float(wrapped + 2 * np.pi * turns)
+
+    def row(self) -> Floats:
+        """∂θ/∂w on the owned dofs, rad/mm."""
+        row = np.zeros(self._body.owned)
+        self._tip.add_row(row, 1.0)
+        self._root.add_row(row, -1.0)
+        return row
+
+
+class Tip:
+    """Centroid of the tip cap's outer face."""
+
+    def __init__(self, body: Body, surface: str = "tip") -> None:
+        self._body = body
+        weights = body.domain.surface_weights(surface)
+        weights /= weights.sum()
+        nodes = body.owned_nodes[weights[body.owned_nodes] > 0]
+        self._weights = weights[nodes]
+        self._dofs = body.node_dofs[nodes]
+        self._nodes = body.domain.data.nodes[nodes]
+
+    def position(self) -> Floats:
+        """Deformed position in mm, (3,)."""
+        x = self._nodes + self._body.w.x.array[self._dofs]
+        return self._body.domain.comm.allreduce(self._weights @ x, MPI.SUM)  # type: ignore
+
+
+@dataclasses.dataclass(frozen=True)
+class Resultant:
+    """Force in N and moment about the origin in N mm, of the whole body."""
+
+    force: Floats
+    moment: Floats
+
+    def __add__(self, other: Resultant) -> Resultant:
+        return Resultant(self.force + other.force, self.moment + other.moment)
+
+
+def mirror_factor(domain: Domain) -> int:
+    """2 when half a body stands for the whole."""
+    return 2 if domain.data.half else 1
+
+
+def reaction(scene: Scene, name: str, residual: Floats | None = None) -> Resultant:
+    """What a support does to the body: the residual at the dofs it holds.
+
+    Forces act at deformed positions. In a half model the mirror image is added; the mirror plane
+    itself is internal to the whole body and must not be asked for.
+
+    Args:
+        scene: the scene at an equilibrium.
+        name: name of the constraint.
+        residual: owned residual, if it is at hand.
+    """
+    body = scene.body
+    if residual is None:
+        residual, _ = scene.residual()
+    held = np.zeros(body.local, dtype=bool)
+    held[scene.held(name)] = True
+    dofs = body.node_dofs[body.owned_nodes]
+    here = held[dofs]
+    force = np.where(here, residual[dofs], 0.0)
+    x = body.domain.data.nodes[body.owned_nodes] + body.w.x.array[dofs]
+    total = np.concatenate([force.sum(axis=0), np.cross(x, force).sum(axis=0)])
+    total = body.domain.comm.allreduce(total, MPI.SUM)
+    if body.domain.data.half:
+        total *= [0, 2, 2, 2, 0, 0]
+    return Resultant(total[:3], total[3:])

@@ -1,0 +1,310 @@
+"""Newton's method on PETSc SNES for the fields and a few global scalars."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from fem.linear import Factor
+
+Floats = npt.NDArray[np.float64]
+
+
+class Problem(Protocol):
+    """What Newton needs of a scene."""
+
+    matrix: PETSc.Mat
+    free: npt.NDArray[np.bool_]
+    volumetric: npt.NDArray[np.bool_]
+    volume_scale: float
+    discrete: dict[str, Any]
+
+    def set(self, w: Floats) -> None: ...
+    def set_scalar(self, name: str, value: float) -> None: ...
+    def scalar(self, name: str) -> float: ...
+    def residual(self) -> tuple[Floats, float]: ...
+    def assemble_tangent(self) -> PETSc.Mat: ...
+    def load(self, name: str) -> Floats: ...
+    def det_f(self) -> float: ...
+    def norm(self, values: Floats) -> float: ...
+
+
+class Closure(Protocol):
+    """One more equation g(w) = 0, in exchange for one global scalar that is found."""
+
+    def value(self) -> float:
+        """g at the present state, scaled so that 1 is a large error."""
+
+    def row(self) -> Floats:
+        """∂g/∂w on the owned dofs."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Settings:
+    """Limits of one Newton solve.
+
+    Attributes:
+        tolerance: of forces, relative to reactions and fiber forces, and of volumes, relative to
+            the volume of an element; each for itself.
+        iterations: most iterations.
+        hybrid: use the predicted fiber force in the geometric stiffness.
+    """
+
+    tolerance: float = 1e-8
+    iterations: int = 14
+    hybrid: bool = True
+
+
+@dataclasses.dataclass
+class Outcome:
+    """How a Newton solve ended.
+
+    Attributes:
+        converged: True when every residual is below its tolerance.
+        iterations: linear solves.
+        reason: why not, in words; empty when converged.
+        history: force, volume and closure residual of every iterate, relative.
+        least_det_f: least det F of the last iterate.
+    """
+
+    converged: bool
+    iterations: int
+    reason: str
+    history: list[tuple[float, float, float]]
+    least_det_f: float
+
+
+class Newton:
+    """Full Newton steps on the bordered vector (w, q), K factorised once an iteration.
+
+    The scalars are eliminated: K a = r, K B = columns, then a small dense system. Rows and
+    columns of the border may differ.
+
+    Args:
+        problem: residual, tangent and scalars.
+        comm: communicator.
+        settings: limits.
+
+    Attributes:
+        seconds: wall time by phase.
+    """
+
+    def __init__(self, problem: Problem, comm: MPI.Comm, settings: Settings) -> None:
+        self.problem = problem
+        self.comm = comm
+        self.settings = settings
+        self.factor = Factor(problem.matrix)
+        self._assembly = {"residual": 0.0, "tangent": 0.0}
+        self._b = problem.matrix.createVecRight()
+        self._x = problem.matrix.createVecRight()
+        self._owned = self._b.getLocalSize()
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Wall time by phase."""
+        return {**self._assembly, **self.factor.seconds}
+
+    def solve(
+        self, w: Floats, unknown: Sequence[str] = (), closures: Sequence[Closure] = ()
+    ) -> Outcome:
+        """Find w and the unknown scalars from a starting guess.
+
+        Args:
+            w: owned coefficients to start from.
+            unknown: names of the scalars that are found; they start from their present values.
+            closures: as many equations.
+
+        Returns:
+            The outcome; when converged the problem holds the solution.
+
+        Raises:
+            ValueError: numbers of unknown scalars and closures differ.
+        """
+        if len(unknown) != len(closures):
+            raise ValueError("every unknown scalar needs one closing equation")
+        return _Solve(self, list(unknown), list(closures)).run(w)
+
+    def solve_linear(self, r: Floats) -> Floats:
+        """K⁻¹ r with the present factor, owned part."""
+        self._b.array_w[:] = r
+        self.factor.solve(self._b, self._x)
+        return self._x.array_r.copy()
+
+
+class _Solve:
+    """One SNES solve: the callbacks share its state."""
+
+    def __init__(self, newton: Newton, unknown: list[str], closures: list[Closure]) -> None:
+        self.newton = newton
+        self.problem = newton.problem
+        self.comm = newton.comm
+        self.unknown = unknown
+        self.closures = closures
+        self.last = self.comm.rank == self.comm.size - 1
+        self.owned = newton._owned
+        self.history: list[tuple[float, float, float]] = []
+        self.scale = 0.0
+        self.least = np.inf
+        self.solves = 0
+        self.reason = ""
+        self.at_tangent: Floats | None = None
+        self.error: Exception | None = None
+
+    # --- vectors -------------------------------------------------------------------------------
+
+    def split(self, x: PETSc.Vec) -> tuple[Floats, Floats]:
+        """Fields (owned part) and scalars (on every rank) of a bordered vector."""
+        array = x.array_r
+        tail = array[self.owned :].copy() if self.last else None
+        scalars = self.comm.bcast(tail, root=self.comm.size - 1) if self.unknown else np.zeros(0)
+        return array[: self.owned].copy(), scalars
+
+    def join(self, x: PETSc.Vec, w: Floats, scalars: Floats) -> None:
+        """Write fields and scalars into a bordered vector."""
+        array = x.array_w
+        array[: self.owned] = w
+        if self.last and self.unknown:
+            array[self.owned :] = scalars
+
+    def dot(self, a: Floats, b: Floats) -> float:
+        """Inner product over all ranks."""
+        return float(self.comm.allreduce(float(a @ b), MPI.SUM))
+
+    # --- callbacks -----------------------------------------------------------------------------
+
+    def function(self, _snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
+        """Bordered residual; NaN where an element is turned inside out."""
+        start = time.perf_counter()
+        problem = self.problem
+        w, scalars = self.split(x)
+        for name, value in zip(self.unknown, scalars, strict=True):
+            problem.set_scalar(name, float(value))
+        problem.set(w)
+        self.least = problem.det_f()
+        if not self.least > 0:
+            self.join(f, np.full(self.owned, np.nan), np.full(len(self.unknown), np.nan))
+            self.history.append((np.nan, np.nan, np.nan))
+            self.newton._assembly["residual"] += time.perf_counter() - start
+            return
+        r, scale = problem.residual()
+        self.scale = max(scale, 1e-30)
+        r[~problem.free[: self.owned]] = 0.0
+        g = np.array([closure.value() for closure in self.closures])
+        volumetric = problem.volumetric
+        self.history.append(
+            (
+                problem.norm(r[~volumetric]) / self.scale,
+                problem.norm(r[volumetric]) / problem.volume_scale,
+                float(np.max(np.abs(g), initial=0.0)),
+            )
+        )
+        self.join(f, r, g)
+        self.newton._assembly["residual"] += time.perf_counter() - start
+
+    def jacobian(self, _snes: PETSc.SNES, x: PETSc.Vec, _a: PETSc.Mat, _p: PETSc.Mat) -> None:
+        """Tangent, its factor, and the border."""
+        start = time.perf_counter()
+        problem = self.problem
+        w, _ = self.split(x)
+        problem.assemble_tangent()
+        self.at_tangent = w
+        self.newton._assembly["tangent"] += time.perf_counter() - start
+        self.newton.factor.renew()
+        columns = [problem.load(name) for name in self.unknown]
+        free = problem.free[: self.owned]
+        self.rows = [np.where(free, closure.row(), 0.0) for closure in self.closures]
+        self.spread = [self.newton.solve_linear(column) for column in columns]
+        self.schur = -np.array(
+            [[self.dot(row, spread) for spread in self.spread] for row in self.rows]
+        ).reshape(len(self.rows), len(self.spread))
+
+    def apply(self, _pc: PETSc.PC, r: PETSc.Vec, y: PETSc.Vec) -> None:
+        """Solve the bordered system with the factor of K."""
+        self.solves += 1
+        r_w, r_q = self.split(r)
+        a = self.newton.solve_linear(r_w)
+        q = np.zeros(0)
+        if self.unknown:
+            q = np.linalg.solve(
+                self.schur, r_q - np.array([self.dot(row, a) for row in self.rows])
+            )
+            for value, spread in zip(q, self.spread, strict=True):
+                a -= value * spread
+        self.join(y, a, q)
+        # SNES takes the step x − y, so the correction of the fields is −a
+        self.correct(-a)
+
+    def correct(self, correction: Floats) -> None:
+        """Tell the discrete potentials the correction, ghosts included."""
+        if not self.newton.settings.hybrid or not self.problem.discrete:
+            return
+        function = self.problem.body.w  # type: ignore[attr-defined]
+        keep = function.x.array.copy()
+        function.x.array[: self.owned] = correction
+        function.x.scatter_forward()
+        full = function.x.array.copy()
+        function.x.array[:] = keep
+        for discrete in self.problem.discrete.values():
+            discrete.predict(full)
+
+    def test(self, _snes: PETSc.SNES, iteration: int, _norms: tuple[float, ...]) -> int:
+        """Force, volume and closing equations, each for itself."""
+        reasons = PETSc.SNES.ConvergedReason
+        force, volume, closing = self.history[-1]
+        tolerance = self.newton.settings.tolerance
+        if not np.isfinite(force):
+            self.reason = f"an element turned inside out (least det F {self.least:.3g})"
+            return int(reasons.DIVERGED_FNORM_NAN)
+        if force <= tolerance and volume <= tolerance and closing <= tolerance:
+            return int(reasons.CONVERGED_FNORM_RELATIVE)
+        if iteration >= self.newton.settings.iterations:
+            self.reason = f"no convergence in {iteration} iterations"
+            return int(reasons.DIVERGED_MAX_IT)
+        if iteration >= 4:
+            size = [max(row) for row in self.history]
+            if size[-1] > 1e3 * min(size[:-1]) and size[-1] > 1:
+                self.reason = "the residual grows"
+                return int(reasons.DIVERGED_DTOL)
+        return int(reasons.CONVERGED_ITERATING)
+
+    # --- run -----------------------------------------------------------------------------------
+
+    def run(self, w: Floats) -> Outcome:
+        """Set up SNES on the bordered vector and solve."""
+        size = self.owned + (len(self.unknown) if self.last else 0)
+        x = PETSc.Vec().createMPI((size, PETSc.DETERMINE), comm=self.comm)
+        f = x.duplicate()
+        shell = PETSc.Mat().createPython(((size, PETSc.DETERMINE),) * 2, comm=self.comm)
+        shell.setPythonContext(object())
+        shell.setUp()
+        snes = PETSc.SNES().create(self.comm)
+        snes.setType(PETSc.SNES.Type.NEWTONLS)
+        prefix = "fiberbend_newton_"
+        snes.setOptionsPrefix(prefix)
+        PETSc.Options().setValue(f"{prefix}snes_linesearch_type", "basic")
+        snes.setFromOptions()
+        snes.setFunction(self.function, f)
+        snes.setJacobian(self.jacobian, shell, shell)
+        snes.setConvergenceTest(self.test)
+        snes.setTolerances(max_it=self.newton.settings.iterations + 1)
+        ksp = snes.getKSP()
+        ksp.setType(PETSc.KSP.Type.PREONLY)
+        pc = ksp.getPC()
+        pc.setType(PETSc.PC.Type.PYTHON)
+        pc.setPythonContext(self)
+        self.join(x, w, np.array([self.problem.scalar(name) for name in self.unknown]))
+        try:
+            snes.solve(None, x)
+        except (PETSc.Error, ZeroDivisionError, np.linalg.LinAlgError) as error:
+            self.reason = f"the linear solve failed ({error})"
+        converged = snes.getConvergedReason() > 0 and not self.reason
+        for item in (snes, shell, x, f):
+            item.destroy()
+        return Outcome(converged, self.solves, self.reason, self.history, float(self.least))

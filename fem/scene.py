@@ -1,0 +1,231 @@
+"""A scene is a list of effects; compiled, it is a potential with two derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import ufl
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from fem import compat
+from fem.domain import Domain
+from fem.effect import Constraint, Discrete, Effect
+from fem.kinematics import Body
+
+Floats = npt.NDArray[np.float64]
+
+
+def _differentiate(form: Any, variable: Any) -> Any:
+    """∂/∂q of a form for a global scalar q, integral by integral; None where q is absent."""
+    parts = [
+        integral.reconstruct(ufl.diff(integral.integrand(), variable))
+        for integral in form.integrals()
+    ]
+    result = ufl.algorithms.apply_derivatives.apply_derivatives(
+        ufl.algorithms.apply_algebra_lowering.apply_algebra_lowering(ufl.Form(parts))
+    )
+    return None if result.empty() else result
+
+
+class Scene:
+    """A body under a sum of effects, Π(w, q) = Σ_e Π_e(w, q), ready to be solved.
+
+    The effects are sorted, so that their order in the list never matters. What no effect asks
+    for has no dof and no kernel.
+
+    Args:
+        domain: the mesh.
+        effects: the summands; each key at most once.
+
+    Attributes:
+        body: kinematics with the unknowns.
+        keys: names of the effects, sorted.
+        free: local dofs (owned and ghosts) that no constraint holds.
+        discrete: by key, the potentials with own code.
+
+    Raises:
+        ValueError: an effect given twice.
+    """
+
+    def __init__(self, domain: Domain, effects: Iterable[Effect]) -> None:
+        ordered = sorted(effects, key=lambda effect: effect.key)
+        self.keys = [effect.key for effect in ordered]
+        for key in self.keys:
+            if self.keys.count(key) > 1:
+                raise ValueError(f"the effect {key} is given twice")
+        self.domain = domain
+        self.body = Body(domain, (name for effect in ordered for name in effect.fields))
+        self.discrete: dict[str, Discrete] = {}
+        potentials: dict[str, Any] = {}
+        constraints: list[Constraint] = []
+        for effect in ordered:
+            form = effect.potential(self.body)
+            if form is not None:
+                potentials[effect.key] = form
+            discrete = effect.discrete(self.body)
+            if discrete is not None:
+                self.discrete[effect.key] = discrete
+            constraints += effect.constraints()
+        self._compile(potentials)
+        self._constrain(constraints)
+
+    # --- compilation ---------------------------------------------------------------------------
+
+    def _compile(self, potentials: dict[str, Any]) -> None:
+        body, mesh = self.body, self.domain.mesh
+        total = sum(potentials.values(), ufl.Form([]))
+        test, trial = ufl.TestFunction(body.space), ufl.TrialFunction(body.space)
+        residual = ufl.derivative(total, body.w, test)
+        tangent = ufl.derivative(residual, body.w, trial)
+        forms: dict[str, Any] = {"residual": residual, "tangent": tangent}
+        for key, form in potentials.items():
+            forms[f"energy {key}"] = form
+        for name in body.scalars:
+            conjugate = _differentiate(total, body.scalar(name))
+            forms[f"conjugate {name}"] = conjugate
+            forms[f"load {name}"] = ufl.derivative(conjugate, body.w, test)
+        if "p" in body.names:
+            forms["volume"] = ufl.split(test)[body.names.index("p")] * body.dx()
+        self._forms = {name: compat.compile_form(mesh, form) for name, form in forms.items()}
+        self.signatures = {name: form.signature() for name, form in forms.items()}
+        self.kernels = sum(len(form.integrals()) for form in forms.values())
+        self.matrix = compat.create_matrix(self._forms["tangent"])
+        self._vector = self.matrix.createVecLeft()
+        self._det_f = body.det_f()
+        self.volume_scale = 1.0
+        """Norm of ∫ φ dX over the pressure field's test functions, mm³."""
+        if "volume" in self._forms:
+            self.volume_scale = self.norm(self._sum(self._forms["volume"], ())[0])
+
+    def _constrain(self, constraints: list[Constraint]) -> None:
+        body = self.body
+        self.free = np.ones(body.local, dtype=bool)
+        self._held: dict[str, npt.NDArray[np.int32]] = {}
+        self._held_values = np.zeros(body.local)
+        for constraint in constraints:
+            nodes = self.domain.surface_nodes(constraint.surface)
+            dofs = body.node_dofs[nodes, constraint.component]
+            dofs = dofs[dofs >= 0]
+            self.free[dofs] = False
+            self._held_values[dofs] = constraint.value
+            old = self._held.get(constraint.name, np.zeros(0, dtype=np.int32))
+            self._held[constraint.name] = np.union1d(old, dofs).astype(np.int32)
+        self._dirichlet = compat.dirichlet(body.space, np.flatnonzero(~self.free))
+        p = body.dofs("p").ravel() if "p" in body.names else np.zeros(0, dtype=np.int32)
+        self.volumetric = np.zeros(body.owned, dtype=bool)
+        self.volumetric[p[p < body.owned]] = True
+        """Owned dofs of the pressure field."""
+
+    def hold(self, dofs: npt.NDArray[np.int32], values: Floats) -> None:
+        """Hold further local dofs at given values, in mm (prescribed boundary displacement)."""
+        self.free[dofs] = False
+        self._held_values[dofs] = values
+        self._held["prescribed"] = np.union1d(
+            self._held.get("prescribed", np.zeros(0, dtype=np.int32)), dofs
+        ).astype(np.int32)
+        self._dirichlet = compat.dirichlet(self.body.space, np.flatnonzero(~self.free))
+
+    # --- state ---------------------------------------------------------------------------------
+
+    @property
+    def w(self) -> Floats:
+        """Coefficients of the fields that this rank owns, (owned,), a view."""
+        values: Floats = self.body.w.x.array[: self.body.owned]
+        return values
+
+    def set(self, w: Floats) -> None:
+        """Take the owned coefficients w as the state; held dofs take their values."""
+        self.w[:] = np.where(self.free[: self.body.owned], w, self._held_values[: self.body.owned])
+        self.body.w.x.scatter_forward()
+        for discrete in self.discrete.values():
+            discrete.update(self.body.w.x.array)
+
+    def scalar(self, name: str) -> float:
+        """Value of a global scalar."""
+        return float(self.body.scalars[name].value)
+
+    def set_scalar(self, name: str, value: float) -> None:
+        """Set a global scalar."""
+        self.body.scalars[name].value = value
+
+    # --- the potential and its derivatives ---------------------------------------------------
+
+    def det_f(self) -> float:
+        """Least det F over the quadrature points of all ranks."""
+        return self._det_f()
+
+    def energies(self) -> dict[str, float]:
+        """Π_e of every effect that has a potential, N mm, summed over all ranks."""
+        comm = self.domain.comm
+        result = {}
+        for key in self.keys:
+            mine = 0.0
+            if f"energy {key}" in self._forms:
+                mine += compat.assemble_scalar(self._forms[f"energy {key}"])
+            elif key not in self.discrete:
+                continue
+            if key in self.discrete:
+                mine += self.discrete[key].energy()
+            result[key] = float(comm.allreduce(mine, MPI.SUM))
+        return result
+
+    def conjugate(self, name: str) -> float:
+        """−∂Π/∂q of a global scalar q: the chamber volume in mm³ for the pressure."""
+        mine = compat.assemble_scalar(self._forms[f"conjugate {name}"])
+        return -float(self.domain.comm.allreduce(mine, MPI.SUM))
+
+    def _sum(self, form: Any, discrete: Iterable[Discrete]) -> tuple[Floats, float]:
+        """Owned part of an assembled vector, and the norm of its discrete part."""
+        vector = self._vector
+        norm = 0.0
+        with vector.localForm() as local:
+            local.set(0.0)
+            part = np.zeros(len(local.array_r))
+            for potential in discrete:
+                potential.add_residual(part)
+            norm = float(np.linalg.norm(part))
+            local.array_w[:] = part
+        compat.assemble_vector(vector, form)
+        vector.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
+        return vector.array_r.copy(), norm
+
+    def residual(self) -> tuple[Floats, float]:
+        """R = ∂Π/∂w at the present state.
+
+        Returns:
+            Its owned part (owned,), constrained dofs included: there it is the reaction; and a
+            scale for the forces in it: the larger of reactions and fiber forces.
+        """
+        r, norm = self._sum(self._forms["residual"], self.discrete.values())
+        held = ~self.free[: self.body.owned]
+        reaction = self.norm(r[held])
+        total = float(np.sqrt(self.domain.comm.allreduce(norm**2, MPI.SUM)))
+        return r, max(reaction, total)
+
+    def load(self, name: str) -> Floats:
+        """∂R/∂q of a global scalar on the free dofs, owned part."""
+        vector, _ = self._sum(self._forms[f"load {name}"], ())
+        vector[~self.free[: self.body.owned]] = 0.0
+        return vector
+
+    def assemble_tangent(self) -> PETSc.Mat:
+        """K = ∂R/∂w at the present state; unit diagonal on constrained dofs."""
+        self.matrix.zeroEntries()
+        compat.assemble_matrix(self.matrix, self._forms["tangent"], self._dirichlet)
+        self.matrix.assemble(PETSc.Mat.AssemblyType.FLUSH)
+        for discrete in self.discrete.values():
+            discrete.add_tangent(self.matrix, self.free)
+        self.matrix.assemble()
+        return self.matrix
+
+    def norm(self, values: Floats) -> float:
+        """Euclidean norm over all ranks of owned values."""
+        return float(np.sqrt(self.domain.comm.allreduce(float(values @ values), MPI.SUM)))
+
+    def held(self, name: str) -> npt.NDArray[np.int32]:
+        """Local dofs that the constraints of this name hold, ghosts included."""
+        return self._held[name]
