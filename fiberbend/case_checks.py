@@ -1,0 +1,313 @@
+"""What the values of a case must fulfil together, and the defaults that depend on others."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from typing import Any
+
+from fiberbend.case import Actuator, Case, Material, Materials, Mesh, Output, Solver
+from fiberbend.case_effects import (
+    BlockedTipEffect,
+    Effect,
+    Fiber,
+    GravityEffect,
+    PressureEffect,
+    WindingEffect,
+)
+from fiberbend.choice import mirror_breakers
+from fiberbend.problems import Problem, found
+from fiberbend.units import show
+
+DEFAULT_LINES = 5
+DEFAULT_FIRST_STEP = 0.002
+
+_COEFFICIENTS = {
+    "yeoh": (("c1",), ("c2", "c3")),
+    "neo-hooke": (("c1",), ()),
+    "mooney-rivlin": (("c1", "c2"), ()),
+}
+"""Required and optional coefficients of each law."""
+
+
+@dataclasses.dataclass
+class Parts:
+    """The parts of a case that are valid by themselves; the others are None or absent."""
+
+    actuator: Actuator | None = None
+    materials: Materials | None = None
+    mesh: Mesh | None = None
+    solver: Solver | None = None
+    output: Output | None = None
+    effects: dict[int, Effect] = dataclasses.field(default_factory=dict)
+    broken_effects: bool = False
+
+    @classmethod
+    def of(cls, case: Case) -> Parts:
+        """All parts of a case."""
+        return cls(
+            case.actuator,
+            case.materials,
+            case.mesh,
+            case.solver,
+            case.output,
+            dict(enumerate(case.effects)),
+        )
+
+    def find(self, kind: type[Any]) -> tuple[str, Any]:
+        """Path and value of the first effect of a class; the value is None where there is none."""
+        for index, effect in self.effects.items():
+            if isinstance(effect, kind):
+                return f"effects.{index}.{effect.name}", effect
+        return "", None
+
+
+def check(parts: Parts) -> Iterator[Problem]:
+    """Every problem that lies in several values together.
+
+    Args:
+        parts: what is valid by itself.
+    """
+    yield from _effects(parts)
+    yield from _pressure(parts)
+    yield from _winding(parts)
+    yield from _materials(parts)
+    yield from _gravity(parts)
+    yield from _mesh(parts)
+    yield from _solver(parts)
+    yield from _output(parts)
+
+
+def complete(case: Case) -> Case:
+    """Fill in the defaults that depend on other values of a checked case."""
+    effects = tuple(
+        _complete_winding(effect) if isinstance(effect, WindingEffect) else effect
+        for effect in case.effects
+    )
+    solver = case.solver
+    pressure = case.find(PressureEffect)
+    if pressure is not None and pressure.to is not None and solver.first_step is None:
+        first = min(DEFAULT_FIRST_STEP, abs(pressure.to), solver.max_step or DEFAULT_FIRST_STEP)
+        solver = solver.model_copy(update={"first_step": first})
+    return case.model_copy(update={"effects": effects, "solver": solver})
+
+
+def _complete_winding(winding: WindingEffect) -> WindingEffect:
+    fiber = winding.fiber
+    if fiber.name is None and fiber.radius_factor is None:
+        fiber = fiber.model_copy(update={"radius_factor": 1.0})
+    update: dict[str, Any] = {"fiber": fiber}
+    if winding.representation == "discrete":
+        width = winding.width
+        if width is None:
+            width = _named("fibers")[fiber.name].diameter if fiber.name else fiber.diameter
+        update["width"] = width
+        update["lines"] = winding.lines or (DEFAULT_LINES if width else 1)
+    return winding.model_copy(update=update)
+
+
+def _named(kind: str) -> dict[str, Any]:
+    # numpy comes with it, and a case that is wrong elsewhere need not wait for that.
+    from materials import named
+
+    return {"materials": named.NAMED, "fibers": named.FIBERS}[kind]
+
+
+def _effects(parts: Parts) -> Iterator[Problem]:
+    first: dict[str, int] = {}
+    for index, effect in parts.effects.items():
+        if effect.name in first:
+            yield Problem(
+                f"effects.{index}.{effect.name}",
+                f"a second {effect.name}, expected one (the first is effects.{first[effect.name]})",
+            )
+        first.setdefault(effect.name, index)
+    if not parts.broken_effects and not any(effect.load for effect in parts.effects.values()):
+        yield Problem("effects", "no load, expected pressure or gravity")
+
+
+def _pressure(parts: Parts) -> Iterator[Problem]:
+    path, pressure = parts.find(PressureEffect)
+    if pressure is None:
+        return
+    if pressure.to is None and pressure.volume is None:
+        yield Problem(path, 'nothing to reach, expected to, such as "200 kPa", or volume')
+    if pressure.to is not None and pressure.volume is not None:
+        yield Problem(f"{path}.volume", "to is given too, expected one of the two")
+
+
+def _winding(parts: Parts) -> Iterator[Problem]:
+    path, winding = parts.find(WindingEffect)
+    if winding is None:
+        return
+    if parts.actuator is not None and winding.pitch > parts.actuator.length:
+        yield Problem(
+            f"{path}.pitch",
+            f"{_length(winding.pitch)}, expected a pitch not longer than the chamber, "
+            f"{_length(parts.actuator.length)}",
+        )
+    if winding.representation == "smeared":
+        for key in ("width", "lines"):
+            if getattr(winding, key) is not None:
+                yield Problem(f"{path}.{key}", "no effect on a smeared winding, expected no value")
+    elif winding.width == 0 and (winding.lines or 1) > 1:
+        yield Problem(f"{path}.lines", f"{winding.lines}, expected 1 line where the width is zero")
+    yield from _fiber(f"{path}.fiber", winding.fiber)
+
+
+def _fiber(path: str, fiber: Fiber) -> Iterator[Problem]:
+    own = ("modulus", "diameter", "radius_factor")
+    if fiber.name is None:
+        for key in own[:2]:
+            if getattr(fiber, key) is None:
+                yield Problem(f"{path}.{key}", f"missing, expected the {key} of an unnamed fiber")
+        return
+    if fiber.name not in _named("fibers"):
+        names = " or ".join(_named("fibers"))
+        yield Problem(path, f"{found(fiber.name)}, expected {names}, or modulus and diameter")
+    for key in own:
+        if getattr(fiber, key) is not None:
+            yield Problem(f"{path}.{key}", "no effect on a named fiber, expected no value")
+
+
+def _materials(parts: Parts) -> Iterator[Problem]:
+    if parts.materials is None:
+        return
+    for part in ("wall", "floor", "sheath", "layer"):
+        path, material = f"materials.{part}", getattr(parts.materials, part)
+        if material is not None:
+            yield from _material(path, material)
+        if parts.actuator is not None:
+            thickness = getattr(parts.actuator, part)
+            if material is None and thickness is not None:
+                yield Problem(path, f"missing, expected the material of actuator.{part}")
+            if material is not None and thickness is None:
+                yield Problem(path, f"no effect without actuator.{part}, expected no value")
+
+
+def _material(path: str, material: Material) -> Iterator[Problem]:
+    given = material.coefficients
+    if material.name is not None:
+        if material.name not in _named("materials"):
+            names = ", ".join(_named("materials"))
+            yield Problem(path, f"{found(material.name)}, expected {names}, or a law")
+        if material.law is not None:
+            given = {"law": 0.0, **given}
+        for key in given:
+            yield Problem(f"{path}.{key}", "no effect on a named material, expected no value")
+    elif material.law is None:
+        yield Problem(path, "neither name nor law, expected one of them")
+    else:
+        required, optional = _COEFFICIENTS[material.law]
+        for key in required:
+            if key not in given:
+                yield Problem(f"{path}.{key}", f"missing, expected a coefficient of {material.law}")
+        for key in given:
+            if key not in required + optional:
+                yield Problem(f"{path}.{key}", f"no effect on {material.law}, expected no value")
+
+
+def _gravity(parts: Parts) -> Iterator[Problem]:
+    _, gravity = parts.find(GravityEffect)
+    if parts.materials is None or parts.broken_effects:
+        return
+    for part in ("wall", "floor", "sheath", "layer"):
+        path, material = f"materials.{part}", getattr(parts.materials, part)
+        if material is None:
+            continue
+        if gravity is None and material.density is not None:
+            yield Problem(f"{path}.density", "no effect without gravity, expected no value")
+        if gravity is not None and material.density is None:
+            named = _named("materials").get(material.name) if material.name else None
+            if named is None or named.density is None:
+                yield Problem(f"{path}.density", "missing, expected a density for gravity")
+
+
+def _mesh(parts: Parts) -> Iterator[Problem]:
+    if parts.mesh is None:
+        return
+    if parts.mesh.symmetry == "half":
+        for reason in mirror_breakers(parts.effects.values()):
+            yield Problem("mesh.symmetry", f'"half", expected auto or full: {reason}')
+    if parts.actuator is not None:
+        if parts.mesh.axial > parts.actuator.length:
+            yield Problem(
+                "mesh.axial",
+                f"{_length(parts.mesh.axial)}, expected elements not longer than the chamber, "
+                f"{_length(parts.actuator.length)}",
+            )
+        path, tip = parts.find(BlockedTipEffect)
+        yield from _too_thin(parts.actuator, parts.mesh, path, tip)
+
+
+def _too_thin(
+    actuator: Actuator, mesh: Mesh, path: str, tip: BlockedTipEffect | None
+) -> Iterator[Problem]:
+    from geometry import size
+
+    from fiberbend.choice import dimensions, mesh_size, strips
+
+    fineness = mesh_size(mesh, half=True)
+    parts = [part for part in ("wall", "floor", "sheath", "layer") if getattr(actuator, part)]
+    thick = actuator.model_copy(update=dict.fromkeys(parts, mesh.axial * mesh.section))
+    fits = True
+    for part in parts:
+        alone = thick.model_copy(update={part: getattr(actuator, part)})
+        try:
+            size.check_size(dimensions(alone), fineness)
+        except ValueError as error:
+            fits = False
+            yield Problem(f"actuator.{part}", str(error).removeprefix(f"{part} "))
+    if tip is not None and fits:
+        try:
+            size.check_size(dimensions(actuator), fineness, strips(tip))
+        except ValueError as error:
+            yield Problem(path, str(error))
+
+
+def _solver(parts: Parts) -> Iterator[Problem]:
+    _, pressure = parts.find(PressureEffect)
+    if parts.solver is None or parts.broken_effects:
+        return
+    given = {key: getattr(parts.solver, key) for key in ("first_step", "max_step")}
+    for key, value in given.items():
+        if value is not None and (pressure is None or pressure.to is None):
+            yield Problem(f"solver.{key}", "no effect without a pressure to reach, expected no value")
+    first, largest = given["first_step"], given["max_step"]
+    if first is not None and largest is not None and first > largest:
+        yield Problem(
+            "solver.first_step",
+            f'"{show(first, "pressure")}", expected at most max_step, '
+            f'"{show(largest, "pressure")}"',
+        )
+
+
+def _output(parts: Parts) -> Iterator[Problem]:
+    output = parts.output
+    if output is None:
+        return
+    if output.stop_at_angle is not None:
+        for index, angle in enumerate(output.at_angles):
+            if abs(angle) > abs(output.stop_at_angle) and angle * output.stop_at_angle > 0:
+                yield Problem(
+                    f"output.at_angles.{index}",
+                    f'"{show(angle, "angle")}", expected an angle up to stop_at_angle, '
+                    f'"{show(output.stop_at_angle, "angle")}"',
+                )
+    _, pressure = parts.find(PressureEffect)
+    if parts.broken_effects:
+        return
+    for index, value in enumerate(output.at_pressures):
+        path = f"output.at_pressures.{index}"
+        if pressure is None:
+            yield Problem(path, "no effect without pressure, expected no value")
+        elif pressure.to is not None and not 0 < value / pressure.to <= 1:
+            yield Problem(
+                path,
+                f'"{show(value, "pressure")}", expected a pressure between zero and '
+                f'"{show(pressure.to, "pressure")}"',
+            )
+
+
+def _length(value: float) -> str:
+    return f'"{show(value, "length")}"'

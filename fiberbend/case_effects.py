@@ -1,0 +1,146 @@
+"""Effects that a case can list, each with its settings. One class here, one line in `EFFECTS`."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Literal
+
+from pydantic import ConfigDict, Field, create_model, model_serializer, model_validator
+from pydantic_core import PydanticCustomError
+
+from fiberbend.fields import (
+    Acceleration,
+    Length,
+    Model,
+    Modulus,
+    SignedPressure,
+    Volume,
+    Width,
+)
+
+
+class Effect(Model):
+    """One effect of a case."""
+
+    name: ClassVar[str]
+    """The key under which a case lists it."""
+    load: ClassVar[bool] = False
+    """True where the march has something to ramp."""
+
+
+class PressureEffect(Effect):
+    """Pressure in the closed chamber, by its value or by the volume that it holds."""
+
+    name = "pressure"
+    load = True
+
+    to: SignedPressure | None = None
+    """Chamber pressure at the end; negative is a vacuum."""
+    volume: Volume | None = None
+    """Chamber volume at the end; the pressure is found."""
+
+
+class Fiber(Model):
+    """The thread of a winding: a name, or modulus and diameter."""
+
+    name: str | None = None
+    """A named fiber; written alone, `fiber: kevlar`."""
+    modulus: Modulus | None = None
+    """Young's modulus of the thread."""
+    diameter: Length | None = None
+    """Diameter of the thread."""
+    radius_factor: float | None = Field(default=None, gt=0, le=1)
+    """Part of the radius that carries; 0.5 where the paper halves it, 1 unless said."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_name(cls, data: Any) -> Any:
+        return {"name": data} if isinstance(data, str) else data
+
+    @model_serializer(mode="wrap")
+    def _to_name(self, write: Any) -> Any:
+        return self.name if self.name is not None else write(self)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict[str, Any]:
+        """A name alone is allowed too."""
+        return {"anyOf": [{"type": "string"}, handler.resolve_ref_schema(handler(schema))]}
+
+
+class WindingEffect(Effect):
+    """Inextensible thread around wall and floor (and layer), between the caps."""
+
+    name = "winding"
+
+    pattern: Literal["double-helix", "single-helix-right", "single-helix-left"]
+    """Double helix: one right-handed and one left-handed, crossing on the plane of symmetry."""
+    pitch: Length
+    """Length along the axis of one turn."""
+    fiber: Fiber
+    """A named fiber or its modulus and diameter."""
+    representation: Literal["discrete", "smeared"] = Field(default="discrete", alias="as")
+    """Every turn by itself, or the same thread spread over its surface."""
+    width: Width | None = None
+    """Width of the ribbon that stands for the thread, its diameter unless said; discrete only.
+    "0 mm" makes it a line, under which the pressure drifts with the mesh."""
+    lines: int | None = Field(default=None, ge=1)
+    """Parallel curves across the ribbon, 5 unless said; discrete only."""
+    tension_only: bool = False
+    """The thread goes slack instead of carrying compression."""
+
+
+class GravityEffect(Effect):
+    """Weight of the body; every material needs a density."""
+
+    name = "gravity"
+    load = True
+
+    direction: Literal["-y", "+y", "+x", "-x", "+z", "-z"]
+    """Where the weight points; -y is from the crown to the floor, +z from the root to the tip."""
+    acceleration: Acceleration = 9810.0
+    """Standard gravity unless said."""
+
+
+class BlockedTipEffect(Effect):
+    """Roof along the top and post under the tip, held in y: the paper's test of the tip force."""
+
+    name = "blocked-tip"
+
+    roof_width: Length = 4.0
+    """Width of the strip along the crown on which the roof holds the body."""
+    post_length: Length = 2.0
+    """Length of the strip at the end of the tip cap's underside that rests on the post."""
+
+
+EFFECTS: dict[str, type[Effect]] = {
+    effect.name: effect
+    for effect in (PressureEffect, WindingEffect, GravityEffect, BlockedTipEffect)
+}
+"""Every effect that a case can name; each at most once in a case."""
+
+
+class _OneEffect(Model):
+    model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
+
+    @model_validator(mode="after")
+    def _exactly_one(self) -> _OneEffect:
+        if len(self.model_fields_set) != 1:
+            raise PydanticCustomError("one_effect", "expected exactly one effect in this entry")
+        return self
+
+
+EffectEntry: Any = create_model(
+    "EffectEntry",
+    __base__=_OneEffect,
+    __doc__="An entry of the list of effects: one name with its settings.",
+    **{
+        name.replace("-", "_"): (effect, Field(default=None, alias=name))
+        for name, effect in EFFECTS.items()
+    },  # type: ignore[call-overload]
+)
+
+
+def unwrap(entry: Any) -> Effect:
+    """The single effect of an entry."""
+    (key,) = entry.model_fields_set
+    effect: Effect = getattr(entry, key)
+    return effect

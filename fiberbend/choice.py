@@ -1,0 +1,68 @@
+"""What a case leaves to the program: model, half or full body; and the bridge to geometry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from fiberbend.case import Actuator, Case, Mesh
+from fiberbend.case_effects import BlockedTipEffect, Effect, GravityEffect, WindingEffect
+
+if TYPE_CHECKING:
+    from geometry import dimensions as geometry_dimensions
+    from geometry import size
+
+
+def choose_model(case: Case) -> tuple[str, str]:
+    """The model that solves a case.
+
+    Returns:
+        Its name and the reason.
+    """
+    if case.model == "auto":
+        return "body", "the one model of this version, and it holds every effect"
+    return case.model, "as the case says"
+
+
+def choose_half(case: Case) -> tuple[bool, str]:
+    """Whether half the body, x ≥ 0, stands for the whole.
+
+    Returns:
+        True for half, and the reason.
+    """
+    if case.mesh.symmetry != "auto":
+        return case.mesh.symmetry == "half", "as the case says"
+    breakers = list(mirror_breakers(case.effects))
+    if breakers:
+        return False, "; ".join(breakers)
+    return True, "section, winding and loads are mirror-symmetric about x = 0"
+
+
+def mirror_breakers(effects: Iterable[Effect]) -> Iterator[str]:
+    """Why x = 0 is no mirror plane, one reason for each effect that breaks the symmetry."""
+    for effect in effects:
+        if isinstance(effect, WindingEffect) and effect.pattern != "double-helix":
+            yield "a single helix is not its own mirror image"
+        if isinstance(effect, GravityEffect) and effect.direction.endswith("x"):
+            yield "gravity along x pulls to one side"
+
+
+def dimensions(actuator: Actuator) -> geometry_dimensions.Actuator:
+    """The dimensions as the geometry takes them."""
+    from geometry import dimensions as geometry_dimensions
+
+    return geometry_dimensions.Actuator(**dict(actuator))
+
+
+def mesh_size(mesh: Mesh, half: bool) -> size.MeshSize:
+    """The fineness as the geometry takes it."""
+    from geometry import size
+
+    return size.MeshSize(axial=mesh.axial, section=mesh.section, element=mesh.element, half=half)
+
+
+def strips(tip: BlockedTipEffect) -> size.Strips:
+    """The strips of a blocked tip as the geometry takes them."""
+    from geometry import size
+
+    return size.Strips(roof_half_width=tip.roof_width / 2, post_length=tip.post_length)
