@@ -6,6 +6,7 @@ physical group is known by construction.
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import json
 import sys
@@ -178,11 +179,14 @@ def mesh_body(spec: dict[str, Any], out: Path) -> None:
     actuator, size = Actuator(**spec["actuator"]), MeshSize(**spec["size"])
     strips = Strips(**spec["strips"]) if spec["strips"] else None
     gmsh.model.add("fiberbend")
+    coarse = dataclasses.replace(size, section=1, axial=size.axial / size.section)
+    size = coarse if size.element == "tetrahedron" else size
     layout = hemicircle(actuator, size, strips)
     stations = body_stations(actuator, size, strips)
     body = BodyModel(layout, stations, size)
     geo.synchronize()
     body.add_groups()
+    gmsh.option.setNumber("Mesh.Algorithm3D", 10)
     gmsh.model.mesh.generate(3)
     gmsh.model.mesh.setOrder(2)
     mesh = read_mesh(size.element, body.regions, body.groups, size.half)

@@ -17,7 +17,7 @@ class MeshSize:
     Attributes:
         axial: target length of the elements along z in mm.
         section: refinement of the section; n gives n quads through wall, floor and sheath, 4 n
-            along a quarter arc and 3 n along the half floor.
+            along a quarter arc and 3 n along the half floor; tetrahedra have edges of axial / n.
         element: "hexahedron" or "tetrahedron".
         half: mesh x ≥ 0 only.
 
