@@ -1,1 +1,46 @@
-"""Soft fiber-reinforced bending actuators."""
+"""Soft fiber-reinforced bending actuators: cases, runs and their results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from fiberbend.case import Case
+    from fiberbend.runner import RunResult
+
+__version__ = metadata.version("fiberbend")
+
+
+def run(
+    case: Case | Mapping[str, Any] | Path | str,
+    out: Path | str | None = None,
+    overwrite: bool = False,
+    quiet: bool = True,
+) -> RunResult:
+    """Solve a case.
+
+    Args:
+        case: a case, a mapping as its YAML holds it, or the path of a case file.
+        out: run folder; without one nothing is written.
+        overwrite: replace an earlier run in `out`.
+        quiet: report no progress.
+
+    Returns:
+        What was computed.
+
+    Raises:
+        fiberbend.problems.CaseError: everything that is wrong with the case.
+    """
+    from fiberbend.progress import Progress
+    from fiberbend.reader import as_case
+    from fiberbend.runner import run_case
+
+    progress = Progress(quiet=quiet)
+    folder = None if out is None else Path(out)
+    try:
+        return run_case(as_case(case), folder, overwrite=overwrite, progress=progress)
+    finally:
+        progress.close()

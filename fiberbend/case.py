@@ -6,7 +6,7 @@ several values say together, and reports every problem at once.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
 from pydantic import AfterValidator, Field, field_serializer, model_serializer, model_validator
 
@@ -15,6 +15,11 @@ from fiberbend.fields import Angle, Coefficient, Density, Length, Model, Modulus
 from fiberbend.fields import SignedPressure as AnyPressure
 
 E = TypeVar("E", bound=Effect)
+
+if TYPE_CHECKING:
+    AnyEffect = Effect
+else:
+    AnyEffect = Annotated[EffectEntry, AfterValidator(unwrap)]
 
 
 class Actuator(Model):
@@ -140,7 +145,7 @@ class Case(Model):
     """Dimensions."""
     materials: Materials
     """Material of each part."""
-    effects: tuple[Annotated[EffectEntry, AfterValidator(unwrap)], ...] = Field(strict=False)
+    effects: tuple[AnyEffect, ...] = Field(strict=False)
     """What acts on the body; loads are applied in this order, earlier ones held."""
     support: Literal["clamped-root"] = "clamped-root"
     """How the body is held."""

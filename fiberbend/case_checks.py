@@ -243,9 +243,8 @@ def _mesh(parts: Parts) -> Iterator[Problem]:
 def _too_thin(
     actuator: Actuator, mesh: Mesh, path: str, tip: BlockedTipEffect | None
 ) -> Iterator[Problem]:
-    from geometry import size
-
     from fiberbend.choice import dimensions, mesh_size, strips
+    from geometry import size
 
     fineness = mesh_size(mesh, half=True)
     parts = [part for part in ("wall", "floor", "sheath", "layer") if getattr(actuator, part)]
@@ -272,7 +271,9 @@ def _solver(parts: Parts) -> Iterator[Problem]:
     given = {key: getattr(parts.solver, key) for key in ("first_step", "max_step")}
     for key, value in given.items():
         if value is not None and (pressure is None or pressure.to is None):
-            yield Problem(f"solver.{key}", "no effect without a pressure to reach, expected no value")
+            yield Problem(
+                f"solver.{key}", "no effect without a pressure to reach, expected no value"
+            )
     first, largest = given["first_step"], given["max_step"]
     if first is not None and largest is not None and first > largest:
         yield Problem(

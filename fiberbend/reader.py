@@ -49,6 +49,17 @@ def read_case(path: Path | str, settings: Iterable[str] = ()) -> Case:
     return parse_case(data)
 
 
+def as_case(case: Case | Mapping[str, Any] | Path | str) -> Case:
+    """A case from any form of it: checked already, a mapping, or a file.
+
+    Raises:
+        CaseError: everything that is wrong with it.
+    """
+    if isinstance(case, Case):
+        return case
+    return parse_case(case) if isinstance(case, Mapping) else read_case(case)
+
+
 def parse_case(data: Mapping[str, Any]) -> Case:
     """Check a case given as a mapping of plain values, as YAML holds them.
 
@@ -97,7 +108,7 @@ class _Loader(yaml.SafeLoader):
             key, line = key_node.value, key_node.start_mark.line + 1
             if key in lines:
                 raise yaml.MarkedYAMLError(
-                    problem=f"key {key!r} a second time, expected once (it is on line {lines[key]})",
+                    problem=f"key {key!r} a second time, expected once (line {lines[key]} has it)",
                     problem_mark=key_node.start_mark,
                 )
             lines[key] = line

@@ -48,7 +48,8 @@ RUN_KEYS = (
 """Keys that run.json always has; scripts rely on them."""
 
 CASE_FILE = "case.resolved.yaml"
-MARKER = "run.json"
+RUN_FILE = "run.json"
+HISTORY_FILE = "history.csv"
 
 
 class RunFolder:
@@ -64,18 +65,19 @@ class RunFolder:
         self.writes = writes
 
     @classmethod
-    def create(cls, path: Path, overwrite: bool = False, comm: Any = None) -> RunFolder:
-        """Make a new, empty folder; rank 0 decides and all ranks agree.
+    def create(cls, path: Path, case: Case, overwrite: bool = False, comm: Any = None) -> RunFolder:
+        """Make a new folder that holds the resolved case; rank 0 decides and all ranks agree.
 
         Args:
             path: where.
-            overwrite: replace a run that is there; a folder without run.json is never replaced.
+            case: the case that is run.
+            overwrite: replace a run that is there; a folder that holds no run is never replaced.
             comm: an mpi4py communicator, or None for one process.
 
         Raises:
             CaseError: on every rank, if the folder is there or cannot be made.
         """
-        return cls._agreed(path, lambda: _make(path, overwrite), comm)
+        return cls._agreed(path, lambda: _make(path, case, overwrite), comm)
 
     @classmethod
     def resume(cls, path: Path, case: Case, comm: Any = None) -> RunFolder:
@@ -135,11 +137,11 @@ class RunFolder:
         writer = csv.DictWriter(text, columns, restval="", lineterminator="\n")
         writer.writeheader()
         writer.writerows({key: _cell(value) for key, value in row.items()} for row in rows)
-        self.write_text("history.csv", text.getvalue())
+        self.write_text(HISTORY_FILE, text.getvalue())
 
     def write_run(self, **entries: Any) -> None:
         """Write run.json; keys of `RUN_KEYS` that are not given are null."""
-        self.write_json(MARKER, {**dict.fromkeys(RUN_KEYS), **entries})
+        self.write_json(RUN_FILE, {**dict.fromkeys(RUN_KEYS), **entries})
 
     def write(self, name: str, fill: Callable[[IO[bytes]], object]) -> None:
         """Write a file under another name first, so that no reader ever sees half of it.
@@ -188,23 +190,24 @@ def differences(one: Any, other: Any, path: str = "") -> list[str]:
     return [line for key, a, b in steps for line in differences(a, b, dot + key)]
 
 
-def _make(path: Path, overwrite: bool) -> None:
+def _make(path: Path, case: Case, overwrite: bool) -> None:
     if path.exists():
         if not overwrite:
             raise CaseError(
                 [Problem(str(path), "exists, expected a new folder, or --overwrite or --resume")]
             )
-        if path.is_dir() and any(path.iterdir()) and not _is_run(path):
-            raise CaseError([Problem(str(path), "holds no run, expected a folder of a run")])
         if not path.is_dir():
             raise CaseError([Problem(str(path), "is a file, expected a folder")])
-        shutil.rmtree(path)
+        if any(path.iterdir()) and not (path / CASE_FILE).exists():
+            raise CaseError([Problem(str(path), "holds no run, expected the folder of a run")])
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.mkdir()
-
-
-def _is_run(path: Path) -> bool:
-    return any((path / name).exists() for name in (MARKER, CASE_FILE))
+    with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as scratch:
+        fresh = Path(scratch) / path.name
+        fresh.mkdir()
+        RunFolder(fresh).write_case(case)
+        if path.exists():
+            shutil.rmtree(path)
+        fresh.rename(path)
 
 
 def _same_case(path: Path, case: Case) -> None:
@@ -216,7 +219,10 @@ def _same_case(path: Path, case: Case) -> None:
     changed = differences(before, now)
     if changed:
         raise CaseError(
-            Problem(field, f"{found(_at(now, field))}, expected {found(_at(before, field))} as in {path}")
+            Problem(
+                field,
+                f"{found(_at(now, field))}, expected {found(_at(before, field))} as in {path}",
+            )
             for field in changed
         )
 
