@@ -33,7 +33,9 @@ def shape_functions(cell_type: str, points: Floats) -> tuple[Floats, Floats]:
         out = np.ones((*points.shape[:-1], 1))
         for i in reversed(range(d)):
             factor = lines[i][1] if i == derived else lines[i][0]
-            out = (out[..., :, None] * factor[..., None, :]).reshape(*points.shape[:-1], -1)
+            out = (out[..., :, None] * factor[..., None, :]).reshape(
+                *points.shape[:-1], 3 * out.shape[-1]
+            )
         return out
 
     return product(-1), np.stack([product(i) for i in range(d)], axis=-1)
