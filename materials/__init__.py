@@ -1,0 +1,1 @@
+"""Material laws as pure functions, fibers, and named materials with their source."""
