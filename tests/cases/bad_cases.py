@@ -1,0 +1,133 @@
+"""Wrong input: what is changed in the baseline case, and the line that must come of it."""
+
+from __future__ import annotations
+
+BAD_SETTINGS = [
+    # unknown keys
+    ("actuator.radios=8 mm", "actuator.radios: unknown key, expected one of section, radius"),
+    ("colour=red", "colour: unknown key"),
+    ("effects.1.winding.angle=3 deg", "effects.1.winding.angle: unknown key"),
+    # bare numbers, wrong dimensions
+    (
+        "actuator.radius=8",
+        'actuator.radius: 8, expected a length with its unit such as "8 mm"',
+    ),
+    ("output.at_angles=[90]", "output.at_angles.0: 90, expected an angle with its unit"),
+    ("actuator.radius=8 kPa", 'actuator.radius: "8 kPa", expected a length with its unit'),
+    ("effects.0.pressure.to=8 mm", 'effects.0.pressure.to: "8 mm", expected a pressure'),
+    # negative, zero, not finite
+    ("actuator.wall=-2 mm", 'actuator.wall: "-2 mm", expected a length above zero'),
+    ("actuator.length=0 mm", 'actuator.length: "0 mm", expected a length above zero'),
+    ("actuator.floor=nan mm", 'actuator.floor: "nan mm", expected a length that is finite'),
+    ("actuator.floor=.nan", "actuator.floor: NaN, expected a length with its unit"),
+    ("actuator.cap=inf mm", 'actuator.cap: "inf mm", expected a length that is finite'),
+    (
+        "effects.0.pressure.to=0 kPa",
+        'effects.0.pressure.to: "0 kPa", expected a pressure other than zero',
+    ),
+    ("solver.tolerance=.nan", "solver.tolerance: NaN, expected a finite number"),
+    ("mesh.section=0", "mesh.section: 0, expected at least 1"),
+    # dimensions against each other
+    (
+        "actuator.wall=0.01 mm",
+        "actuator.wall: 0.01 mm is too thin for elements 1.5 mm long: expected at least 0.06 mm",
+    ),
+    ("actuator.sheath=0.01 mm", "actuator.sheath: 0.01 mm is too thin"),
+    (
+        "effects.1.winding.pitch=0 mm",
+        'effects.1.winding.pitch: "0 mm", expected a length above zero',
+    ),
+    (
+        "effects.1.winding.pitch=161 mm",
+        'effects.1.winding.pitch: "161 mm", expected a pitch not longer than the chamber, "160 mm"',
+    ),
+    ("mesh.axial=161 mm", 'mesh.axial: "161 mm", expected elements not longer'),
+    ("effects.2.blocked-tip.roof_width=30 mm", "effects.2.blocked-tip: roof half width 15 mm"),
+    # unknown names
+    ("materials.wall=chewing-gum", 'materials.wall: "chewing-gum", expected '),
+    (
+        "materials.wall={law: ogden, c1: 1 MPa}",
+        'materials.wall.law: "ogden", expected yeoh, neo-hooke or mooney-rivlin',
+    ),
+    ("effects.1.winding.fiber=rope", 'effects.1.winding.fiber: "rope", expected '),
+    ("effects.2.friction.mu=0.3", "effects.2.friction: unknown key, expected one of pressure"),
+    ("effects.1.winding.pattern=braid", 'effects.1.winding.pattern: "braid", expected '),
+    ("support=hinge", 'support: "hinge", expected clamped-root'),
+    ("model=section", 'model: "section", expected body or auto'),
+    ("actuator.section=circle", 'actuator.section: "circle", expected hemicircle'),
+    # shape of the case
+    (
+        "effects.2.pressure.to=8 kPa",
+        "effects.2.pressure: a second pressure, expected one (the first is effects.0)",
+    ),
+    ("effects=[]", "effects: no load, expected pressure or gravity"),
+    ("effects=[pressure]", 'effects.0: "pressure", expected a mapping'),
+    ("effects.1={}", "effects.1: {}, expected exactly one effect"),
+    ("effects.0={gravity: {direction: -y}, pressure: {to: 1 kPa}}", "effects.0: "),
+    ("actuator=", "actuator: nothing, expected a mapping"),
+    ("actuator={}", 'actuator.wall: missing, expected a length with its unit such as "8 mm"'),
+    ("output.at_angles=90 deg", 'output.at_angles: "90 deg", expected a list'),
+    ("output.pictures=1", "output.pictures: 1, expected true or false"),
+    ("mesh.section=1.5", "mesh.section: 1.5, expected a whole number"),
+    ("title=3", "title: 3, expected text"),
+    ("effects.0.pressure={}", "effects.0.pressure: nothing to reach, expected to"),
+    ("effects.0.pressure.volume=45 mL", "effects.0.pressure.volume: to is given too"),
+    # missing or superfluous companions
+    ("materials.sheath=", "materials.sheath: missing, expected the material of actuator.sheath"),
+    ("actuator.sheath=", "materials.sheath: no effect without actuator.sheath"),
+    ("actuator.layer=1 mm", "materials.layer: missing, expected the material of actuator.layer"),
+    ("materials.layer=combined-base", "materials.layer: no effect without actuator.layer"),
+    ("materials.wall={law: yeoh}", "materials.wall.c1: missing, expected a coefficient of yeoh"),
+    (
+        "materials.wall={law: neo-hooke, c1: 1 MPa, c2: 1 MPa}",
+        "materials.wall.c2: no effect on neo-hooke, expected no value",
+    ),
+    (
+        "materials.wall={name: elastosil-m4601, c1: 1 MPa}",
+        "materials.wall.c1: no effect on a named material, expected no value",
+    ),
+    ("materials.wall={density: 1 g/cm^3}", "materials.wall: neither name nor law"),
+    (
+        "materials.wall={name: elastosil-m4601, density: 1 g/cm^3}",
+        "materials.wall.density: no effect without gravity, expected no value",
+    ),
+    (
+        "effects.1.winding.fiber={modulus: 3 GPa}",
+        "effects.1.winding.fiber.diameter: missing, expected the diameter of an unnamed fiber",
+    ),
+    (
+        "effects.1.winding.fiber={name: kevlar, diameter: 1 mm}",
+        "effects.1.winding.fiber.diameter: no effect on a named fiber, expected no value",
+    ),
+    (
+        "effects.1.winding={pattern: double-helix, pitch: 3 mm, fiber: kevlar, as: smeared, "
+        "lines: 5}",
+        "effects.1.winding.lines: no effect on a smeared winding, expected no value",
+    ),
+    (
+        "effects.1.winding={pattern: double-helix, pitch: 3 mm, fiber: kevlar, width: 0 mm, "
+        "lines: 5}",
+        "effects.1.winding.lines: 5, expected 1 line where the width is zero",
+    ),
+    ("output.at_pressures=[300 kPa]", 'output.at_pressures.0: "300 kPa", expected a pressure'),
+    ("output.at_pressures=[-10 kPa]", 'output.at_pressures.0: "-10 kPa", expected a pressure'),
+    # settings that lead nowhere
+    ("effects.7.gravity.direction=-y", "effects.7: no such entry, the list has 2"),
+    ("actuator.wall.inner=1 mm", "actuator.wall.inner: no such path"),
+    ("actuator.wall", "--set actuator.wall: expected a path and a value"),
+    ("actuator.wall=[", "actuator.wall: '[' is not a YAML value"),
+]
+"""A setting, and how a line of the complaint begins."""
+
+BAD_FILES = {
+    "malformed": ("actuator: [1, 2\n", "line 2: malformed YAML"),
+    "tab": ("actuator:\n\tradius: 8 mm\n", "line 2: malformed YAML"),
+    "twice": (
+        "title: one\nactuator:\n  wall: 1 mm\n  wall: 2 mm\n",
+        "line 4: malformed YAML, key 'wall' a second time, expected once (line 3 has it)",
+    ),
+    "list": ("- 1\n", "holds no mapping, expected a case"),
+    "empty": ("", "holds no mapping, expected a case"),
+    "binary": ("\x00\x01", "malformed YAML"),
+}
+"""Content of a file, and what the complaint about it must hold."""

@@ -1,0 +1,38 @@
+"""What tests share."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+MpiRun = Callable[..., "subprocess.CompletedProcess[str]"]
+
+
+@pytest.fixture(scope="session")
+def mpirun() -> MpiRun:
+    """Launch Python on several ranks: `mpirun(2, ["-m", "fiberbend", …], cwd=…)`."""
+
+    def launch(
+        ranks: int, arguments: Sequence[str | Path], cwd: Path = ROOT, timeout: float = 300.0
+    ) -> subprocess.CompletedProcess[str]:
+        environment = os.environ | {
+            "OMPI_ALLOW_RUN_AS_ROOT": "1",
+            "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+            "OMPI_MCA_rmaps_base_oversubscribe": "1",
+            # Containers forbid the single copy of shared memory, and Open MPI then complains.
+            "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+            "OPENBLAS_NUM_THREADS": "1",
+            "OMP_NUM_THREADS": "1",
+        }
+        command = ["mpirun", "-n", str(ranks), sys.executable, *map(str, arguments)]
+        return subprocess.run(
+            command, cwd=cwd, env=environment, timeout=timeout, capture_output=True, text=True
+        )
+
+    return launch

@@ -1,0 +1,121 @@
+"""The arrows between folders, read from every import of the source."""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGES = ("materials", "geometry", "analytic", "fem", "fiberbend")
+LEAVES = ("materials", "geometry", "analytic")
+SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
+FENICS = {"dolfinx", "ufl", "ffcx", "basix", "petsc4py", "mpi4py"}
+SCHEMA = (
+    "units fields case case_effects case_checks choice problems reader cli launch plan "
+    "progress runfolder"
+).split()
+BELOW_EFFECTS = {"effect", "kinematics", "domain", "compat", "embedded"}
+MAX_LINES = 400
+
+
+def imports(path: Path) -> Iterator[str]:
+    """Every module that a file imports, anywhere in it; `from a import b` gives a and a.b."""
+    package = path.relative_to(ROOT).with_suffix("").parts[:-1]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else ()
+            module = ".".join([*base, *([node.module] if node.module else [])])
+            yield module
+            yield from (f"{module}.{alias.name}" for alias in node.names)
+
+
+def offenders(paths: list[Path], forbidden: set[str]) -> list[str]:
+    """Imports of the forbidden modules, or of anything inside them."""
+    return [
+        f"{path.relative_to(ROOT)} imports {name}"
+        for path in paths
+        for name in imports(path)
+        if any(name == module or name.startswith(f"{module}.") for module in forbidden)
+    ]
+
+
+def within(*places: str) -> list[Path]:
+    return [path for path in SOURCES if str(path.relative_to(ROOT)).startswith(places)]
+
+
+@pytest.mark.parametrize("leaf", LEAVES)
+def test_leaves_stand_alone(leaf: str) -> None:
+    others = {package for package in PACKAGES if package != leaf}
+    assert offenders(within(f"{leaf}/"), others | FENICS) == []
+
+
+def test_fem_needs_only_materials_and_geometry() -> None:
+    assert offenders(within("fem/"), {"fiberbend", "analytic"}) == []
+
+
+def test_only_fem_imports_fenics() -> None:
+    outside = [path for path in SOURCES if path not in within("fem/")]
+    # mpi4py alone is allowed at the top: the command aborts all ranks.
+    assert offenders(outside, FENICS - {"mpi4py"}) == []
+
+
+def test_fem_means_our_own_folder() -> None:
+    hiding = [
+        str(path.relative_to(ROOT))
+        for path in SOURCES
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ImportFrom) and node.module == "dolfinx"
+        if any(alias.name == "fem" for alias in node.names)
+    ]
+    assert hiding == [], "write `import dolfinx.fem as dfem`"
+
+
+def test_schema_imports_no_solver_and_no_mesher() -> None:
+    schema = [ROOT / "fiberbend" / f"{name}.py" for name in SCHEMA]
+    assert offenders(schema, {"fem", "dolfinx", "gmsh"}) == []
+
+
+def test_solver_knows_no_effect() -> None:
+    solver = within("fem/march.py", "fem/newton.py", "fem/linear.py", "fem/scene.py")
+    assert solver, "the solver has other names now: list them here"
+    assert offenders(solver, {"fem.effects"}) == []
+
+
+def test_effects_know_only_what_lies_below() -> None:
+    effects = within("fem/effects/")
+    assert effects
+    strangers = [
+        f"{path.relative_to(ROOT)} imports {name}"
+        for path in effects
+        for name in imports(path)
+        if name.startswith("fem.") and name.split(".")[1] not in BELOW_EFFECTS
+    ]
+    assert strangers == []
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_modules_are_short(path: Path) -> None:
+    assert len(path.read_text(encoding="utf-8").splitlines()) <= MAX_LINES
+
+
+def test_no_path_of_one_machine_in_tracked_files() -> None:
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True)
+    if listed.returncode != 0:
+        pytest.skip("not a git checkout")
+    machine = re.compile(r"(?<![\w.])/(?:home|root|work|Users|mnt|farm)/")
+    found = []
+    for name in listed.stdout.splitlines():
+        path = ROOT / name
+        if path == Path(__file__) or not path.is_file():
+            continue
+        content = path.read_bytes()
+        if b"\0" not in content and machine.search(content.decode("utf-8", "replace")):
+            found.append(name)
+    assert found == []
