@@ -58,12 +58,12 @@ class Actuator:
 
     @property
     def outline_bottom(self) -> float:
-        """y of the winding's lower side, −h."""
+        """Y of the winding's lower side, −h."""
         return -(self.layer or 0.0)
 
     @property
     def outer_bottom(self) -> float:
-        """y of the lowest points, −h − s."""
+        """Y of the lowest points, −h − s."""
         return self.outline_bottom - (self.sheath or 0.0)
 
     @property

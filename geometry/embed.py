@@ -9,7 +9,7 @@ import numpy as np
 from geometry.dimensions import Actuator
 from geometry.mesh import FACET_VERTICES, Floats, Ints, MeshData, reference_nodes, vertex_positions
 from geometry.outline import arc_length
-from geometry.reference import area_vectors, facet_rules, gauss, jacobians
+from geometry.reference import area_vectors, facet_rule, gauss, jacobians
 from geometry.winding import Winding
 
 _SHORTEST = 1e-9
@@ -197,20 +197,13 @@ def smear(mesh: MeshData, actuator: Actuator, winding: Winding) -> EmbeddedFiber
         Segments with one point each.
     """
     facets = _develop(mesh, actuator)
-    pairs = mesh.facets["winding"]
-    rule = facet_rules(mesh.cell_type)[0][pairs[:, 1]]
+    flat = facet_rule(mesh.cell_type)[0]
     areas = np.linalg.norm(area_vectors(mesh, "winding")[1], axis=2)
-    count = rule.shape[1]
-    points = rule.reshape(-1, 1, 3)
-    facet = np.repeat(np.arange(len(pairs)), count)
+    facet = np.repeat(np.arange(len(facets.cell)), len(flat))
     cell = facets.cell[facet]
-    # the reference facet's edges are orthogonal unit vectors for squares, but not for triangles
-    local = np.einsum(
-        "nij,nj->ni",
-        np.linalg.pinv(facets.edges.swapaxes(1, 2))[facet],
-        points[:, 0] - facets.base[facet],
-    )
-    developed = facets.origin[facet] + np.einsum("nij,nj->ni", facets.axes[facet], local)
+    points = (facets.base[:, None] + flat @ facets.edges).reshape(-1, 1, 3)
+    developed = facets.origin[:, None] + flat @ facets.axes.swapaxes(1, 2)
+    s, z = developed.reshape(-1, 2).T
     length = winding.density(actuator) * areas.ravel()
     parts = []
     for hand in winding.hands:
@@ -227,6 +220,6 @@ def smear(mesh: MeshData, actuator: Actuator, winding: Winding) -> EmbeddedFiber
         length=np.tile(length, helices),
         share=np.ones(helices * n),
         curve=np.repeat(np.arange(helices), n),
-        z=np.tile(developed[:, 1], helices),
-        s=np.tile(developed[:, 0], helices),
+        z=np.tile(z, helices),
+        s=np.tile(s, helices),
     )

@@ -77,9 +77,7 @@ def _run(command: list[str], time_limit: float) -> None:
             timeout=time_limit,
         )
     except subprocess.TimeoutExpired as error:
-        raise MeshError(
-            f"gmsh did not finish within its time limit of {time_limit:g} s"
-        ) from error
+        raise MeshError(f"gmsh did not finish within its time limit of {time_limit:g} s") from error
     if done.returncode != 0:
         lines = [line for line in done.stdout.splitlines() if line.strip()]
         last = " | ".join(lines[-_LAST_LINES:])

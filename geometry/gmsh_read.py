@@ -8,6 +8,7 @@ import numpy as np
 from geometry.errors import MeshError
 from geometry.mesh import FACET_VERTICES, Floats, Ints, MeshData, reference_nodes, vertex_positions
 
+
 def _node_order(kind: int, cell_type: str) -> Ints:
     """Position in gmsh's node list of every node of `MeshData`, by matching coordinates."""
     _, dim, _, count, local, _ = gmsh.model.mesh.getElementProperties(kind)

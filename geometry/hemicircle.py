@@ -59,9 +59,7 @@ def _polar(actuator: Actuator, radius: float, angle: float) -> Point:
     return (radius * math.cos(angle), actuator.floor + radius * math.sin(angle))
 
 
-def _core_columns(
-    actuator: Actuator, size: MeshSize, pieces: list[int]
-) -> list[tuple[float, int]]:
+def _core_columns(actuator: Actuator, size: MeshSize, pieces: list[int]) -> list[tuple[float, int]]:
     """Right ends and divisions of the columns under the chamber's core, from x = 0."""
     columns, done = [], 0
     for number in reversed(pieces[1:]):
@@ -138,7 +136,7 @@ def _add_base(
         for column, (right, wide) in enumerate(columns):
             in_sheath = row >= kept or column >= inner
             if in_sheath == sheath:
-                names: dict[int, tuple[str, ...]] = {side: () for side in range(4)}
+                names: dict[int, tuple[str, ...]] = dict.fromkeys(range(4), ())
                 if column == 0:
                     names[1] = ("symmetry",)
                 if row == 0 and column <= len(core):

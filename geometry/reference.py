@@ -84,6 +84,11 @@ def cell_rule(cell_type: str) -> tuple[Floats, Floats]:
     return np.stack([g.ravel() for g in grids], axis=1), weights
 
 
+def facet_rule(cell_type: str) -> tuple[Floats, Floats]:
+    """Quadrature points (q, 2) and weights (q,) of degree 5 on the facets of a solid cell."""
+    return _simplex(2) if cell_type == "tetrahedron" else cell_rule("quadrilateral")
+
+
 def facet_rules(cell_type: str) -> tuple[Floats, Floats, Floats]:
     """Quadrature of degree 5 on every facet of a three-dimensional reference cell.
 
@@ -91,7 +96,7 @@ def facet_rules(cell_type: str) -> tuple[Floats, Floats, Floats]:
         Points (facets, q, 3) in the cell, weights (q,) that sum to the area of the reference
         facet, and outward normals (facets, 3) scaled so that weight × normal is the area vector.
     """
-    flat, weights = _simplex(2) if cell_type == "tetrahedron" else cell_rule("quadrilateral")
+    flat, weights = facet_rule(cell_type)
     vertices = reference_nodes(cell_type)[vertex_positions(cell_type)]
     points, normals = [], []
     for corners in FACET_VERTICES[cell_type]:

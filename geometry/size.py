@@ -36,9 +36,7 @@ class MeshSize:
         if self.section < 1:
             raise ValueError(f"section refinement {self.section}: expected at least 1")
         if self.element not in ("hexahedron", "tetrahedron"):
-            raise ValueError(
-                f"element {self.element!r}: expected 'hexahedron' or 'tetrahedron'"
-            )
+            raise ValueError(f"element {self.element!r}: expected 'hexahedron' or 'tetrahedron'")
 
 
 @dataclasses.dataclass(frozen=True)

@@ -41,7 +41,7 @@ class Fiber:
 
 
 FIBERS: dict[str, Fiber] = {
-    "kevlar": Fiber(31076.0, 0.38, 0.5, "Polygerinos et al. 2015, section V-A: radius halved"),
+    "kevlar": Fiber(31076.0, 0.38, 0.5, "Polygerinos et al. 2015, section III-C: radius halved"),
 }
 
 
@@ -56,9 +56,7 @@ def energy(
     return stiffness / 2 * _active(strain, tension_only) ** 2
 
 
-def force(
-    strain: NDArray[np.float64], stiffness: float, tension_only: bool
-) -> NDArray[np.float64]:
+def force(strain: NDArray[np.float64], stiffness: float, tension_only: bool) -> NDArray[np.float64]:
     """Axial force in N, the derivative of `energy` by strain."""
     return stiffness * _active(strain, tension_only)
 

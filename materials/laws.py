@@ -144,6 +144,6 @@ def uniaxial_stress(material: Material, stretch: NDArray[np.float64]) -> NDArray
     Returns:
         Force per undeformed area, (n,).
     """
-    i1, i2 = stretch**2 + 2 / stretch, 2 * stretch + stretch**-2
+    i1, i2 = stretch**2 + 2 / stretch, 2 * stretch + 1 / stretch**2
     first, second = energy_slopes(material, i1, i2)
-    return 2 * (stretch - stretch**-2) * (first + second / stretch)
+    return np.asarray(2 * (stretch - 1 / stretch**2) * (first + second / stretch), dtype=float)

@@ -1,0 +1,85 @@
+"""gmsh's meshes against the block map's, and its failures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geometry.checks import check, region_volumes, surface_area
+from geometry.dimensions import Actuator
+from geometry.errors import MeshError
+from geometry.gmsh_body import build_body
+from geometry.mesh import MeshData
+from geometry.size import MeshSize, Strips
+from geometry.sweep import swept_body
+from geometry.winding import Winding
+
+SHORT = Actuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
+STRIPS = Strips(2.0, 2.0)
+
+
+@pytest.mark.parametrize("half", [True, False])
+def test_hexahedra_equal_the_block_map(half: bool) -> None:
+    # two independent ways to the same mesh: node places, names and regions must agree
+    size = MeshSize(axial=4, half=half)
+    ours, theirs = swept_body(SHORT, size, STRIPS), build_body(SHORT, size, STRIPS)
+    assert _as_set(theirs.nodes) == _as_set(ours.nodes)
+    assert region_volumes(theirs) == pytest.approx(region_volumes(ours), rel=1e-8)
+    assert set(theirs.facets) == set(ours.facets)
+    for name in ours.facets:
+        assert _as_set(_centers(theirs, name)) == _as_set(_centers(ours, name))
+    assert theirs.half == half
+    check(theirs, SHORT, Winding("double-helix", 3, 0.38))
+
+
+@pytest.mark.parametrize("half", [True, False])
+def test_tetrahedra_are_the_actuator(half: bool) -> None:
+    # unstructured: only integrals can be compared
+    mesh = build_body(SHORT, MeshSize(axial=3, element="tetrahedron", half=half), STRIPS)
+    check(mesh, SHORT, Winding("double-helix", 3, 0.38))
+    ours = swept_body(SHORT, MeshSize(axial=3, section=2, half=half), STRIPS)
+    for name in ours.facets:
+        assert surface_area(mesh, name) == pytest.approx(surface_area(ours, name), rel=1e-4)
+
+
+def test_msh_shows_body_and_winding(tmp_path: Path) -> None:
+    # the .msh is what users open in gmsh: named groups, and the fibers as curves
+    winding = Winding("double-helix", 10, 0.0)
+    curves = [winding.points(SHORT, i, 50)[0] for i in range(winding.curves)]
+    path = tmp_path / "body.msh"
+    mesh = build_body(SHORT, MeshSize(axial=8), STRIPS, curves, path)
+    head = path.read_text().split("$EndPhysicalNames")[0]
+    for name in (*mesh.facets, *mesh.regions):
+        assert f'"{name}"' in head
+    assert "1 " in head.split('"winding"')[0].splitlines()[-1]
+    assert len(mesh.nodes) == len(swept_body(SHORT, MeshSize(axial=8), STRIPS).nodes)
+
+
+def test_time_limit_stops_gmsh() -> None:
+    with pytest.raises(MeshError, match=r"time limit of 0\.05 s"):
+        build_body(SHORT, MeshSize(), time_limit=0.05)
+
+
+def test_failure_of_gmsh_carries_its_message(tmp_path: Path) -> None:
+    with pytest.raises(MeshError, match=r"ended with code 1: .*missing"):
+        build_body(SHORT, MeshSize(axial=8), msh_path=tmp_path / "missing" / "body.msh")
+
+
+def test_mesh_survives_its_file(tmp_path: Path) -> None:
+    mesh = swept_body(SHORT, MeshSize(axial=8), STRIPS)
+    mesh.save(tmp_path / "mesh.npz")
+    again = MeshData.load(tmp_path / "mesh.npz")
+    assert np.array_equal(again.cells, mesh.cells)
+    assert again.regions == mesh.regions
+    assert set(again.facets) == set(mesh.facets)
+    assert [p.name for p in tmp_path.iterdir()] == ["mesh.npz"]
+
+
+def _centers(mesh: MeshData, name: str) -> np.ndarray:
+    return mesh.nodes[mesh.facet_nodes(name)].mean(axis=1)
+
+
+def _as_set(points: np.ndarray) -> set[tuple[float, ...]]:
+    return set(map(tuple, (points.round(6) + 0.0).tolist()))

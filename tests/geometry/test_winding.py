@@ -1,0 +1,173 @@
+"""Fiber curves and their embedding: exact length, on the surface, whatever the mesh."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from geometry.dimensions import Actuator
+from geometry.embed import EmbeddedFibers, embed, smear
+from geometry.mesh import MeshData
+from geometry.outline import arc_length, position, tangent
+from geometry.reference import jacobians
+from geometry.size import MeshSize
+from geometry.sweep import swept_body, swept_slice
+from geometry.tets import to_tetrahedra
+from geometry.winding import Winding, check_winding
+
+BODY = Actuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
+DOUBLE = Winding("double-helix", 3, 0.38)
+SINGLES = [Winding("single-helix-right", 3, 0.38), Winding("single-helix-left", 7, 0.0)]
+
+
+def _meshes(half: bool) -> list[MeshData]:
+    hexes = swept_body(BODY, MeshSize(axial=4, section=1, half=half))
+    fine = swept_body(BODY, MeshSize(axial=1.3, section=2, half=half))
+    return [hexes, fine, to_tetrahedra(hexes)]
+
+
+def test_outline_runs_around_once() -> None:
+    s = np.linspace(0, BODY.winding_perimeter, 4001)
+    xy = position(BODY, s)
+    steps = np.linalg.norm(np.diff(xy, axis=0), axis=1)
+    assert steps.sum() == pytest.approx(BODY.winding_perimeter, rel=2e-5)
+    half = BODY.winding_perimeter / 2
+    assert position(BODY, np.array([0, half])) == pytest.approx(np.array([[0, 12], [0, -0.5]]))
+    assert xy[200, 0] > 0
+    difference = (position(BODY, s + 1e-6) - position(BODY, s - 1e-6)) / 2e-6
+    smooth = np.linalg.norm(difference, axis=1) > 0.999
+    assert tangent(BODY, s)[smooth] == pytest.approx(difference[smooth], abs=1e-7)
+
+
+def test_arc_length_inverts_the_outline() -> None:
+    s = np.linspace(0.01, BODY.winding_perimeter - 0.01, 333)
+    xy = position(BODY, s)
+    assert arc_length(BODY, xy, xy[:, 0] < 0) == pytest.approx(s, abs=1e-12)
+
+
+@pytest.mark.parametrize("winding", [DOUBLE, *SINGLES])
+def test_curves_have_their_length_and_tangents(winding: Winding) -> None:
+    for curve in range(winding.curves):
+        x, t = winding.points(BODY, curve, 40_001)
+        length = np.linalg.norm(np.diff(x, axis=0), axis=1).sum()
+        assert length == pytest.approx(winding.curve_length(BODY), rel=2e-4)
+        chord = np.diff(x, axis=0)
+        mean = (t[1:] + t[:-1]) / 2
+        aligned = (chord * mean).sum(axis=1) / np.linalg.norm(chord, axis=1)
+        assert np.median(aligned) == pytest.approx(1, abs=1e-6)
+
+
+def test_hands_are_geometric() -> None:
+    # a right-handed helix turns counterclockwise seen from +z while it rises
+    x, t = Winding("single-helix-right", 5, 0.0).points(BODY, 0, 2)
+    assert x[0] == pytest.approx([0, 12, 0])
+    assert t[0, 0] < 0 < t[0, 2]
+
+
+def test_double_helix_crosses_on_the_mirror_plane() -> None:
+    # DESIGN's phase: the crossings are the mirror planes of the cell model
+    winding = Winding("double-helix", 4, 0.0)
+    first, second = (winding.points(BODY, i, 21)[0] for i in range(2))
+    assert first[:, 2] == pytest.approx(np.arange(21) * 2.0)
+    assert first == pytest.approx(second, abs=1e-9)
+    assert first[:, 0] == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.parametrize("winding", [DOUBLE, *SINGLES])
+def test_embedded_length_is_exact_on_any_full_mesh(winding: Winding) -> None:
+    # coarse and fine, hexes and tets: nothing lost at seams, doubled at borders
+    for mesh in _meshes(half=False):
+        fibers = embed(mesh, BODY, winding)
+        for curve in range(winding.curves):
+            length = fibers.length[fibers.curve == curve].sum()
+            assert length == pytest.approx(winding.curve_length(BODY), rel=2e-5)
+
+
+def test_half_mesh_has_half_the_fibers() -> None:
+    for mesh in _meshes(half=True):
+        fibers = embed(mesh, BODY, DOUBLE)
+        half = DOUBLE.curve_length(BODY) * len(DOUBLE.hands) / 2
+        assert fibers.length @ fibers.share == pytest.approx(half, rel=2e-5)
+        assert fibers.s.max() <= BODY.winding_perimeter / 2
+
+
+@pytest.mark.parametrize("build", [embed, smear])
+def test_points_lie_on_the_outline_and_tangents_along_the_helix(build: object) -> None:
+    # a host cell or reference coordinate gone wrong would put the fiber inside the rubber
+    for mesh in _meshes(half=False):
+        fibers: EmbeddedFibers = build(mesh, BODY, DOUBLE)  # type: ignore[operator]
+        assert fibers.weights.sum(axis=1) == pytest.approx(1)
+        x, jacobian = jacobians(mesh, fibers.cell, fibers.points)
+        s = arc_length(BODY, x[..., :2], x[..., 0] < 0)
+        assert x[..., :2] == pytest.approx(position(BODY, s.ravel()).reshape(*s.shape, 2), abs=0.01)
+        t = np.einsum("nqij,nqj->nqi", jacobian, fibers.tangents)
+        speed = np.linalg.norm(t, axis=2)
+        assert (speed * fibers.weights).sum(axis=1) == pytest.approx(fibers.length)
+        rise = DOUBLE.pitch / DOUBLE.turn_length(BODY)
+        assert t[..., 2] / speed == pytest.approx(rise, rel=0.02)
+
+
+def test_ribbon_lines_are_parallel_and_apart() -> None:
+    ribbon = Winding("single-helix-left", 3, 0.4, lines=4)
+    spacing = np.diff(ribbon.rises(BODY)) * BODY.winding_perimeter / ribbon.turn_length(BODY)
+    assert spacing == pytest.approx(0.1)
+    assert ribbon.rises(BODY).sum() == pytest.approx(0, abs=1e-12)
+    fibers = embed(_meshes(half=False)[0], BODY, ribbon)
+    assert np.all(fibers.share == 0.25)
+    assert dataclasses.replace(ribbon, width=0.0).curves == 1
+
+
+def test_segments_follow_each_other() -> None:
+    # output draws the fibers as lines in this order
+    fibers = embed(_meshes(half=False)[2], BODY, SINGLES[0])
+    z = fibers.z[fibers.curve == 2]
+    assert np.all(np.diff(z) > 0)
+
+
+def test_a_line_along_a_border_of_tetrahedra_counts_once() -> None:
+    # the measure-zero case: a helix that runs exactly along the diagonals of the facets
+    hexes = swept_body(BODY, MeshSize(axial=4, section=1, half=False))
+    tets = to_tetrahedra(hexes)
+    side = (BODY.floor - BODY.outline_bottom) / 2
+    nodes = tets.nodes[tets.facet_nodes("winding")]
+    on_floor_side = np.isclose(nodes[..., 0], BODY.outline_radius).all(axis=1)
+    assert on_floor_side.any()
+    slopes = np.diff(nodes[on_floor_side], axis=1)[..., 1:]
+    ratios = np.abs(slopes[..., 1] / np.where(slopes[..., 0] == 0, np.nan, slopes[..., 0]))
+    pitch = float(np.nanmax(ratios)) * BODY.winding_perimeter
+    assert pitch > side
+    for pattern in ("single-helix-right", "single-helix-left"):
+        winding = Winding(pattern, pitch, 0.0)
+        for mesh in (hexes, tets):
+            total = embed(mesh, BODY, winding).length.sum()
+            assert total == pytest.approx(winding.curve_length(BODY), rel=2e-5)
+
+
+def test_smeared_length_is_the_discrete_one() -> None:
+    for mesh in _meshes(half=False):
+        fibers = smear(mesh, BODY, DOUBLE)
+        total = len(DOUBLE.hands) * DOUBLE.curve_length(BODY)
+        assert fibers.length.sum() == pytest.approx(total, rel=2e-5)
+
+
+def test_slice_of_half_a_pitch_holds_one_pass() -> None:
+    # the cell model: one pass of one fiber from the top to the bottom
+    mesh = swept_slice(BODY, MeshSize(), 1.5, 2)
+    fibers = embed(mesh, BODY, Winding("double-helix", 3, 0.0))
+    assert fibers.length.sum() == pytest.approx(math.hypot(BODY.winding_perimeter, 3) / 2, rel=2e-5)
+    assert len(set(fibers.curve.tolist())) == 1
+    empty = embed(mesh, BODY, Winding("single-helix-right", 3, 0.0))
+    assert len(empty.length) == 0
+
+
+def test_windings_without_meaning_are_refused() -> None:
+    for bad in ({"pitch": 0.0}, {"pitch": math.nan}, {"width": -1.0}, {"lines": 0}):
+        with pytest.raises(ValueError, match=next(iter(bad))):
+            dataclasses.replace(DOUBLE, **bad)
+    with pytest.raises(ValueError, match="pattern 'triple'"):
+        Winding("triple", 3, 0.38)
+    with pytest.raises(ValueError, match="at most the length"):
+        check_winding(BODY, Winding("double-helix", 41, 0.38))
