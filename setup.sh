@@ -43,8 +43,10 @@ administrator run:  apt-get install --no-install-recommends $(echo $missing)"
         fail "apt-get could not install: $(echo $missing)"
 fi
 
-echo "setup: creating .venv"
-$PYTHON -m venv --clear --system-site-packages .venv
+echo "setup: installing Python packages into .venv"
+if ! grep -qsF "$PWD/.venv" .venv/pyvenv.cfg || ! .venv/bin/python -c '' 2>/dev/null; then
+    $PYTHON -m venv --clear --system-site-packages .venv
+fi
 .venv/bin/python -m pip install -qq --disable-pip-version-check --no-compile \
     --constraint constraints.txt --editable '.[dev]' ||
     fail "pip could not install the Python packages."

@@ -16,6 +16,9 @@ from fiberbend.fields import SignedPressure as AnyPressure
 
 E = TypeVar("E", bound=Effect)
 
+COEFFICIENTS = ("mu", "c10", "c01", "c1", "c2", "c3")
+"""Coefficients of the laws; `materials.laws.LAWS` says which law has which."""
+
 if TYPE_CHECKING:
     AnyEffect = Effect
 else:
@@ -50,12 +53,18 @@ class Material(Model):
     """A named material; written alone where nothing else is said, `wall: elastosil-m4601`."""
     law: Literal["yeoh", "neo-hooke", "mooney-rivlin"] | None = None
     """Law of a material that has no name here."""
+    mu: Modulus | None = None
+    """Shear modulus; neo-hooke."""
+    c10: Coefficient | None = None
+    """Coefficient of I1 - 3; mooney-rivlin."""
+    c01: Coefficient | None = None
+    """Coefficient of I2 - 3; mooney-rivlin."""
     c1: Modulus | None = None
-    """First coefficient."""
+    """Coefficient of I1 - 3; yeoh."""
     c2: Coefficient | None = None
-    """Second coefficient."""
+    """Coefficient of (I1 - 3)^2; yeoh."""
     c3: Coefficient | None = None
-    """Third coefficient, Yeoh only."""
+    """Coefficient of (I1 - 3)^3; yeoh."""
     density: Density | None = None
     """Density; gravity needs it."""
     bulk: Modulus | None = None
@@ -64,7 +73,7 @@ class Material(Model):
     @property
     def coefficients(self) -> dict[str, float]:
         """The coefficients that are given, in MPa."""
-        given = {"c1": self.c1, "c2": self.c2, "c3": self.c3}
+        given = {key: getattr(self, key) for key in COEFFICIENTS}
         return {key: value for key, value in given.items() if value is not None}
 
     @model_validator(mode="before")

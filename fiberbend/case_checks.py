@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Iterator
 from typing import Any
 
+from fiberbend import bridge
 from fiberbend.case import Actuator, Case, Material, Materials, Mesh, Output, Solver
 from fiberbend.case_effects import (
     BlockedTipEffect,
@@ -21,13 +22,6 @@ from fiberbend.units import show
 
 DEFAULT_LINES = 5
 DEFAULT_FIRST_STEP = 0.002
-
-_COEFFICIENTS = {
-    "yeoh": (("c1",), ("c2", "c3")),
-    "neo-hooke": (("c1",), ()),
-    "mooney-rivlin": (("c1", "c2"), ()),
-}
-"""Required and optional coefficients of each law."""
 
 
 @dataclasses.dataclass
@@ -100,17 +94,10 @@ def _complete_winding(winding: WindingEffect) -> WindingEffect:
     if winding.representation == "discrete":
         width = winding.width
         if width is None:
-            width = _named("fibers")[fiber.name].diameter if fiber.name else fiber.diameter
+            width = bridge.fiber(fiber).diameter
         update["width"] = width
         update["lines"] = winding.lines or (DEFAULT_LINES if width else 1)
     return winding.model_copy(update=update)
-
-
-def _named(kind: str) -> dict[str, Any]:
-    # numpy comes with it, and a case that is wrong elsewhere need not wait for that.
-    from materials import named
-
-    return {"materials": named.NAMED, "fibers": named.FIBERS}[kind]
 
 
 def _effects(parts: Parts) -> Iterator[Problem]:
@@ -162,8 +149,10 @@ def _fiber(path: str, fiber: Fiber) -> Iterator[Problem]:
             if getattr(fiber, key) is None:
                 yield Problem(f"{path}.{key}", f"missing, expected the {key} of an unnamed fiber")
         return
-    if fiber.name not in _named("fibers"):
-        names = " or ".join(_named("fibers"))
+    from materials.fiber import FIBERS
+
+    if fiber.name not in FIBERS:
+        names = ", ".join(FIBERS)
         yield Problem(path, f"{found(fiber.name)}, expected {names}, or modulus and diameter")
     for key in own:
         if getattr(fiber, key) is not None:
@@ -186,25 +175,31 @@ def _materials(parts: Parts) -> Iterator[Problem]:
 
 
 def _material(path: str, material: Material) -> Iterator[Problem]:
+    from materials.laws import LAWS
+    from materials.named import NAMED
+
     given = material.coefficients
     if material.name is not None:
-        if material.name not in _named("materials"):
-            names = ", ".join(_named("materials"))
-            yield Problem(path, f"{found(material.name)}, expected {names}, or a law")
-        if material.law is not None:
-            given = {"law": 0.0, **given}
-        for key in given:
+        if material.name not in NAMED:
+            yield Problem(path, f"{found(material.name)}, expected {', '.join(NAMED)}, or a law")
+        for key in [*(["law"] if material.law else []), *given]:
             yield Problem(f"{path}.{key}", "no effect on a named material, expected no value")
-    elif material.law is None:
+        return
+    if material.law is None:
         yield Problem(path, "neither name nor law, expected one of them")
-    else:
-        required, optional = _COEFFICIENTS[material.law]
-        for key in required:
-            if key not in given:
-                yield Problem(f"{path}.{key}", f"missing, expected a coefficient of {material.law}")
-        for key in given:
-            if key not in required + optional:
-                yield Problem(f"{path}.{key}", f"no effect on {material.law}, expected no value")
+        return
+    law = LAWS[material.law]
+    missing = [key for key in law.parameters if key not in {**law.defaults, **given}]
+    for key in missing:
+        yield Problem(f"{path}.{key}", f"missing, expected a coefficient of {law.name}")
+    strange = [key for key in given if key not in law.parameters]
+    for key in strange:
+        yield Problem(f"{path}.{key}", f"no effect on {law.name}, expected no value")
+    if not missing and not strange:
+        try:
+            bridge.material(material)
+        except ValueError as error:
+            yield Problem(path, str(error))
 
 
 def _gravity(parts: Parts) -> Iterator[Problem]:
@@ -218,8 +213,9 @@ def _gravity(parts: Parts) -> Iterator[Problem]:
         if gravity is None and material.density is not None:
             yield Problem(f"{path}.density", "no effect without gravity, expected no value")
         if gravity is not None and material.density is None:
-            named = _named("materials").get(material.name) if material.name else None
-            if named is None or named.density is None:
+            from materials.named import NAMED
+
+            if material.name not in NAMED or NAMED[material.name].density is None:
                 yield Problem(f"{path}.density", "missing, expected a density for gravity")
 
 
@@ -243,23 +239,22 @@ def _mesh(parts: Parts) -> Iterator[Problem]:
 def _too_thin(
     actuator: Actuator, mesh: Mesh, path: str, tip: BlockedTipEffect | None
 ) -> Iterator[Problem]:
-    from fiberbend.choice import dimensions, mesh_size, strips
-    from geometry import size
+    from geometry.size import check_size
 
-    fineness = mesh_size(mesh, half=True)
+    fineness = bridge.mesh_size(mesh, half=True)
     parts = [part for part in ("wall", "floor", "sheath", "layer") if getattr(actuator, part)]
     thick = actuator.model_copy(update=dict.fromkeys(parts, mesh.axial * mesh.section))
     fits = True
     for part in parts:
         alone = thick.model_copy(update={part: getattr(actuator, part)})
         try:
-            size.check_size(dimensions(alone), fineness)
+            check_size(bridge.dimensions(alone), fineness)
         except ValueError as error:
             fits = False
             yield Problem(f"actuator.{part}", str(error).removeprefix(f"{part} "))
     if tip is not None and fits:
         try:
-            size.check_size(dimensions(actuator), fineness, strips(tip))
+            check_size(bridge.dimensions(actuator), fineness, bridge.strips(tip))
         except ValueError as error:
             yield Problem(path, str(error))
 

@@ -1,16 +1,11 @@
-"""What a case leaves to the program: model, half or full body; and the bridge to geometry."""
+"""What a case leaves to the program: the model, and half or full body."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
 
-from fiberbend.case import Actuator, Case, Mesh
-from fiberbend.case_effects import BlockedTipEffect, Effect, GravityEffect, WindingEffect
-
-if TYPE_CHECKING:
-    from geometry import dimensions as geometry_dimensions
-    from geometry import size
+from fiberbend.case import Case
+from fiberbend.case_effects import Effect, GravityEffect, WindingEffect
 
 
 def choose_model(case: Case) -> tuple[str, str]:
@@ -45,24 +40,3 @@ def mirror_breakers(effects: Iterable[Effect]) -> Iterator[str]:
             yield "a single helix is not its own mirror image"
         if isinstance(effect, GravityEffect) and effect.direction.endswith("x"):
             yield "gravity along x pulls to one side"
-
-
-def dimensions(actuator: Actuator) -> geometry_dimensions.Actuator:
-    """The dimensions as the geometry takes them."""
-    from geometry import dimensions as geometry_dimensions
-
-    return geometry_dimensions.Actuator(**dict(actuator))
-
-
-def mesh_size(mesh: Mesh, half: bool) -> size.MeshSize:
-    """The fineness as the geometry takes it."""
-    from geometry import size
-
-    return size.MeshSize(axial=mesh.axial, section=mesh.section, element=mesh.element, half=half)
-
-
-def strips(tip: BlockedTipEffect) -> size.Strips:
-    """The strips of a blocked tip as the geometry takes them."""
-    from geometry import size
-
-    return size.Strips(roof_half_width=tip.roof_width / 2, post_length=tip.post_length)

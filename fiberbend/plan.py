@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 
+from fiberbend import bridge
 from fiberbend.case import Case
 from fiberbend.case_effects import BlockedTipEffect, WindingEffect
-from fiberbend.choice import choose_half, choose_model, dimensions, mesh_size, strips
+from fiberbend.choice import choose_half, choose_model
 from fiberbend.units import show
 
 
@@ -72,7 +73,9 @@ def count(case: Case, half: bool) -> tuple[int, int]:
 
     tip = case.find(BlockedTipEffect)
     mesh = swept_body(
-        dimensions(case.actuator), mesh_size(case.mesh, half), strips(tip) if tip else None
+        bridge.dimensions(case.actuator),
+        bridge.mesh_size(case.mesh, half),
+        bridge.strips(tip) if tip else None,
     )
     if case.mesh.element == "tetrahedron":
         mesh = to_tetrahedra(mesh)

@@ -38,7 +38,7 @@ def read_case(path: Path | str, settings: Iterable[str] = ()) -> Case:
         CaseError: everything that is wrong with file, settings and case.
     """
     data = load_yaml(Path(path))
-    problems = []
+    problems: list[Problem] = []
     for setting in settings:
         try:
             apply_setting(data, setting)

@@ -79,12 +79,16 @@ BAD_SETTINGS = [
     ("materials.layer=combined-base", "materials.layer: no effect without actuator.layer"),
     ("materials.wall={law: yeoh}", "materials.wall.c1: missing, expected a coefficient of yeoh"),
     (
-        "materials.wall={law: neo-hooke, c1: 1 MPa, c2: 1 MPa}",
+        "materials.wall={law: neo-hooke, mu: 1 MPa, c2: 1 MPa}",
         "materials.wall.c2: no effect on neo-hooke, expected no value",
     ),
     (
         "materials.wall={name: elastosil-m4601, c1: 1 MPa}",
         "materials.wall.c1: no effect on a named material, expected no value",
+    ),
+    (
+        "materials.wall={law: mooney-rivlin, c10: 1 MPa, c01: -2 MPa}",
+        "materials.wall: initial shear modulus -2 MPa: expected more than 0",
     ),
     ("materials.wall={density: 1 g/cm^3}", "materials.wall: neither name nor law"),
     (

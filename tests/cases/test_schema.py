@@ -1,0 +1,224 @@
+"""The case schema: what it reads, fills in, writes back and refuses."""
+
+from __future__ import annotations
+
+import copy
+import json
+import math
+import typing
+from pathlib import Path
+from typing import Any
+
+import bad_cases
+import pytest
+import yaml
+
+from fiberbend import bridge
+from fiberbend.case import COEFFICIENTS, Case, Material
+from fiberbend.case_effects import EFFECTS, GravityEffect, PressureEffect, WindingEffect
+from fiberbend.problems import CaseError
+from fiberbend.reader import as_case, json_schema, parse_case, read_case
+from materials.laws import LAWS
+
+ROOT = Path(__file__).resolve().parents[2]
+CASES = sorted((ROOT / "cases").glob("*.yaml"))
+BASELINE = ROOT / "cases" / "free_bending.yaml"
+
+
+def complaint(settings: list[str]) -> list[str]:
+    with pytest.raises(CaseError) as error:
+        read_case(BASELINE, settings)
+    return str(error.value).splitlines()
+
+
+@pytest.fixture
+def data() -> dict[str, Any]:
+    loaded: dict[str, Any] = yaml.safe_load(BASELINE.read_text(encoding="utf-8"))
+    return loaded
+
+
+@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+def test_example_cases_are_valid_and_round_trip(path: Path) -> None:
+    case = read_case(path)
+    assert parse_case(case.resolved()) == case
+    assert parse_case(yaml.safe_load(yaml.safe_dump(case.resolved()))) == case
+
+
+def test_baseline_in_internal_units() -> None:
+    case = read_case(BASELINE)
+    assert case.actuator.radius == 8.0
+    assert case.find(PressureEffect) == PressureEffect.model_construct(to=0.2, volume=None)
+    winding = case.find(WindingEffect)
+    assert winding is not None
+    assert (winding.pitch, winding.representation) == (3.0, "discrete")
+    assert case.output.at_angles == pytest.approx([math.pi / 2, math.pi, 2 * math.pi])
+    assert case.find(GravityEffect) is None
+
+
+def test_defaults_appear_in_the_resolved_case(data: dict[str, Any]) -> None:
+    del data["mesh"], data["output"], data["actuator"]["cap"], data["model"]
+    resolved = parse_case(data).resolved()
+    assert resolved["actuator"]["cap"] == "15 mm"
+    assert resolved["mesh"] == {
+        "element": "hexahedron",
+        "axial": "1.5 mm",
+        "section": 1,
+        "symmetry": "auto",
+    }
+    assert resolved["model"] == "auto"
+    assert resolved["solver"]["first_step"] == "2 kPa"
+    winding = resolved["effects"][1]["winding"]
+    assert (winding["width"], winding["lines"], winding["fiber"]) == ("0.38 mm", 5, "kevlar")
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        ["effects.0={pressure: {volume: 45 mL}}"],
+        ["effects.0.pressure.to=-20 kPa"],
+        ["effects.1.winding.width=0 mm"],
+        ["effects.1.winding.fiber={modulus: 3 GPa, diameter: 0.2 mm}"],
+        ["effects.1.winding.pitch=0.1 in", "solver.max_step=5 psi"],
+        ["materials.wall={law: yeoh, c1: 0.11 MPa, c2: -20 Pa, bulk: 200 MPa}"],
+        ["materials.wall={name: elastosil-m4601, bulk: 200 MPa}"],
+        ["actuator.layer=0.1 mm", "materials.layer={law: neo-hooke, mu: 1 GPa}"],
+        ["actuator.sheath=", "materials.sheath="],
+        ["effects.2.gravity.direction=-x", "materials.floor={law: neo-hooke, mu: 1 MPa, "
+         "density: 1100 kg/m^3}"],
+        ["effects=[{gravity: {direction: -y}}]", "output.at_angles=[]",
+         "materials.floor={name: combined-base, density: 1.2 g/cm^3}"],
+        ["output.stop_at_angle=360 deg", "output.at_pressures=[100 kPa]"],
+        ["model=auto", "mesh.element=tetrahedron", "mesh.section=2"],
+    ],
+    ids=lambda settings: settings[0],
+)  # fmt: skip
+def test_valid_variants_round_trip(settings: list[str]) -> None:
+    case = read_case(BASELINE, settings)
+    assert parse_case(case.resolved()) == case
+
+
+@pytest.mark.parametrize(("setting", "line"), bad_cases.BAD_SETTINGS)
+def test_wrong_input_is_named(setting: str, line: str) -> None:
+    lines = complaint([setting])
+    assert any(text.startswith(line) for text in lines), lines
+
+
+def test_all_problems_at_once(data: dict[str, Any]) -> None:
+    data["actuator"]["radius"] = 8
+    data["effects"][1]["winding"]["pitch"] = "0 mm"
+    data["effects"].append({"pressure": {"to": "1 kPa"}})
+    data["output"]["at_pressures"] = ["300 kPa"]
+    data["modle"] = "body"
+    with pytest.raises(CaseError) as error:
+        parse_case(data)
+    assert {problem.path for problem in error.value.problems} == {
+        "actuator.radius",
+        "effects.1.winding.pitch",
+        "effects.2.pressure",
+        "modle",
+    }
+
+
+@pytest.mark.parametrize("name", bad_cases.BAD_FILES)
+def test_bad_files(name: str, tmp_path: Path) -> None:
+    content, what = bad_cases.BAD_FILES[name]
+    path = tmp_path / "case.yaml"
+    path.write_text(content, encoding="utf-8")
+    with pytest.raises(CaseError) as error:
+        read_case(path)
+    (line,) = str(error.value).splitlines()
+    assert line.startswith(str(path))
+    assert what in line
+
+
+def test_missing_file_and_folder(tmp_path: Path) -> None:
+    with pytest.raises(CaseError, match="no such file, expected a case file"):
+        read_case(tmp_path / "none.yaml")
+    with pytest.raises(CaseError, match="expected a case file"):
+        read_case(tmp_path)
+
+
+def test_half_body_needs_the_mirror() -> None:
+    single = "effects.1.winding.pattern=single-helix-right"
+    (line,) = complaint(["mesh.symmetry=half", single])
+    assert line.startswith('mesh.symmetry: "half", expected auto or full: a single helix')
+
+
+def test_gravity_needs_every_density() -> None:
+    (line,) = complaint(["effects.2.gravity.direction=-y"])
+    assert line.startswith("materials.floor.density: missing")
+
+
+def test_steps_of_pressure_need_a_pressure() -> None:
+    settings = ["effects.0={pressure: {volume: 45 mL}}", "solver.first_step=1 kPa"]
+    (line,) = complaint(settings)
+    assert line.startswith("solver.first_step: no effect without a pressure to reach")
+
+
+def test_angles_beyond_the_stop() -> None:
+    (line,) = complaint(["output.stop_at_angle=200 deg"])
+    assert line.startswith('output.at_angles.2: "360 deg", expected an angle up to stop_at_angle')
+
+
+def test_order_of_effects_is_kept(data: dict[str, Any]) -> None:
+    data["effects"].reverse()
+    assert [effect.name for effect in parse_case(data).effects] == ["winding", "pressure"]
+
+
+def test_a_case_is_frozen_and_comes_in_three_forms(data: dict[str, Any]) -> None:
+    case = as_case(BASELINE)
+    assert as_case(copy.deepcopy(data)) == as_case(case) == as_case(str(BASELINE)) == case
+    with pytest.raises(ValueError, match="frozen"):
+        case.actuator.radius = 9.0
+
+
+def test_schema_and_materials_know_the_same_laws() -> None:
+    annotation = Material.model_fields["law"].annotation
+    (literal,) = (part for part in typing.get_args(annotation) if part is not type(None))
+    assert set(typing.get_args(literal)) == set(LAWS)
+    assert {name for law in LAWS.values() for name in law.parameters} == set(COEFFICIENTS)
+
+
+def test_bridge_takes_what_the_case_says() -> None:
+    case = read_case(
+        BASELINE,
+        [
+            "materials.wall={name: elastosil-m4601, bulk: 200 MPa}",
+            "effects.1.winding.fiber={modulus: 3 GPa, diameter: 0.2 mm}",
+        ],
+    )
+    wall = bridge.material(case.materials.wall)
+    assert (wall.law, wall.parameters["c1"], wall.bulk) == ("yeoh", 0.11, 200.0)
+    winding = case.find(WindingEffect)
+    assert winding is not None
+    assert bridge.fiber(winding.fiber).stiffness == pytest.approx(3000 * math.pi * 0.1**2)
+    assert bridge.dimensions(case.actuator).total_length == 190.0
+    own = Material(law="neo-hooke", mu="1 MPa", density="1.1 g/cm^3")  # type: ignore[arg-type]
+    assert bridge.material(own).density == pytest.approx(1100.0)
+
+
+def test_committed_schema_is_current() -> None:
+    committed = json.loads((ROOT / "cases" / "case.schema.json").read_text(encoding="utf-8"))
+    assert committed == json_schema(), "run `make schema`"
+
+
+@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+def test_json_schema_takes_the_example_cases(path: Path) -> None:
+    jsonschema = pytest.importorskip("jsonschema")
+    jsonschema.validate(yaml.safe_load(path.read_text(encoding="utf-8")), json_schema())
+    jsonschema.validate(read_case(path).resolved(), json_schema())
+    wrong = read_case(path).resolved()
+    wrong["actuator"]["radius"] = 8
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(wrong, json_schema())
+
+
+def test_json_schema_describes_every_effect_and_shows_defaults_with_units() -> None:
+    definitions = json_schema()["$defs"]
+    assert set(definitions["EffectEntry"]["properties"]) == set(EFFECTS)
+    assert definitions["Mesh"]["properties"]["axial"]["default"] == "1.5 mm"
+    described = [
+        field.get("description") for field in definitions["WindingEffect"]["properties"].values()
+    ]
+    assert all(described)
+    assert Case.__doc__
