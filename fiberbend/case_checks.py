@@ -1,4 +1,4 @@
-"""What the values of a case must fulfil together, and the defaults that depend on others."""
+"""What the values of a case must fulfil together."""
 
 from __future__ import annotations
 
@@ -19,9 +19,6 @@ from fiberbend.case_effects import (
 from fiberbend.choice import mirror_breakers
 from fiberbend.problems import Problem, found
 from fiberbend.units import show
-
-DEFAULT_LINES = 5
-DEFAULT_FIRST_STEP = 0.002
 
 
 @dataclasses.dataclass
@@ -70,34 +67,6 @@ def check(parts: Parts) -> Iterator[Problem]:
     yield from _mesh(parts)
     yield from _solver(parts)
     yield from _output(parts)
-
-
-def complete(case: Case) -> Case:
-    """Fill in the defaults that depend on other values of a checked case."""
-    effects = tuple(
-        _complete_winding(effect) if isinstance(effect, WindingEffect) else effect
-        for effect in case.effects
-    )
-    solver = case.solver
-    pressure = case.find(PressureEffect)
-    if pressure is not None and pressure.to is not None and solver.first_step is None:
-        first = min(DEFAULT_FIRST_STEP, abs(pressure.to), solver.max_step or DEFAULT_FIRST_STEP)
-        solver = solver.model_copy(update={"first_step": first})
-    return case.model_copy(update={"effects": effects, "solver": solver})
-
-
-def _complete_winding(winding: WindingEffect) -> WindingEffect:
-    fiber = winding.fiber
-    if fiber.name is None and fiber.radius_factor is None:
-        fiber = fiber.model_copy(update={"radius_factor": 1.0})
-    update: dict[str, Any] = {"fiber": fiber}
-    if winding.representation == "discrete":
-        width = winding.width
-        if width is None:
-            width = bridge.fiber(fiber).diameter
-        update["width"] = width
-        update["lines"] = winding.lines or (DEFAULT_LINES if width else 1)
-    return winding.model_copy(update=update)
 
 
 def _effects(parts: Parts) -> Iterator[Problem]:

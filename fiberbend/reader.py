@@ -11,7 +11,8 @@ from pydantic import BaseModel, ValidationError
 from pydantic.json_schema import GenerateJsonSchema
 
 from fiberbend.case import Actuator, Case, Materials, Mesh, Output, Solver
-from fiberbend.case_checks import Parts, check, complete
+from fiberbend.case_checks import Parts, check
+from fiberbend.case_defaults import complete
 from fiberbend.case_effects import EffectEntry, unwrap
 from fiberbend.problems import CaseError, Problem, from_pydantic
 

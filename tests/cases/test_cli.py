@@ -10,13 +10,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import bad_cases
 import pytest
 
 from fiberbend import __version__, launch
 from fiberbend.cli import main
 from fiberbend.reader import read_case
 from fiberbend.runfolder import RunFolder
+from tests.cases import bad_cases
 
 ROOT = Path(__file__).resolve().parents[2]
 BASELINE = str(ROOT / "cases" / "free_bending.yaml")
@@ -199,6 +199,7 @@ from mpi4py import MPI
 from fiberbend.problems import CaseError
 from fiberbend.reader import read_case
 from fiberbend.runfolder import RunFolder
+from tests.cases import bad_cases
 
 case, comm, out = read_case({case!r}), MPI.COMM_WORLD, Path({out!r})
 assert comm.size == 2

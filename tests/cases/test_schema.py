@@ -9,7 +9,6 @@ import typing
 from pathlib import Path
 from typing import Any
 
-import bad_cases
 import pytest
 import yaml
 
@@ -19,6 +18,7 @@ from fiberbend.case_effects import EFFECTS, GravityEffect, PressureEffect, Windi
 from fiberbend.problems import CaseError
 from fiberbend.reader import as_case, json_schema, parse_case, read_case
 from materials.laws import LAWS
+from tests.cases import bad_cases
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = sorted((ROOT / "cases").glob("*.yaml"))
@@ -169,7 +169,7 @@ def test_a_case_is_frozen_and_comes_in_three_forms(data: dict[str, Any]) -> None
     case = as_case(BASELINE)
     assert as_case(copy.deepcopy(data)) == as_case(case) == as_case(str(BASELINE)) == case
     with pytest.raises(ValueError, match="frozen"):
-        case.actuator.radius = 9.0
+        case.actuator.radius = 9.0  # type: ignore[misc]
 
 
 def test_schema_and_materials_know_the_same_laws() -> None:
