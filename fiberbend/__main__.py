@@ -1,8 +1,6 @@
 """`python -m fiberbend` is the command `fiberbend`."""
 
-import sys
-
-from fiberbend.cli import main
+from fiberbend.cli import entry
 
 if __name__ == "__main__":
-    sys.exit(main())
+    entry()

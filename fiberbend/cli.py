@@ -31,6 +31,17 @@ class _Parser(argparse.ArgumentParser):
             _say(message.rstrip("\n"), file or sys.stdout)
 
 
+def entry() -> NoReturn:
+    """The installed command: `main`, and under mpirun an end that leaves rank 0 time to speak."""
+    try:
+        code: Any = main()
+    except SystemExit as stop:
+        code = stop.code
+    if code == WRONG_INPUT:
+        launch.let_rank_0_speak()
+    sys.exit(code)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command.
 

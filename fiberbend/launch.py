@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import os
+import sys
+import time
 
 _RANK = ("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID")
+_PATIENCE = 20.0
 _SIZE = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_NTASKS")
 
 
@@ -26,6 +29,16 @@ def set_threads() -> None:
     if size() > 1:
         for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
             os.environ.setdefault(name, "1")
+
+
+def let_rank_0_speak() -> None:
+    """Hold back the end of another rank: mpirun kills all when the first one ends with an error.
+
+    Rank 0 ends long before the time is up, and mpirun then ends this rank too. Once MPI is up,
+    its own end waits for all ranks.
+    """
+    if rank() > 0 and "mpi4py.MPI" not in sys.modules:
+        time.sleep(_PATIENCE)
 
 
 def _first(names: tuple[str, ...], default: int) -> int:

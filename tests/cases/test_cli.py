@@ -239,6 +239,36 @@ def test_every_wrong_input_on_two_ranks(mpirun: Callable[..., Any], tmp_path: Pa
     assert not (tmp_path / "run" / "mark").exists()
 
 
+LATE = """
+import sys, time
+from fiberbend import launch
+from fiberbend.cli import entry
+
+if launch.rank() == 0:
+    time.sleep(2)
+sys.argv[1:] = {arguments!r}
+entry()
+"""
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["run", BASELINE, "--set", "actuator.radius=8"], "actuator.radius: 8, expected a length"),
+        (["bend"], "fiberbend: argument COMMAND: invalid choice"),
+    ],
+)
+def test_rank_0_speaks_though_it_is_last(
+    arguments: list[str], line: str, mpirun: Callable[..., Any], tmp_path: Path
+) -> None:
+    script = tmp_path / "late.py"
+    script.write_text(LATE.format(arguments=arguments), encoding="utf-8")
+    done = mpirun(2, [script], timeout=60)
+    assert done.returncode == 1
+    assert done.stderr.count(line) == 1
+
+
 CRASH = """
 import sys, types
 from fiberbend import launch
