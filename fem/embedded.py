@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
@@ -11,36 +9,13 @@ from petsc4py import PETSc
 
 from fem import compat
 from fem.kinematics import Body
+from geometry.embed import EmbeddedFibers
 from geometry.mesh import facet_positions
 
 Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
-@dataclasses.dataclass(frozen=True)
-class Segments:
-    """Straight or curved pieces of fiber, each within one facet of one cell.
-
-    Attributes:
-        cell: input number of the host cell, (n,).
-        facet: its local facet, (n,).
-        points: reference coordinates of q points in the host cell, (n, q, 3).
-        tangents: derivative of those along the segment, any scale common to its points, (n, q, 3).
-        weights: quadrature weight of each point, (n, q).
-        length: reference length of fiber the segment stands for, mm, (n,).
-        stiffness: axial stiffness EA, N, (n,).
-    """
-
-    cell: Ints
-    facet: Ints
-    points: Floats
-    tangents: Floats
-    weights: Floats
-    length: Floats
-    stiffness: Floats
-
-
-class EmbeddedFibers:
+class FiberPotential:
     """Π = Σ ½ EA ℓ e², e = λ_f − 1, λ_f the mean of |F T| over the points of a segment.
 
     One strain a segment, because several would lock; every segment couples the dofs of one facet
@@ -53,10 +28,13 @@ class EmbeddedFibers:
     Args:
         body: the kinematics.
         segments: pieces of fiber; those of cells owned elsewhere are left out.
+        stiffness: axial stiffness EA of a whole fiber, N.
         tension_only: slack fibers carry nothing.
     """
 
-    def __init__(self, body: Body, segments: Segments, tension_only: bool = False) -> None:
+    def __init__(
+        self, body: Body, segments: EmbeddedFibers, stiffness: float, tension_only: bool = False
+    ) -> None:
         self._body = body
         domain = body.domain
         local = domain.local_cell[segments.cell]
@@ -67,7 +45,7 @@ class EmbeddedFibers:
         """Number within `segments` of every segment held here, (n,)."""
         self.tension_only = tension_only
         self.length = segments.length[self.index]
-        self.stiffness = segments.stiffness[self.index]
+        self.stiffness = stiffness * segments.share[self.index]
         local, facet = local[self.index], segments.facet[self.index]
         host = host[self.index]
         self._start = np.flatnonzero(np.r_[True, host[1:] != host[:-1]][: len(host)])

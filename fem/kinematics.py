@@ -19,7 +19,8 @@ Dofs = npt.NDArray[np.int32]
 
 
 def _displacement(cell: str) -> tuple[Any, int]:
-    return ufl.VectorElement("Lagrange", cell, 2), 3
+    # scalar elements, not one vector element: contiguous rows let the compiler vectorise kernels
+    return ufl.FiniteElement("Lagrange", cell, 2), 3
 
 
 def _pressure(cell: str) -> tuple[Any, int]:
@@ -29,7 +30,7 @@ def _pressure(cell: str) -> tuple[Any, int]:
 
 
 FIELDS: dict[str, Callable[[str], tuple[Any, int]]] = {"u": _displacement, "p": _pressure}
-"""Element and number of components of each field that an effect may ask for."""
+"""Scalar element and number of components of each field that an effect may ask for."""
 
 
 class Body:
@@ -50,14 +51,19 @@ class Body:
         cell = domain.data.cell_type
         wanted = set(fields)
         self.names = [name for name in FIELDS if name in wanted]
-        elements = [FIELDS[name](cell) for name in self.names]
-        self.space = compat.mixed_space(domain.mesh, [element for element, _ in elements])
+        elements = {name: FIELDS[name](cell) for name in self.names}
+        self.space = compat.mixed_space(
+            domain.mesh, [element for element, count in elements.values() for _ in range(count)]
+        )
         self.w = dfem.Function(self.space)
-        self._parts = dict(zip(self.names, ufl.split(self.w), strict=True))
-        self._dofs = {
-            name: compat.field_dofs(self.space, i, components)
-            for i, (name, (_, components)) in enumerate(zip(self.names, elements, strict=True))
-        }
+        self._slices: dict[str, range] = {}
+        self._dofs: dict[str, Dofs] = {}
+        first = 0
+        for name, (_, count) in elements.items():
+            self._slices[name] = range(first, first + count)
+            columns = [compat.field_dofs(self.space, i) for i in self._slices[name]]
+            self._dofs[name] = np.stack(columns, axis=2)
+            first += count
         self.scalars: dict[str, Any] = {}
         self._variables: dict[str, Any] = {}
 
@@ -75,12 +81,21 @@ class Body:
         self.owned_nodes = np.flatnonzero((here >= 0) & (here < self.owned))
         """Input numbers of the nodes whose displacement this rank owns."""
 
+    def part(self, function: Any, field: str) -> list[Any]:
+        """Components of one field of a function or argument on the mixed space.
+
+        Raises:
+            KeyError: no effect of the scene asked for the field.
+        """
+        components = ufl.split(function)
+        return [components[i] for i in self._slices[field]]
+
     # --- what effects ask for ---------------------------------------------------------------
 
     @property
     def u(self) -> Any:
         """Displacement, a UFL vector in mm."""
-        return self._parts["u"]
+        return ufl.as_vector(self.part(self.w, "u"))
 
     @property
     def p(self) -> Any:
@@ -89,7 +104,7 @@ class Body:
         Raises:
             KeyError: no effect of the scene asked for it.
         """
-        return self._parts["p"]
+        return self.part(self.w, "p")[0]
 
     @property
     def x(self) -> Any:
@@ -116,7 +131,7 @@ class Body:
         y = const or z = const that close the cavity, nor through x = 0.
         """
         normal = ufl.FacetNormal(self.domain.mesh)
-        return -self.x[0] * ufl.dot(ufl.cofac(self.F).T, normal)[0]
+        return -self.x[0] * ufl.dot(ufl.cofac(self.F), normal)[0]
 
     def coefficient(self, by_region: dict[str, float]) -> Any:
         """A material constant as a piecewise constant field, one value per region."""

@@ -224,8 +224,7 @@ class March:
         )
         body = self.scene.body
         shape = self.frames.extrapolate([state.shape for state in history], weights)
-        w = sum((c * state.w for c, state in zip(weights, history, strict=True)), np.zeros(0))
-        self.scene.set(w)
+        self.scene.set(np.tensordot(weights, [state.w for state in history], axes=1))
         body.set_displacement(self.frames.rebuild(shape))
         self.scene.set(self.scene.w.copy())
         for name in body.scalars:
@@ -298,6 +297,7 @@ class March:
         size = min(size, largest, abs(span))
         self.states = [*self.states[:-1], seed, self.states[-1]]
         failures = 0
+        insist = False
         pending = sorted(ramp.at)
         if ramp.until is not None:
             pending = sorted({*(a for a in ramp.at if a < ramp.until), ramp.until})
@@ -314,7 +314,11 @@ class March:
                 target = nearest
             kind = ramp.drive
             goal = self._due(pending, state)
-            if goal is not None and self._guess(ramp, kind, target, "followed") > goal - 0.02:
+            close = goal is not None and (
+                insist or self._guess(ramp, kind, target, "followed") > goal - 0.02
+            )
+            insist = False
+            if goal is not None and close:
                 kind, aim = "followed", goal
             else:
                 aim = float(target)
@@ -325,7 +329,7 @@ class March:
             if accepted:
                 new = self.capture()
                 if goal is not None and kind != "followed":
-                    overshot = new.measures["followed"] > goal + 1e-9
+                    overshot = insist = new.measures["followed"] > goal + 1e-9
                 if kind == "followed" and sign * (new.measures[drive] - ramp.target) > 0:
                     # the angle lies beyond the load's end: go there by the load instead
                     pending = [a for a in pending if a < goal - 1e-12] if goal else []
@@ -344,8 +348,7 @@ class March:
                 size *= self.rules.cut
                 continue
             failures = 0
-            self.states = [s for s in self.states if s is not seed or len(self.states) < 4]
-            self.states = [*self.states[-3:], new]
+            self.states = [*self.states[-2:], new]
             self.report.steps += 1
             self.report.per_step.append(outcome.iterations)
             self.on_step(new, outcome)

@@ -302,9 +302,11 @@ class _Solve:
         self.join(x, w, np.array([self.problem.scalar(name) for name in self.unknown]))
         try:
             snes.solve(None, x)
+            converged = snes.getConvergedReason() > 0 and not self.reason
         except (PETSc.Error, ZeroDivisionError, np.linalg.LinAlgError) as error:
             self.reason = f"the linear solve failed ({error})"
-        converged = snes.getConvergedReason() > 0 and not self.reason
-        for item in (snes, shell, x, f):
-            item.destroy()
+            converged = False
+        finally:
+            for item in (snes, shell, x, f):
+                item.destroy()
         return Outcome(converged, self.solves, self.reason, self.history, float(self.least))

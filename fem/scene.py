@@ -89,7 +89,7 @@ class Scene:
             forms[f"conjugate {name}"] = conjugate
             forms[f"load {name}"] = ufl.derivative(conjugate, body.w, test)
         if "p" in body.names:
-            forms["volume"] = ufl.split(test)[body.names.index("p")] * body.dx()
+            forms["volume"] = body.part(test, "p")[0] * body.dx()
         self._forms = {name: compat.compile_form(mesh, form) for name, form in forms.items()}
         self.signatures = {name: form.signature() for name, form in forms.items()}
         self.kernels = sum(len(form.integrals()) for form in forms.values())

@@ -23,6 +23,7 @@ class EmbeddedFibers:
 
     Attributes:
         cell: host cell, (n,).
+        facet: local facet of the host cell, (n,).
         points: reference coordinates in the host cell, (n, q, 3).
         tangents: derivative of the reference coordinates along the segment, parameter in [0, 1],
             (n, q, 3).
@@ -35,6 +36,7 @@ class EmbeddedFibers:
     """
 
     cell: Ints
+    facet: Ints
     points: Floats
     tangents: Floats
     weights: Floats
@@ -51,6 +53,7 @@ class _Facets:
 
     Attributes:
         cell: host cells, (k,).
+        facet: their local facets, (k,).
         origin: developed coordinates (s, z) of the facet's first vertex, (k, 2).
         axes: developed edge vectors as columns, (k, 2, 2).
         base: first vertex in the cell's reference coordinates, (k, 3).
@@ -59,6 +62,7 @@ class _Facets:
     """
 
     cell: Ints
+    facet: Ints
     origin: Floats
     axes: Floats
     base: Floats
@@ -77,6 +81,7 @@ def _develop(mesh: MeshData, actuator: Actuator) -> _Facets:
     reference = reference_nodes(mesh.cell_type)[vertices][corners]
     return _Facets(
         cell=pairs[:, 0],
+        facet=pairs[:, 1],
         origin=developed[:, 0],
         axes=(developed[:, 1:] - developed[:, :1]).swapaxes(1, 2),
         base=reference[:, 0],
@@ -167,6 +172,7 @@ def embed(mesh: MeshData, actuator: Actuator, winding: Winding, q: int = 3) -> E
     speed = np.linalg.norm(_push(mesh, cell, points, tangents), axis=2)
     return EmbeddedFibers(
         cell=cell,
+        facet=facets.facet[facet],
         points=points,
         tangents=tangents,
         weights=np.tile(w, (len(cell), 1)),
@@ -214,6 +220,7 @@ def smear(mesh: MeshData, actuator: Actuator, winding: Winding) -> EmbeddedFiber
     helices, n = len(winding.hands), len(cell)
     return EmbeddedFibers(
         cell=np.tile(cell, helices),
+        facet=np.tile(facets.facet[facet], helices),
         points=np.tile(points, (helices, 1, 1)),
         tangents=np.concatenate(parts),
         weights=np.ones((helices * n, 1)),

@@ -49,5 +49,5 @@ class Elastic(Effect):
             body.coefficient({region: row[name] for region, row in self.regions.items()})
             for name in self.law.parameters
         ]
-        density = self.law.function(j ** (-2 / 3) * i1, j ** (-4 / 3) * i2, *values)
+        density = self.law.energy(j ** (-2 / 3) * i1, j ** (-4 / 3) * i2, *values)
         return density * body.dx()

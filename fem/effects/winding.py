@@ -2,32 +2,36 @@
 
 from __future__ import annotations
 
-import dataclasses
-
-import numpy as np
-
 from fem.effect import Effect
-from fem.embedded import EmbeddedFibers, Segments
+from fem.embedded import FiberPotential
 from fem.kinematics import Body
+from geometry.embed import EmbeddedFibers
 
 
-@dataclasses.dataclass
 class _Fibers(Effect):
     """Common to both windings.
 
     Args:
         segments: pieces of fiber on the mesh's winding surface.
+        stiffness: axial stiffness EA of a fiber, N.
         tension_only: slack fibers carry nothing.
+
+    Raises:
+        ValueError: a stiffness that is not positive.
     """
 
-    segments: Segments
-    tension_only: bool = False
+    def __init__(
+        self, segments: EmbeddedFibers, stiffness: float, tension_only: bool = False
+    ) -> None:
+        if not stiffness > 0:
+            raise ValueError(f"fiber stiffness {stiffness} N, expected a positive value")
+        self.segments = segments
+        self.stiffness = stiffness
+        self.tension_only = tension_only
 
-    def discrete(self, body: Body) -> EmbeddedFibers:
+    def discrete(self, body: Body) -> FiberPotential:
         """The fibers' potential on this body."""
-        if not np.all(self.segments.length > 0):
-            raise ValueError("every fiber segment needs a length above zero")
-        return EmbeddedFibers(body, self.segments, self.tension_only)
+        return FiberPotential(body, self.segments, self.stiffness, self.tension_only)
 
 
 class Winding(_Fibers):
