@@ -270,6 +270,11 @@ def create_matrix(form: Any) -> PETSc.Mat:
     return matrix
 
 
+def create_vector(form: Any) -> PETSc.Vec:
+    """A vector with ghosts for the form."""
+    return dolfinx.fem.petsc.create_vector(form)
+
+
 def assemble_scalar(form: Any) -> float:
     """This rank's part of a functional."""
     return float(dfem.assemble_scalar(form))

@@ -94,7 +94,7 @@ class Scene:
         self.signatures = {name: form.signature() for name, form in forms.items()}
         self.kernels = sum(len(form.integrals()) for form in forms.values())
         self.matrix = compat.create_matrix(self._forms["tangent"])
-        self._vector = self.matrix.createVecLeft()
+        self._vector = compat.create_vector(self._forms["residual"])
         self._det_f = body.det_f()
         self.volume_scale = 1.0
         """Norm of ∫ φ dX over the pressure field's test functions, mm³."""
