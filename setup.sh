@@ -7,7 +7,8 @@ PYTHON=/usr/bin/python3
 STAMP=.venv/setup.stamp
 mapfile -t packages < apt-packages.txt
 # The folder is part of the key: a moved .venv has dead paths inside.
-key=$({ pwd; cat pyproject.toml constraints.txt apt-packages.txt setup.sh; } | sha256sum)
+inputs=(pyproject.toml requirements.txt constraints.txt apt-packages.txt setup.sh)
+key=$({ pwd; cat "${inputs[@]}"; } | sha256sum)
 
 missing_packages() {
     comm -23 <(printf '%s\n' "${packages[@]}" | sort) \
@@ -19,14 +20,28 @@ fail() {
     exit 1
 }
 
+apt() {
+    # A dpkg that asks, or that waits for the disk after every file, has no place here.
+    local options=(-q -y -o Dpkg::Use-Pty=0 -o Dpkg::Options::=--force-unsafe-io)
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+        apt-get "${options[@]}" --no-install-recommends "$@" > "$log" 2>&1 ||
+        { tail -n 20 "$log" >&2; return 1; }
+}
+
+pip() {
+    .venv/bin/python -m pip install -qq --disable-pip-version-check --no-compile "$@"
+}
+
 command -v dpkg-query >/dev/null || fail "this is not a Debian machine; Debian 12 is what is supported."
 missing=$(missing_packages)
 if [[ -z $missing && -x .venv/bin/fiberbend && -f $STAMP && $(<"$STAMP") == "$key" ]]; then
     exit 0
 fi
 
+log=$(mktemp)
+trap 'rm -f "$log"; kill $(jobs -p) 2>/dev/null || true' EXIT
+as_root=()
 if [[ -n $missing ]]; then
-    as_root=()
     if [[ $(id -u) -ne 0 ]]; then
         if ! command -v sudo >/dev/null || ! { sudo -n true 2>/dev/null || [[ -t 0 ]]; }; then
             fail "these Debian packages are missing, and installing them needs root or sudo. Let an
@@ -34,22 +49,26 @@ administrator run:  apt-get install --no-install-recommends $(echo $missing)"
         fi
         as_root=(sudo)
     fi
-    echo "setup: installing Debian packages:" $missing
-    # A dpkg that asks, or that waits for the disk after every file, has no place here.
-    apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o Dpkg::Use-Pty=0)
-    "${apt[@]}" update || fail "apt-get update failed; is the network up?"
-    "${apt[@]}" install -y --no-install-recommends \
-        -o Dpkg::Options::=--force-unsafe-io $missing ||
-        fail "apt-get could not install: $(echo $missing)"
+    echo "setup: installing Debian packages, some minutes:" $missing
+    apt update || fail "apt-get update failed; is the network up?"
+fi
+if [[ $missing == *python3-venv* ]]; then
+    apt install python3-venv || fail "apt-get could not install python3-venv."
 fi
 
 echo "setup: installing Python packages into .venv"
 if ! grep -qsF "$PWD/.venv" .venv/pyvenv.cfg || ! .venv/bin/python -c '' 2>/dev/null; then
     $PYTHON -m venv --clear --system-site-packages .venv
 fi
-.venv/bin/python -m pip install -qq --disable-pip-version-check --no-compile \
-    --constraint constraints.txt --editable '.[dev]' ||
-    fail "pip could not install the Python packages."
+# Beside apt, which takes minutes: a complete list without dependencies needs nothing of Debian's.
+pip --no-deps --requirement requirements.txt &
+python_packages=$!
+if [[ -n $missing ]]; then
+    apt install $missing || fail "apt-get could not install: $(echo $missing)"
+fi
+wait $python_packages || fail "pip could not install the Python packages."
+pip --no-build-isolation --constraint constraints.txt --editable '.[dev]' ||
+    fail "pip could not install fiberbend."
 .venv/bin/python - <<'CHECK' || fail "pip brought its own numpy or scipy; dolfinx needs Debian's."
 import numpy, scipy, sys
 sys.exit(any(".venv" in module.__file__ for module in (numpy, scipy)))
