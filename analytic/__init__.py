@@ -1,0 +1,1 @@
+"""Closed-form models: what is known without finite elements."""
