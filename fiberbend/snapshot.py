@@ -1,0 +1,79 @@
+"""What a state of a run hands to files and pictures: plain arrays, free of the solver."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+
+from geometry.embed import EmbeddedFibers
+from geometry.mesh import Floats, MeshData
+from materials.laws import Material
+
+
+@dataclasses.dataclass(frozen=True)
+class Scenery:
+    """What all states of a run share.
+
+    Attributes:
+        mesh: hexahedra or tetrahedra of the body.
+        materials: material of each region.
+        fibers: segments of the winding, or None without one.
+        smeared: True when the segments stand for a membrane and form no lines.
+        title: title of the case.
+
+    Raises:
+        ValueError: a region without material, or a mesh that is not a solid.
+    """
+
+    mesh: MeshData
+    materials: Mapping[str, Material]
+    fibers: EmbeddedFibers | None
+    smeared: bool
+    title: str
+
+    def __post_init__(self) -> None:
+        if self.mesh.nodes.shape[1] != 3:
+            raise ValueError("the mesh of a section has no fields in space: expected a solid")
+        bare = sorted(set(self.mesh.regions) - set(self.materials))
+        if bare:
+            raise ValueError(f"region {bare[0]!r} has no material")
+
+    @property
+    def lines(self) -> EmbeddedFibers | None:
+        """The segments that form lines, or None."""
+        return None if self.smeared else self.fibers
+
+
+@dataclasses.dataclass(frozen=True)
+class Snapshot:
+    """One converged state of n nodes and m cells with k nodes each.
+
+    Attributes:
+        label: short name for files, such as "90deg"; letters, digits, ".", "-" and "_".
+        step: number of the load step.
+        pressure_kpa: chamber pressure in kPa.
+        angle_deg: bending angle in degrees.
+        displacement: by input node number, (n, 3), mm.
+        multiplier: p of W = ψ(Ī1, Ī2) + p (J − 1) at the nodes of each cell, (m, k), MPa.
+        fiber_force: axial force of each segment, (segments,), N, or None without a winding.
+
+    Raises:
+        ValueError: a label that no file can bear.
+    """
+
+    label: str
+    step: int
+    pressure_kpa: float
+    angle_deg: float
+    displacement: Floats
+    multiplier: Floats
+    fiber_force: Floats | None
+
+    def __post_init__(self) -> None:
+        if not self.label or not all(c.isalnum() or c in ".-_" for c in self.label):
+            raise ValueError(f"label {self.label!r}: expected letters, digits, '.', '-' or '_'")
+
+    @property
+    def caption(self) -> str:
+        """Pressure and angle in words."""
+        return f"P = {self.pressure_kpa:.1f} kPa,  θ = {self.angle_deg:.0f}°"
