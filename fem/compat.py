@@ -278,3 +278,13 @@ def create_vector(form: Any) -> PETSc.Vec:
 def assemble_scalar(form: Any) -> float:
     """This rank's part of a functional."""
     return float(dfem.assemble_scalar(form))
+
+
+def versions() -> dict[str, str]:
+    """Versions of what computes."""
+    major, minor, micro = PETSc.Sys.getVersion()
+    return {
+        "dolfinx": dolfinx.__version__,
+        "petsc": f"{major}.{minor}.{micro}",
+        "numpy": np.__version__,
+    }

@@ -72,9 +72,7 @@ class Domain:
 
     def dx(self) -> Any:
         """Measure of the whole body."""
-        return ufl.Measure(
-            "dx", domain=self.mesh, metadata={"quadrature_degree": self.degree}
-        )
+        return ufl.Measure("dx", domain=self.mesh, metadata={"quadrature_degree": self.degree})
 
     def ds(self, name: str) -> Any:
         """Measure of a named surface on the boundary.
@@ -117,9 +115,7 @@ class Domain:
             cells = pairs[pairs[:, 1] == facet, 0]
             if not len(cells):
                 continue
-            points, quadrature, spans = compat.facet_quadrature(
-                data.cell_type, facet, self.degree
-            )
+            points, quadrature, spans = compat.facet_quadrature(data.cell_type, facet, self.degree)
             values, gradients = compat.tabulate_gradient(data.cell_type, points)
             x = data.nodes[data.cells[cells]]
             jacobian = np.einsum("cai,qad,de->cqie", x, gradients, spans, optimize=True)

@@ -32,7 +32,14 @@ class Constraint:
 
 
 class Discrete(Protocol):
-    """A potential with its own energy, vector and matrix instead of a UFL density."""
+    """A potential with its own energy, vector and matrix instead of a UFL density.
+
+    Attributes:
+        index: global number of every piece that this rank holds, (n,); what it remembers of a
+            step is one value a piece.
+    """
+
+    index: npt.NDArray[np.int64]
 
     def update(self, w: Floats) -> None:
         """Take the local coefficients (owned and ghosts) of the fields as the present state."""

@@ -56,6 +56,7 @@ class Body:
             domain.mesh, [element for element, count in elements.values() for _ in range(count)]
         )
         self.w = dfem.Function(self.space)
+        self._scratch = dfem.Function(self.space)
         self._slices: dict[str, range] = {}
         self._dofs: dict[str, Dofs] = {}
         first = 0
@@ -112,7 +113,7 @@ class Body:
         return ufl.SpatialCoordinate(self.domain.mesh) + self.u
 
     @property
-    def F(self) -> Any:  # noqa: N802
+    def F(self) -> Any:
         """Deformation gradient, a UFL 3×3 tensor."""
         return ufl.Identity(3) + ufl.grad(self.u)
 
@@ -146,6 +147,14 @@ class Body:
 
     # --- what measures and predictors ask for ---------------------------------------------
 
+    def with_ghosts(self, owned: Floats) -> Floats:
+        """Local coefficients, ghosts included, of owned ones; collective."""
+        scratch = self._scratch.x
+        scratch.array[: self.owned] = owned
+        scratch.scatter_forward()
+        values: Floats = scratch.array.copy()
+        return values
+
     def dofs(self, field: str) -> Dofs:
         """Local dofs of a field for every local cell, (cells, nodes, components), basix order."""
         return self._dofs[field]
@@ -164,6 +173,7 @@ class Body:
         """A function that returns the least det F over the quadrature points of all ranks."""
         points = compat.quadrature_points(self.domain.data.cell_type, self.domain.degree)
         values = compat.PointValues(self.domain.mesh, ufl.det(self.F), points)
+
         def least() -> float:
             here = values()
             mine = float(here.min()) if here.size else np.inf

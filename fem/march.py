@@ -2,111 +2,17 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Sequence
-from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
-from fem.frames import Frames, Shape
+from fem.frames import Frames
 from fem.newton import Newton, Outcome
+from fem.program import Functional, Ramp, Report, Rules, State
 from fem.scene import Scene
 
 Floats = npt.NDArray[np.float64]
-
-
-class Functional(Protocol):
-    """A scalar measure with its gradient, such as the bending angle."""
-
-    def value(self) -> float: ...
-    def row(self) -> Floats: ...
-
-
-@dataclasses.dataclass
-class State:
-    """A converged state, this rank's part.
-
-    Attributes:
-        w: owned coefficients.
-        scalars: values of the global scalars.
-        measures: values that ramps and requests refer to, by name.
-        shape: rod description of the displacement.
-        discrete: memory of the discrete potentials, by effect.
-    """
-
-    w: Floats
-    scalars: dict[str, float]
-    measures: dict[str, float]
-    shape: Shape
-    discrete: dict[str, dict[str, Floats]]
-
-
-@dataclasses.dataclass(frozen=True)
-class Ramp:
-    """One load: a scalar driven to a target, directly or through its conjugate.
-
-    Attributes:
-        scalar: name of the global scalar, such as 'pressure'.
-        target: its final value, or its conjugate's (the chamber volume).
-        drive: 'value', or 'conjugate' to find the scalar so that its conjugate follows the ramp.
-        first: first increment of the driven quantity; None: from the linear response.
-        largest: greatest increment; None: a fifth of the ramp.
-        stops: values of the driven quantity to be hit exactly.
-        at: values of the followed functional to be hit exactly.
-        until: value of the followed functional at which the ramp ends; None: at the target.
-    """
-
-    scalar: str
-    target: float
-    drive: str = "value"
-    first: float | None = None
-    largest: float | None = None
-    stops: tuple[float, ...] = ()
-    at: tuple[float, ...] = ()
-    until: float | None = None
-
-
-@dataclasses.dataclass(frozen=True)
-class Rules:
-    """Incrementation as in Abaqus and CalculiX.
-
-    Attributes:
-        easy: iterations up to which the next increment grows by `grow`.
-        slow: iterations from which it shrinks by `shrink`.
-        cut: factor after a failed increment.
-        cutbacks: consecutive failed increments after which the march gives up.
-        turn: greatest change of the followed functional that the predictor may aim at.
-    """
-
-    easy: int = 5
-    grow: float = 1.5
-    slow: int = 8
-    shrink: float = 0.6
-    cut: float = 0.25
-    cutbacks: int = 6
-    turn: float = np.deg2rad(45.0)
-    first_turn: float = np.deg2rad(20.0)
-
-
-@dataclasses.dataclass
-class Report:
-    """How a march ended.
-
-    Attributes:
-        status: 'converged', or 'failed'.
-        reason: cause of the failure, or empty.
-        steps: converged increments.
-        iterations: Newton iterations, failed increments included.
-        cutbacks: failed increments.
-    """
-
-    status: str = "converged"
-    reason: str = ""
-    steps: int = 0
-    iterations: int = 0
-    cutbacks: int = 0
-    per_step: list[int] = dataclasses.field(default_factory=list)
 
 
 class _Conjugate:
@@ -168,7 +74,10 @@ class March:
         self.warn = warn
         self.states: list[State] = []
         self.report = Report()
+        self.ramp = 0
+        """Number of the ramp under way."""
         self.increment: float | None = None
+        """Increment of the driven quantity to try next; None at the start of a ramp."""
 
     # --- states --------------------------------------------------------------------------------
 
@@ -204,9 +113,7 @@ class March:
         self.newton.factor.renew()
         rate = -self.newton.solve_linear(self.scene.load(scalar))
         body = self.scene.body
-        motion = np.zeros(body.local)
-        motion[: body.owned] = rate
-        nodal = motion[body.node_dofs[body.owned_nodes]]
+        nodal = body.with_ghosts(rate)[body.node_dofs[body.owned_nodes]]
         top = float(np.max(np.abs(nodal), initial=0.0))
         largest = max(self.scene.domain.comm.allgather(top))
         step = 1e-5 * float(self.frames.z[-1] - self.frames.z[0]) / max(largest, 1e-300)
@@ -279,9 +186,11 @@ class March:
         """March through all ramps in order, earlier loads held."""
         if not self.states:
             self.start()
-        for ramp in ramps:
+        for ramp in ramps[self.ramp :]:
             if not self._ramp(ramp):
                 break
+            self.ramp += 1
+            self.increment = None
         return self.report
 
     def _ramp(self, ramp: Ramp) -> bool:
@@ -290,12 +199,14 @@ class March:
         span = ramp.target - now
         if span == 0:
             return True
-        seed = self._tangent_state(ramp.scalar)
-        size = abs(ramp.first) if ramp.first else self._first_size(seed, drive, abs(span))
-        largest = abs(ramp.largest) if ramp.largest else abs(span) / 5
+        largest = abs(ramp.largest) if ramp.largest else np.inf
         sign = np.sign(span)
-        size = min(size, largest, abs(span))
-        self.states = [*self.states[:-1], seed, self.states[-1]]
+        if self.increment is None:
+            seed = self._tangent_state(ramp.scalar)
+            size = abs(ramp.first) if ramp.first else self._first_size(seed, drive, abs(span))
+            self.states = [seed, self.states[-1]]
+            self.increment = min(size, largest, abs(span))
+        size = self.increment
         failures = 0
         insist = False
         pending = sorted(ramp.at)
@@ -309,6 +220,7 @@ class March:
                 return True
             stops = [s for s in (*ramp.stops, ramp.target) if sign * (s - now) > 1e-9 * abs(span)]
             nearest = min(stops, key=lambda s: abs(s - now))
+            size = min(size, self._turn_limit(drive))
             target = now + sign * size
             if sign * (target - nearest) > -0.2 * size:
                 target = nearest
@@ -351,13 +263,22 @@ class March:
             self.states = [*self.states[-2:], new]
             self.report.steps += 1
             self.report.per_step.append(outcome.iterations)
-            self.on_step(new, outcome)
             if outcome.iterations <= self.rules.easy:
                 size = min(size * self.rules.grow, largest)
             elif outcome.iterations >= self.rules.slow:
                 size *= self.rules.shrink
+            self.increment = size
+            self.on_step(new, outcome)
             if kind == "followed" and ramp.until is not None and aim >= ramp.until - 1e-9:
                 return True
+
+    def _turn_limit(self, drive: str) -> float:
+        """Increment that turns the followed functional by `turn`, from the last two states."""
+        if self.followed is None or len(self.states) < 3:
+            return np.inf
+        a, b = (state.measures for state in self.states[-2:])
+        turned = abs(b["followed"] - a["followed"])
+        return float(abs(b[drive] - a[drive]) * self.rules.turn / max(turned, 1e-12))
 
     def _due(self, pending: list[float], state: State) -> float | None:
         """The next requested value of the followed functional."""

@@ -122,28 +122,68 @@ def mirror_factor(domain: Domain) -> int:
     return 2 if domain.data.half else 1
 
 
-def reaction(scene: Scene, name: str, residual: Floats | None = None) -> Resultant:
-    """What a support does to the body: the residual at the dofs it holds.
+def resultant(scene: Scene, vector: Floats, held: npt.NDArray[np.int32] | None) -> Resultant:
+    """Force and moment of owned nodal forces at the deformed positions, of the whole body.
 
-    Forces act at deformed positions. In a half model the mirror image is added; the mirror plane
-    itself is internal to the whole body and must not be asked for.
+    In a half model the mirror image is added.
 
     Args:
-        scene: the scene at an equilibrium.
-        name: name of the constraint.
-        residual: owned residual, if it is at hand.
+        scene: gives positions.
+        vector: owned entries of a force vector, N.
+        held: local dofs to which it is restricted, or None for all.
     """
     body = scene.body
-    if residual is None:
-        residual, _ = scene.residual()
-    held = np.zeros(body.local, dtype=bool)
-    held[scene.held(name)] = True
+    mask = np.full(body.local, held is None)
+    if held is not None:
+        mask[held] = True
     dofs = body.node_dofs[body.owned_nodes]
-    here = held[dofs]
-    force = np.where(here, residual[dofs], 0.0)
+    force = np.where(mask[dofs], vector[dofs], 0.0)
     x = body.domain.data.nodes[body.owned_nodes] + body.w.x.array[dofs]
     total = np.concatenate([force.sum(axis=0), np.cross(x, force).sum(axis=0)])
     total = body.domain.comm.allreduce(total, MPI.SUM)
     if body.domain.data.half:
         total *= [0, 2, 2, 2, 0, 0]
     return Resultant(total[:3], total[3:])
+
+
+@dataclasses.dataclass(frozen=True)
+class Balance:
+    """Supports and loads at an equilibrium.
+
+    Attributes:
+        supports: what each support does to the body; a mirror plane is internal and not among
+            them.
+        force: what is left of all forces, relative to the greatest support force.
+        moment: what is left of all moments about the origin, likewise.
+    """
+
+    supports: dict[str, Resultant]
+    force: float
+    moment: float
+
+
+def balance(scene: Scene, mirror: str = "symmetry") -> Balance:
+    """Reactions by the residual, and how far they and the loads are from balance.
+
+    A pressurised closed chamber has no resultant, so that the supports must balance the other
+    loads, and each other without any.
+    """
+    residual, _ = scene.residual()
+    supports = {
+        name: resultant(scene, residual, scene.held(name))
+        for name in scene.supports
+        if name != mirror
+    }
+    total = Resultant(np.zeros(3), np.zeros(3))
+    for support in supports.values():
+        total += support
+    for name in scene.body.scalars:
+        load = -scene.scalar(name) * scene.load(name, constrained=True)
+        total += resultant(scene, load, None)
+    forces = [float(np.linalg.norm(s.force)) for s in supports.values()]
+    moments = [float(np.linalg.norm(s.moment)) for s in supports.values()]
+    return Balance(
+        supports,
+        float(np.linalg.norm(total.force)) / max([*forces, 1e-30]),
+        float(np.linalg.norm(total.moment)) / max([*moments, 1e-30]),
+    )

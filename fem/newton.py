@@ -25,15 +25,31 @@ class Problem(Protocol):
     volumetric: npt.NDArray[np.bool_]
     volume_scale: float
     discrete: dict[str, Any]
+    body: Any
 
-    def set(self, w: Floats) -> None: ...
-    def set_scalar(self, name: str, value: float) -> None: ...
-    def scalar(self, name: str) -> float: ...
-    def residual(self) -> tuple[Floats, float]: ...
-    def assemble_tangent(self) -> PETSc.Mat: ...
-    def load(self, name: str) -> Floats: ...
-    def det_f(self) -> float: ...
-    def norm(self, values: Floats) -> float: ...
+    def set(self, w: Floats) -> None:
+        """Take the owned coefficients as the state."""
+
+    def set_scalar(self, name: str, value: float) -> None:
+        """Set a global scalar."""
+
+    def scalar(self, name: str) -> float:
+        """Value of a global scalar."""
+
+    def residual(self) -> tuple[Floats, float]:
+        """R, owned part, and a scale of the forces in it."""
+
+    def assemble_tangent(self) -> PETSc.Mat:
+        """K at the present state."""
+
+    def load(self, name: str) -> Floats:
+        """∂R/∂q of a scalar, owned part."""
+
+    def det_f(self) -> float:
+        """Least det F over all ranks."""
+
+    def norm(self, values: Floats) -> float:
+        """Euclidean norm over all ranks."""
 
 
 class Closure(Protocol):
@@ -58,7 +74,7 @@ class Settings:
     """
 
     tolerance: float = 1e-8
-    iterations: int = 14
+    iterations: int = 11
     hybrid: bool = True
 
 
@@ -232,9 +248,7 @@ class _Solve:
         a = self.newton.solve_linear(r_w)
         q = np.zeros(0)
         if self.unknown:
-            q = np.linalg.solve(
-                self.schur, r_q - np.array([self.dot(row, a) for row in self.rows])
-            )
+            q = np.linalg.solve(self.schur, r_q - np.array([self.dot(row, a) for row in self.rows]))
             for value, spread in zip(q, self.spread, strict=True):
                 a -= value * spread
         self.join(y, a, q)
@@ -245,12 +259,7 @@ class _Solve:
         """Tell the discrete potentials the correction, ghosts included."""
         if not self.newton.settings.hybrid or not self.problem.discrete:
             return
-        function = self.problem.body.w  # type: ignore[attr-defined]
-        keep = function.x.array.copy()
-        function.x.array[: self.owned] = correction
-        function.x.scatter_forward()
-        full = function.x.array.copy()
-        function.x.array[:] = keep
+        full = self.problem.body.with_ghosts(correction)
         for discrete in self.problem.discrete.values():
             discrete.predict(full)
 

@@ -206,10 +206,11 @@ class Scene:
         total = float(np.sqrt(self.domain.comm.allreduce(norm**2, MPI.SUM)))
         return r, max(reaction, total)
 
-    def load(self, name: str) -> Floats:
-        """∂R/∂q of a global scalar on the free dofs, owned part."""
+    def load(self, name: str, constrained: bool = False) -> Floats:
+        """∂R/∂q of a global scalar, owned part; zero on constrained dofs unless they are wanted."""
         vector, _ = self._sum(self._forms[f"load {name}"], ())
-        vector[~self.free[: self.body.owned]] = 0.0
+        if not constrained:
+            vector[~self.free[: self.body.owned]] = 0.0
         return vector
 
     def assemble_tangent(self) -> PETSc.Mat:
@@ -225,6 +226,11 @@ class Scene:
     def norm(self, values: Floats) -> float:
         """Euclidean norm over all ranks of owned values."""
         return float(np.sqrt(self.domain.comm.allreduce(float(values @ values), MPI.SUM)))
+
+    @property
+    def supports(self) -> list[str]:
+        """Names of what holds dofs."""
+        return sorted(self._held)
 
     def held(self, name: str) -> npt.NDArray[np.int32]:
         """Local dofs that the constraints of this name hold, ghosts included."""

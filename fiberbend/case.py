@@ -121,7 +121,8 @@ class Solver(Model):
     """Steps and tolerance of the solution."""
 
     first_step: Pressure | None = None
-    """First step of the pressure, 2 kPa unless said; under pressure control only."""
+    """First step of the pressure, from the linear response unless said; under pressure control
+    only."""
     max_step: Pressure | None = None
     """Greatest step of the pressure; without limit unless said; under pressure control only."""
     max_cutbacks: int = Field(default=8, ge=0, le=100)

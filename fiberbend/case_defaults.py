@@ -6,11 +6,9 @@ from typing import Any
 
 from fiberbend import bridge
 from fiberbend.case import Case
-from fiberbend.case_effects import PressureEffect, WindingEffect
+from fiberbend.case_effects import WindingEffect
 
 DEFAULT_LINES = 5
-DEFAULT_FIRST_STEP = 0.002
-"""MPa; the first step from rest is the hardest."""
 
 
 def complete(case: Case) -> Case:
@@ -19,12 +17,7 @@ def complete(case: Case) -> Case:
         _complete_winding(effect) if isinstance(effect, WindingEffect) else effect
         for effect in case.effects
     )
-    solver = case.solver
-    pressure = case.find(PressureEffect)
-    if pressure is not None and pressure.to is not None and solver.first_step is None:
-        first = min(DEFAULT_FIRST_STEP, abs(pressure.to), solver.max_step or DEFAULT_FIRST_STEP)
-        solver = solver.model_copy(update={"first_step": first})
-    return case.model_copy(update={"effects": effects, "solver": solver})
+    return case.model_copy(update={"effects": effects})
 
 
 def _complete_winding(winding: WindingEffect) -> WindingEffect:

@@ -20,9 +20,7 @@ class Gravity(Effect):
 
     scalar = "gravity"
 
-    def __init__(
-        self, density: dict[str, float], acceleration: tuple[float, float, float]
-    ) -> None:
+    def __init__(self, density: dict[str, float], acceleration: tuple[float, float, float]) -> None:
         self.density = density
         self.acceleration = acceleration
 

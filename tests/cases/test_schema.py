@@ -66,7 +66,6 @@ def test_defaults_appear_in_the_resolved_case(data: dict[str, Any]) -> None:
         "symmetry": "auto",
     }
     assert resolved["model"] == "auto"
-    assert resolved["solver"]["first_step"] == "2 kPa"
     winding = resolved["effects"][1]["winding"]
     assert (winding["width"], winding["lines"], winding["fiber"]) == ("0.38 mm", 5, "kevlar")
 

@@ -1,0 +1,110 @@
+"""What a march is told, what it remembers and what it reports."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from fem.frames import Shape
+
+Floats = npt.NDArray[np.float64]
+
+
+class Functional(Protocol):
+    """A scalar measure with its gradient, such as the bending angle."""
+
+    def value(self) -> float:
+        """At the present state."""
+
+    def row(self) -> Floats:
+        """∂/∂w on the owned dofs."""
+
+
+@dataclasses.dataclass
+class State:
+    """A converged state, this rank's part.
+
+    Attributes:
+        w: owned coefficients.
+        scalars: values of the global scalars.
+        measures: values that ramps and requests refer to, by name.
+        shape: rod description of the displacement.
+        discrete: memory of the discrete potentials, by effect.
+    """
+
+    w: Floats
+    scalars: dict[str, float]
+    measures: dict[str, float]
+    shape: Shape
+    discrete: dict[str, dict[str, Floats]]
+
+
+@dataclasses.dataclass(frozen=True)
+class Ramp:
+    """One load: a scalar driven to a target, directly or through its conjugate.
+
+    Attributes:
+        scalar: name of the global scalar, such as 'pressure'.
+        target: its final value, or its conjugate's (the chamber volume).
+        drive: 'value', or 'conjugate' to find the scalar so that its conjugate follows the ramp.
+        first: first increment of the driven quantity; None: from the linear response.
+        largest: greatest increment; None: no limit but the convergence.
+        stops: values of the driven quantity to be hit exactly.
+        at: values of the followed functional to be hit exactly.
+        until: value of the followed functional at which the ramp ends; None: at the target.
+    """
+
+    scalar: str
+    target: float
+    drive: str = "value"
+    first: float | None = None
+    largest: float | None = None
+    stops: tuple[float, ...] = ()
+    at: tuple[float, ...] = ()
+    until: float | None = None
+
+
+@dataclasses.dataclass(frozen=True)
+class Rules:
+    """Incrementation as in Abaqus and CalculiX.
+
+    Attributes:
+        easy: iterations up to which the next increment grows by `grow`.
+        slow: iterations from which it shrinks by `shrink`.
+        cut: factor after a failed increment.
+        cutbacks: consecutive failed increments after which the march gives up.
+        turn: greatest change of the followed functional an increment may aim at.
+        first_turn: the same for an increment from the linear response.
+    """
+
+    easy: int = 5
+    grow: float = 1.5
+    slow: int = 8
+    shrink: float = 0.6
+    cut: float = 0.25
+    cutbacks: int = 6
+    turn: float = np.deg2rad(60.0)
+    first_turn: float = np.deg2rad(20.0)
+
+
+@dataclasses.dataclass
+class Report:
+    """How a march ended.
+
+    Attributes:
+        status: 'converged', or 'failed'.
+        reason: cause of the failure, or empty.
+        steps: converged increments.
+        iterations: Newton iterations, failed increments included.
+        cutbacks: failed increments.
+    """
+
+    status: str = "converged"
+    reason: str = ""
+    steps: int = 0
+    iterations: int = 0
+    cutbacks: int = 0
+    per_step: list[int] = dataclasses.field(default_factory=list)

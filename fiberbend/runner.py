@@ -1,0 +1,332 @@
+"""A run from a case to its folder: mesh, scene, march, results."""
+
+from __future__ import annotations
+
+import dataclasses
+import resource as usage
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from fem.checkpoint import Archive
+from fem.domain import Domain
+from fem.embedded import FiberPotential
+from fem.frames import Frames
+from fem.march import March
+from fem.measures import BendingAngle
+from fem.newton import Newton, Outcome, Settings
+from fem.program import Ramp, Report, Rules, State
+from fem.scene import Scene
+from fiberbend import bridge, resume
+from fiberbend.case import Case
+from fiberbend.case_effects import BlockedTipEffect, WindingEffect
+from fiberbend.choice import choose_half, choose_model
+from fiberbend.history import Recorder
+from fiberbend.plan import winding_remark
+from fiberbend.progress import Progress
+from fiberbend.registry import build, helix
+from fiberbend.runfolder import RunFolder
+from fiberbend.snapshot import Scenery, Snapshot
+from fiberbend.summary import blocked_tip, versions
+from geometry.gmsh_body import build_body
+from geometry.mesh import MeshData
+
+MESH = "mesh.npz"
+
+
+@dataclasses.dataclass(frozen=True)
+class RunResult:
+    """What a run has computed.
+
+    Attributes:
+        status: 'converged', 'stopped' (a requested output was not reached) or 'failed'.
+        reason: why not converged; empty otherwise.
+        rows: rows of history.csv, the first at rest.
+        run: content of run.json.
+        folder: where the results are, or None.
+    """
+
+    status: str
+    reason: str
+    rows: list[dict[str, Any]]
+    run: dict[str, Any]
+    folder: Path | None
+
+    def last(self, column: str) -> float:
+        """Value of a column at the end."""
+        return float(self.rows[-1][column])
+
+
+def run_case(
+    case: Case,
+    out: Path | None,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+    again: bool = False,
+) -> RunResult:
+    """Solve a case; collective over MPI.COMM_WORLD.
+
+    Args:
+        case: the case.
+        out: run folder, or None to write nothing.
+        overwrite: replace an earlier run.
+        progress: what is told meanwhile; silent unless given.
+        again: go on from the checkpoint in the folder.
+
+    Raises:
+        CaseError: the folder cannot be used.
+        MeshError: gmsh failed.
+    """
+    comm = MPI.COMM_WORLD
+    progress = progress or Progress(quiet=True)
+    folder = None
+    if out is not None and again:
+        folder = RunFolder.resume(out, case, comm)
+    elif out is not None:
+        folder = RunFolder.create(out, case, overwrite, comm)
+    return _Run(case, folder, progress, comm).go(again)
+
+
+def _on_rank_0(comm: MPI.Comm, action: Callable[[], Any]) -> Any:
+    """Result of an action of rank 0 on every rank, or its error on every rank."""
+    outcome: tuple[Any, Exception | None] = (None, None)
+    if comm.rank == 0:
+        try:
+            outcome = (action(), None)
+        except Exception as error:
+            outcome = (None, error)
+    value, problem = comm.bcast(outcome)
+    if problem is not None:
+        raise problem
+    return value
+
+
+class _Run:
+    """The steps of one run and what they share."""
+
+    def __init__(
+        self, case: Case, folder: RunFolder | None, progress: Progress, comm: MPI.Comm
+    ) -> None:
+        self.case, self.folder, self.progress, self.comm = case, folder, progress, comm
+        self.blocked = case.find(BlockedTipEffect)
+        self.snapshots: list[Snapshot] = []
+
+    def go(self, again: bool) -> RunResult:
+        """Mesh, compile, solve, write."""
+        self.progress.phase("mesh")
+        mesh = _on_rank_0(self.comm, lambda: self._mesh(again))
+        self.progress.phase("compile")
+        self.parts = build(self.case, mesh)
+        self.scene = Scene(Domain(mesh, self.comm), self.parts.effects)
+        self.frames = Frames(self.scene.body)
+        self.archive = Archive(self.scene, self.frames)
+        solver = self.case.solver
+        self.newton = Newton(self.scene, self.comm, Settings(tolerance=solver.tolerance))
+        self.march = March(
+            self.scene,
+            self.newton,
+            self.frames,
+            BendingAngle(self.scene.body, self.frames),
+            Rules(cutbacks=solver.max_cutbacks),
+            self._on_step,
+            self.progress.message,
+        )
+        self.march.start()
+        self.recorder = Recorder(self.scene, self.blocked is not None, self.march.states[0], [])
+        if again and self.folder is not None:
+            self.snapshots = resume.load(self.folder, self.archive, self.march, self.recorder)
+            self.progress.message(f"resumed after step {self.recorder.rows[-1]['step']}")
+        self._remark()
+        self.progress.phase("solve")
+        report = self.march.run(self.parts.ramps)
+        status, reason = self._status(report)
+        self.progress.phase("output")
+        self._snapshot("last")
+        run = self._write(status, reason, report)
+        if self.folder is not None and self.comm.rank == 0:
+            self._draw(status, reason)
+            run["wall_s"] = self._wall()
+            self.folder.write_run(**run)
+        self.comm.barrier()
+        path = self.folder.path if self.folder else None
+        return RunResult(status, reason, self.recorder.rows, run, path)
+
+    # --- mesh ----------------------------------------------------------------------------------
+
+    def _mesh(self, again: bool) -> MeshData:
+        folder, case = self.folder, self.case
+        if folder is not None and again:
+            return MeshData.load(folder.path / MESH)
+        half, _ = choose_half(case)
+        actuator = bridge.dimensions(case.actuator)
+        winding = case.find(WindingEffect)
+        curves = None
+        if winding is not None:
+            helices = helix(winding)
+            turns = int(np.ceil(actuator.length / winding.pitch)) * 24
+            curves = [helices.points(actuator, curve, turns)[0] for curve in range(helices.curves)]
+        mesh = build_body(
+            actuator,
+            bridge.mesh_size(case.mesh, half),
+            bridge.strips(self.blocked) if self.blocked else None,
+            curves,
+            folder.path / "actuator.msh" if folder else None,
+        )
+        if folder is not None:
+            mesh.save(folder.path / MESH)
+        return mesh
+
+    def _remark(self) -> None:
+        remark = winding_remark(self.case)
+        if remark is not None and "NOT" in remark:
+            self.progress.message(f"winding {remark}")
+
+    # --- steps ---------------------------------------------------------------------------------
+
+    def _on_step(self, state: State, outcome: Outcome) -> None:
+        row = self.recorder.add(state, outcome, self.newton.factor)
+        self.progress.step(
+            row["step"],
+            self._fraction(state),
+            row["pressure_kPa"],
+            row["angle_deg"],
+            outcome.iterations,
+        )
+        label = self._requested(state)
+        if label:
+            self._snapshot(label)
+        if self.folder is not None:
+            resume.save(self.folder, self.archive, self.march, self.recorder.rows)
+
+    def _fraction(self, state: State) -> float:
+        """Part of all ramps that is done."""
+        ramps = self.parts.ramps
+        ramp = ramps[self.march.ramp]
+        done = _share(ramp, state)
+        return (self.march.ramp + done) / len(ramps)
+
+    def _requested(self, state: State) -> str:
+        """Label of the requested output that this state is, or nothing."""
+        angle = state.measures["followed"]
+        for goal in self.case.output.at_angles:
+            if abs(angle - goal) < 1e-6:
+                return f"{np.rad2deg(goal):03.0f}deg"
+        pressure = state.scalars.get("pressure", 0.0)
+        for goal in self.case.output.at_pressures:
+            if abs(pressure - goal) < 1e-9 * max(1.0, abs(goal)):
+                return f"{1e3 * goal:g}kPa"
+        return ""
+
+    def _snapshot(self, label: str) -> None:
+        """Keep the present state for fields and pictures; collective."""
+        output = self.case.output
+        if self.folder is None or not (output.fields or output.pictures):
+            return
+        row = self.recorder.rows[-1]
+        if label == "last" and any(s.step == row["step"] for s in self.snapshots):
+            return
+        displacement = self.archive.displacement()
+        multiplier = self.archive.multiplier()
+        force = None
+        for key, discrete in self.scene.discrete.items():
+            if isinstance(discrete, FiberPotential):
+                force = self.archive.forces(key)
+        if displacement is None or multiplier is None:
+            multiplier = np.zeros((0, 0))
+            displacement = np.zeros((0, 3))
+        shot = Snapshot(
+            label=label,
+            step=row["step"],
+            pressure_kpa=row["pressure_kPa"],
+            angle_deg=row["angle_deg"],
+            displacement=displacement,
+            multiplier=multiplier,
+            fiber_force=force,
+        )
+        self.snapshots.append(shot)
+        arrays = {k: v for k, v in vars(shot).items() if v is not None}
+        self.folder.write_arrays(f"snapshots/{label}.npz", **arrays)
+
+    # --- results -------------------------------------------------------------------------------
+
+    def _status(self, report: Report) -> tuple[str, str]:
+        if report.status == "failed":
+            row = self.recorder.rows[-1]
+            return "failed", (
+                f"{report.reason} after {report.cutbacks} cut-backs; last converged state: "
+                f"{row['pressure_kPa']:.4g} kPa, {row['angle_deg']:.4g}°"
+            )
+        output = self.case.output
+        reached = max(row["angle_deg"] for row in self.recorder.rows)
+        wanted = [np.rad2deg(a) for a in (*output.at_angles, output.stop_at_angle) if a]
+        missed = [f"{a:g}°" for a in wanted if a > reached + 1e-6]
+        if missed:
+            return "stopped", (f"the loads end at {reached:.4g}°: {', '.join(missed)} not reached")
+        return "converged", ""
+
+    def _wall(self) -> dict[str, float]:
+        seconds = {name: round(value, 3) for name, value in self.progress.wall_s.items()}
+        return seconds | {f"solve/{k}": round(v, 3) for k, v in self.newton.seconds.items()}
+
+    def _write(self, status: str, reason: str, report: Report) -> dict[str, Any]:
+        memory = self.comm.allreduce(usage.getrusage(usage.RUSAGE_SELF).ru_maxrss / 1024)
+        scene = self.scene
+        run: dict[str, Any] = {
+            "status": status,
+            "reason": reason,
+            "model": choose_model(self.case)[0],
+            "half": scene.domain.data.half,
+            "unknowns": scene.body.size,
+            "elements": len(scene.domain.data.cells),
+            "element": scene.domain.data.cell_type,
+            "effects": scene.keys,
+            "load_steps": report.steps,
+            "newton_iterations": report.iterations,
+            "cutbacks": report.cutbacks,
+            "wall_s": self._wall(),
+            "peak_memory_MB": round(memory, 1),
+            "ranks": self.comm.size,
+            "winding": winding_remark(self.case),
+            "versions": versions(),
+        }
+        if self.blocked is not None:
+            run["blocked_tip"] = blocked_tip(
+                self.case.actuator, self.blocked, self.recorder.rows[-1]
+            )
+        if self.folder is not None:
+            self.folder.write_history(self.recorder.rows)
+            self.folder.write_run(**run)
+        return run
+
+    def _draw(self, status: str, reason: str) -> None:
+        """Fields, pictures and plots, on rank 0."""
+        from fiberbend import report
+
+        assert self.folder is not None
+        scenery = Scenery(
+            mesh=self.scene.domain.data,
+            materials=self.parts.materials,
+            fibers=self.parts.fibers,
+            smeared=self.parts.smeared,
+            title=self.case.title,
+        )
+        report.draw(
+            self.folder,
+            self.case,
+            scenery,
+            self.snapshots,
+            self.recorder.rows,
+            "" if status == "converged" else f"{status}: {reason}",
+            self.progress.message,
+        )
+
+
+def _share(ramp: Ramp, state: State) -> float:
+    """Part of a ramp that is done, by its load or by the angle at which it ends."""
+    done = state.measures[f"{ramp.drive} {ramp.scalar}"] / ramp.target
+    if ramp.until:
+        done = max(done, state.measures["followed"] / ramp.until)
+    return float(np.clip(done, 0.0, 1.0))
