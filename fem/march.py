@@ -236,6 +236,7 @@ class March:
                 aim = float(target)
             outcome = self._solve(ramp, kind, aim)
             self.report.iterations += outcome.iterations
+            self.report.factorisations += outcome.factorisations
             accepted = outcome.converged
             overshot = False
             if accepted:

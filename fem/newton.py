@@ -16,6 +16,9 @@ from fem.linear import Factor
 
 Floats = npt.NDArray[np.float64]
 
+NEAR, NEAR_RATIO, CHORD_RATIO = 1e-3, 0.02, 0.1
+"""A factor is used again below this residual, after this reduction, and while it reduces so."""
+
 
 class Problem(Protocol):
     """What Newton needs of a scene."""
@@ -71,11 +74,14 @@ class Settings:
             the volume of an element; each for itself.
         iterations: most iterations.
         hybrid: use the predicted fiber force in the geometric stiffness.
+        reuse: take the last factor again where it converges fast; a solve costs a twentieth of
+            a factorisation.
     """
 
     tolerance: float = 1e-8
     iterations: int = 11
     hybrid: bool = True
+    reuse: bool = True
 
 
 @dataclasses.dataclass
@@ -85,6 +91,7 @@ class Outcome:
     Attributes:
         converged: True when every residual is below its tolerance.
         iterations: linear solves.
+        factorisations: tangents assembled and factorised for them.
         reason: why not, in words; empty when converged.
         history: force, volume and closure residual of every iterate, relative.
         least_det_f: least det F of the last iterate.
@@ -92,6 +99,7 @@ class Outcome:
 
     converged: bool
     iterations: int
+    factorisations: int
     reason: str
     history: list[tuple[float, float, float]]
     least_det_f: float
@@ -169,9 +177,8 @@ class _Solve:
         self.scale = 0.0
         self.least = np.inf
         self.solves = 0
+        self.tangents: list[int] = []
         self.reason = ""
-        self.at_tangent: Floats | None = None
-        self.error: Exception | None = None
 
     # --- vectors -------------------------------------------------------------------------------
 
@@ -224,13 +231,14 @@ class _Solve:
         self.join(f, r, g)
         self.newton._assembly["residual"] += time.perf_counter() - start
 
-    def jacobian(self, _snes: PETSc.SNES, x: PETSc.Vec, _a: PETSc.Mat, _p: PETSc.Mat) -> None:
-        """Tangent, its factor, and the border."""
+    def jacobian(self, _snes: PETSc.SNES, _x: PETSc.Vec, _a: PETSc.Mat, _p: PETSc.Mat) -> None:
+        """Tangent, its factor, and the border; or the last ones again."""
+        if self.newton.settings.reuse and self.fast():
+            return
         start = time.perf_counter()
         problem = self.problem
-        w, _ = self.split(x)
+        self.tangents.append(len(self.history))
         problem.assemble_tangent()
-        self.at_tangent = w
         self.newton._assembly["tangent"] += time.perf_counter() - start
         self.newton.factor.renew()
         columns = [problem.load(name) for name in self.unknown]
@@ -240,6 +248,16 @@ class _Solve:
         self.schur = -np.array(
             [[self.dot(row, spread) for spread in self.spread] for row in self.rows]
         ).reshape(len(self.rows), len(self.spread))
+
+    def fast(self) -> bool:
+        """Whether the last factor is likely to reduce the residual tenfold once more."""
+        if not self.tangents or len(self.history) < 2:
+            return False
+        now, before = max(self.history[-1]), max(self.history[-2])
+        if self.tangents[-1] == len(self.history) - 1:
+            # the factor is one iterate old: near the solution its error is that of this step
+            return now < NEAR and now < NEAR_RATIO * before
+        return now < CHORD_RATIO * before
 
     def apply(self, _pc: PETSc.PC, r: PETSc.Vec, y: PETSc.Vec) -> None:
         """Solve the bordered system with the factor of K."""
@@ -318,4 +336,11 @@ class _Solve:
         finally:
             for item in (snes, shell, x, f):
                 item.destroy()
-        return Outcome(converged, self.solves, self.reason, self.history, float(self.least))
+        return Outcome(
+            converged,
+            self.solves,
+            len(self.tangents),
+            self.reason,
+            self.history,
+            float(self.least),
+        )

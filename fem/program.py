@@ -99,6 +99,7 @@ class Report:
         reason: cause of the failure, or empty.
         steps: converged increments.
         iterations: Newton iterations, failed increments included.
+        factorisations: tangents factorised for them.
         cutbacks: failed increments.
     """
 
@@ -106,5 +107,6 @@ class Report:
     reason: str = ""
     steps: int = 0
     iterations: int = 0
+    factorisations: int = 0
     cutbacks: int = 0
     per_step: list[int] = dataclasses.field(default_factory=list)

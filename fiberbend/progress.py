@@ -76,7 +76,7 @@ class Progress:
             times += f", about {_clock_text(left)} to go"
         if not self._speaks:
             return
-        if self._stream.isatty():
+        if self._stream.isatty() and launch.size() == 1:
             self._draw(fraction, f"{text}  {times}")
         else:
             self._say(f"{text}  {100 * fraction:5.1f} %  {times}")

@@ -285,6 +285,7 @@ class _Run:
             "effects": scene.keys,
             "load_steps": report.steps,
             "newton_iterations": report.iterations,
+            "factorisations": report.factorisations,
             "cutbacks": report.cutbacks,
             "wall_s": self._wall(),
             "peak_memory_MB": round(memory, 1),
