@@ -8,10 +8,8 @@ import numpy as np
 
 from fiberbend.snapshot import Scenery, Snapshot
 from geometry.mesh import Floats, Ints, MeshData, reference_nodes
-from geometry.reference import jacobians, shape_functions
+from geometry.reference import shape_functions
 from materials.laws import Material, energy_slopes
-
-_CHUNK = 4000
 
 
 @dataclasses.dataclass(frozen=True)
@@ -92,17 +90,16 @@ def deformation_gradients(mesh: MeshData, displacement: Floats) -> Floats:
     Returns:
         Array (m, k, 3, 3).
     """
-    points = reference_nodes(mesh.cell_type)
-    gradients = shape_functions(mesh.cell_type, points)[1]
-    flat = gradients.transpose(1, 0, 2).reshape(len(points), -1)
-    result = np.empty((*mesh.cells.shape, 3, 3))
-    for first in range(0, len(mesh.cells), _CHUNK):
-        part = slice(first, first + _CHUNK)
-        cells = np.arange(len(mesh.cells))[part]
-        to_reference = np.linalg.inv(jacobians(mesh, cells, points)[1])
-        u = displacement[mesh.cells[part]].transpose(0, 2, 1)
-        slopes = (u @ flat).reshape(len(cells), 3, len(points), 3).transpose(0, 2, 1, 3)
-        result[part] = np.eye(3) + slopes @ to_reference
+    gradients = shape_functions(mesh.cell_type, reference_nodes(mesh.cell_type))[1]
+    operator = gradients.transpose(1, 0, 2).reshape(len(gradients), -1)
+
+    def slopes(values: Floats) -> Floats:
+        """Reference gradients of a field given at the nodes of every cell, (m, k, 3, 3)."""
+        flat = values.swapaxes(1, 2) @ operator
+        return flat.reshape(len(values), 3, len(gradients), 3).swapaxes(1, 2)
+
+    to_reference = _inverse(slopes(mesh.nodes[mesh.cells]))
+    result: Floats = np.eye(3) + slopes(displacement[mesh.cells]) @ to_reference
     return result
 
 
@@ -164,6 +161,15 @@ def recover(scenery: Scenery, snapshot: Snapshot, nodes: SplitNodes | None = Non
         cauchy=nodes.average(stress),
         multiplier=nodes.average(snapshot.multiplier),
     )
+
+
+def _inverse(matrices: Floats) -> Floats:
+    """Inverses of many 3×3 matrices by cofactors, several times faster than LAPACK's."""
+    a, b, c = (matrices[..., i, :] for i in range(3))
+    cofactors = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=-1)
+    determinant = (a * cofactors[..., 0]).sum(axis=-1)
+    inverse: Floats = cofactors / determinant[..., None, None]
+    return inverse
 
 
 def _deviator(tensor: Floats) -> Floats:

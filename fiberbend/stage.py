@@ -32,14 +32,12 @@ class Layer:
         data: pyvista.PolyData: a surface, or lines that become tubes.
         color: colour, where `scalars` is None.
         scalars: name of the point data that colours it, or None.
-        opacity: 1 for solid things.
         radius: radius in mm of tubes, for lines.
     """
 
     data: Any
     color: str = "white"
     scalars: str | None = None
-    opacity: float = 1.0
     radius: float | None = None
 
 
@@ -94,7 +92,11 @@ class Stage:
         self._plotter = pv.Plotter(
             off_screen=True, window_size=size, lighting="none", theme=pv.themes.DocumentTheme()
         )
-        self._plotter.enable_anti_aliasing("msaa", multi_samples=8)
+        self._plotter.enable_anti_aliasing("msaa", multi_samples=4)
+        for position, strength in (((-0.5, 0.8, 0.9), 0.75), ((0.3, -0.2, 1.0), 0.35)):
+            self._plotter.add_light(
+                pv.Light(position=position, intensity=strength, light_type="camera light")
+            )
 
     def draw(
         self,
@@ -116,7 +118,6 @@ class Stage:
         """
         plotter = self._plotter
         plotter.clear_actors()
-        plotter.remove_all_lights()
         for layer in layers:
             data = layer.data
             if layer.radius is not None:
@@ -128,20 +129,18 @@ class Stage:
                 cmap=colormap if layer.scalars else None,
                 clim=limits if layer.scalars else None,
                 n_colors=256,
-                opacity=layer.opacity,
                 show_scalar_bar=False,
+                reset_camera=False,
+                render=False,
                 copy_mesh=False,
-                ambient=0.25,
-                diffuse=0.75,
-                specular=0.08,
-                specular_power=20,
+                # colours that are read off a bar must not be shaded much
+                ambient=0.7 if layer.scalars else 0.35,
+                diffuse=0.3 if layer.scalars else 0.7,
             )
             actor.prop.interpolation = "Phong"
-        if any(layer.opacity < 1 for layer in layers):
-            plotter.enable_depth_peeling(number_of_peels=8)
-        else:
-            plotter.disable_depth_peeling()
         self._look(view)
+        # a screenshot alone would repeat the picture before
+        plotter.render()
         return np.asarray(plotter.screenshot(None, return_img=True))
 
     def close(self) -> None:
@@ -149,24 +148,15 @@ class Stage:
         self._plotter.close()
 
     def _look(self, view: View) -> None:
-        import pyvista as pv
-
-        right, up, toward = _axes(view.toward)
+        _, up, toward = _axes(view.toward)
         camera = self._plotter.camera
         camera.focal_point = view.center
         camera.position = view.center + 1000 * toward
         camera.up = up
         camera.parallel_projection = True
         camera.parallel_scale = view.width * self.size[1] / self.size[0] / 2
+        self._plotter.camera_set = True
         self._plotter.reset_camera_clipping_range()
-        for direction, strength in ((toward + 0.6 * up - 0.5 * right, 0.8), (toward, 0.35)):
-            light = pv.Light(
-                position=view.center + 1000 * direction,
-                focal_point=view.center,
-                intensity=strength,
-                light_type="scene light",
-            )
-            self._plotter.add_light(light)
 
 
 def _axes(toward: tuple[float, float, float]) -> Floats:

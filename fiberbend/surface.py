@@ -93,11 +93,12 @@ class Tessellation:
         Returns:
             At the points, (n,) or (n, 3).
         """
+        flat = values.reshape(*values.shape[:2], -1)
         parts = [
-            (s @ values[cells].reshape(*values[cells].shape[:2], -1)).reshape(-1, *values.shape[2:])
-            for cells, s in zip(self._cells, self._values, strict=True)
+            (weights @ flat[cells]).reshape(-1, flat.shape[2])
+            for cells, weights in zip(self._cells, self._values, strict=True)
         ]
-        return np.concatenate(parts)
+        return np.concatenate(parts).reshape(-1, *values.shape[2:])
 
     def normals(self, nodes: Floats) -> Floats:
         """Outward unit normals at the drawn points.

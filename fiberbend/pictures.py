@@ -1,0 +1,268 @@
+"""Pictures of a run as in the paper's Fig. 6: undeformed, cut open, bent and coloured by strain."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Callable, Sequence
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fiberbend.page import COLORS, Page, Target, nice_above
+from fiberbend.recovery import NodalFields, recover, split_nodes
+from fiberbend.snapshot import Scenery, Snapshot
+from fiberbend.stage import FROM_THE_SIDE, Image, Layer, Stage, frame
+from fiberbend.surface import Tessellation, boundary_facets, on_mirror
+from fiberbend.vtu import fiber_lines
+from geometry.embed import EmbeddedFibers
+from geometry.mesh import Floats
+
+SIZE = (1400, 900)
+"""Width and height of a picture in pixels."""
+
+_BAND = 730
+_OBLIQUE = (-0.62, 0.42, -0.66)
+_FIBER_RADIUS = 0.2
+_PEELED = 0.6
+"""Fraction of the chamber over which the undeformed actuator shows its fibers."""
+
+Mask = NDArray[np.bool_]
+
+
+class Album:
+    """All pictures of a run; the window, the camera and the colour range are shared.
+
+    Args:
+        scenery: mesh, materials and fibers.
+        snapshots: the states, at least one.
+        fields: their recovered fields, if at hand.
+
+    Raises:
+        ValueError: no state.
+        fiberbend.stage.PictureError: nothing can be drawn on this machine.
+    """
+
+    def __init__(
+        self,
+        scenery: Scenery,
+        snapshots: Sequence[Snapshot],
+        fields: Sequence[NodalFields] | None = None,
+    ) -> None:
+        if not snapshots:
+            raise ValueError("no state to draw")
+        self.scenery, self.snapshots = scenery, snapshots
+        mesh = scenery.mesh
+        self._nodes = split_nodes(mesh)
+        fields = fields or [recover(scenery, state, self._nodes) for state in snapshots]
+        self._strain = [field.log_strain[self._nodes.cells] for field in fields]
+        self._middle = mesh.nodes[mesh.cells].mean(axis=1)
+        self._fibers = None if scenery.lines is None else _one_line_each(scenery.lines)
+        everything = np.ones(len(mesh.cells), dtype=bool)
+        self._bare = everything if self._fibers is None else ~self._region("sheath")
+        pairs = boundary_facets(mesh, self._bare)
+        if mesh.half:
+            pairs = pairs[~on_mirror(mesh, pairs)]
+        self._skin = Tessellation(mesh, pairs)
+        self._limits = (0.0, nice_above(max(self._peak(strain) for strain in self._strain)))
+        moved = [mesh.nodes + state.displacement for state in snapshots]
+        self._view = frame(np.concatenate(moved), FROM_THE_SIDE, SIZE[0] / _BAND)
+        self._images: dict[int, Image] = {}
+        self._stage = Stage((SIZE[0], _BAND))
+
+    def undeformed(self, target: Target) -> None:
+        """The actuator at rest: whole, its sheath partly removed, and a piece cut out of it."""
+        mesh = self.scenery.mesh
+        z = self._middle[:, 2]
+        length = float(mesh.nodes[mesh.facet_nodes("section_tip"), 2].mean())
+        peeled = z > _PEELED * length if self._fibers is not None else np.ones_like(z, dtype=bool)
+        whole = self._parts(self._bare | peeled) + self._threads(None)
+        high = SIZE[0] / _BAND
+        both = np.concatenate([mesh.nodes, mesh.nodes * [-1, 1, 1]])
+        top = self._stage.draw(whole, frame(both, (-1.0, 0.35, -0.25), high))
+        start, end = 0.45 * length, 0.45 * length + 32
+        inside = (z > start) & (z < end)
+        shown = inside & (self._bare | (z > start + 20) | (self._fibers is None))
+        points = mesh.nodes[mesh.cells[inside]].reshape(-1, 3)
+        both = np.concatenate([points, points * [-1, 1, 1]])
+        piece = self._stage.draw(
+            self._parts(shown, level=6) + self._threads(None, start, float(points[:, 2].max())),
+            frame(both, _OBLIQUE, high),
+        )
+        page = Page(SIZE, f"{self.scenery.title}: undeformed")
+        page.image(top, (0.0, 0.66, 1.0, 0.26), crop=True)
+        page.image(piece, (0.12, 0.07, 0.76, 0.58), crop=True)
+        page.legend(self._present())
+        page.save(target)
+
+    def cut(self, target: Target, snapshot: Snapshot | None = None) -> None:
+        """A state cut open at x = 0: chamber, materials, and all fibers like a cage around it."""
+        state = snapshot or self.snapshots[-1]
+        far = self._middle[:, 0] > 0
+        layers = self._parts(far, state, open_at_mirror=True) + self._threads(state)
+        moved = self.scenery.mesh.nodes + state.displacement
+        view = frame(moved, FROM_THE_SIDE, SIZE[0] / _BAND)
+        image = self._stage.draw(layers, view)
+        page = Page(SIZE, f"{self.scenery.title}: cut at x = 0,  {state.caption}")
+        page.image(image, (0.0, 0.09, 1.0, _BAND / SIZE[1]))
+        page.legend(self._present())
+        page.scale_bar(view.width)
+        page.save(target)
+
+    def bent(self, target: Target, number: int) -> None:
+        """One state coloured by maximum principal logarithmic strain.
+
+        Args:
+            target: a path, or a file open for writing bytes.
+            number: place of the state within `snapshots`.
+        """
+        page = Page(SIZE, f"{self.scenery.title}:  {self.snapshots[number].caption}")
+        page.image(self._image(number), (0.0, 0.115, 1.0, _BAND / SIZE[1]))
+        page.color_bar(self._limits, self._strain_label())
+        page.scale_bar(self._view.width)
+        page.save(target)
+
+    def montage(self, target: Target) -> None:
+        """All states side by side, in one colour range and at one scale."""
+        captions = [state.caption for state in self.snapshots]
+        images = [self._image(i) for i in range(len(captions))]
+        page = Page.of_panels(SIZE[0], self.scenery.title, images, captions)
+        page.color_bar(self._limits, self._strain_label())
+        page.save(target)
+
+    def close(self) -> None:
+        """Release the window."""
+        self._stage.close()
+
+    # --- what is drawn -----------------------------------------------------------------------
+
+    def _image(self, number: int) -> Image:
+        if number not in self._images:
+            state = self.snapshots[number]
+            skin = self._surface(self._skin, state, self.scenery.mesh.half)
+            values = self._skin.interpolate(self._strain[number])
+            skin["strain"] = np.resize(values, skin.n_points)
+            layers = [Layer(skin, scalars="strain"), *self._threads(state)]
+            self._images[number] = self._stage.draw(layers, self._view, self._limits)
+        return self._images[number]
+
+    def _parts(
+        self,
+        cells: Mask,
+        state: Snapshot | None = None,
+        open_at_mirror: bool = False,
+        level: int = 3,
+    ) -> list[Layer]:
+        """The surface of some cells, one layer per region."""
+        mesh, layers = self.scenery.mesh, []
+        for name in mesh.regions:
+            pairs = boundary_facets(mesh, cells & self._region(name))
+            if mesh.half and not open_at_mirror:
+                pairs = pairs[~on_mirror(mesh, pairs)]
+            if len(pairs):
+                skin = Tessellation(mesh, pairs, level)
+                data = self._surface(skin, state, mesh.half and not open_at_mirror)
+                layers.append(Layer(data, color=COLORS.get(name, "#999999")))
+        return layers
+
+    def _surface(self, skin: Tessellation, state: Snapshot | None, mirror: bool) -> Any:
+        import pyvista as pv
+
+        mesh = self.scenery.mesh
+        nodes = mesh.nodes if state is None else mesh.nodes + state.displacement
+        at_cells = nodes[mesh.cells]
+        points, normals = skin.interpolate(at_cells), skin.normals(at_cells)
+        pieces = skin.pieces
+        if mirror:
+            flip = np.array([-1.0, 1.0, 1.0])
+            pieces = np.concatenate([pieces, pieces[:, ::-1] + len(points)])
+            points = np.concatenate([points, points * flip])
+            normals = np.concatenate([normals, normals * flip])
+        data = pv.PolyData.from_regular_faces(points, pieces)
+        data.point_data.active_normals = normals
+        return data
+
+    def _threads(
+        self,
+        state: Snapshot | None,
+        low: float = -np.inf,
+        high: float = np.inf,
+    ) -> list[Layer]:
+        """The fibers between two z, all around the body."""
+        if self._fibers is None:
+            return []
+        mesh, fibers = self.scenery.mesh, self._fibers
+        kept = (fibers.z > low) & (fibers.z < high)
+        moved = None if state is None else state.displacement
+        lines = [fiber_lines(mesh, _select(fibers, kept), moved)]
+        if mesh.half:
+            lines.append(lines[0].reflect((1, 0, 0)))
+        return [Layer(data, color=COLORS["fiber"], radius=_FIBER_RADIUS) for data in lines]
+
+    def _present(self) -> list[str]:
+        names = list(self.scenery.mesh.regions)
+        return names if self._fibers is None else [*names, "fiber"]
+
+    def _peak(self, strain: Floats) -> float:
+        """Strain at the upper end of the colours: the drawn surface's, short of single peaks."""
+        return float(np.quantile(self._skin.interpolate(strain), 0.998))
+
+    def _strain_label(self) -> str:
+        label = "maximum principal logarithmic strain"
+        hidden = self._fibers is not None and "sheath" in self.scenery.mesh.regions
+        return f"{label}, sheath not drawn" if hidden else label
+
+    def _region(self, name: str) -> Mask:
+        number = self.scenery.mesh.regions.get(name, -1)
+        found: Mask = self.scenery.mesh.cell_region == number
+        return found
+
+
+def draw_pictures(
+    scenery: Scenery,
+    snapshots: Sequence[Snapshot],
+    write: Callable[[str, Callable[[IO[bytes]], object]], None],
+    fields: Sequence[NodalFields] | None = None,
+) -> list[str]:
+    """Draw undeformed.png, cut.png, bent_LABEL.png of every state, and montage.png of several.
+
+    Args:
+        scenery: mesh, materials and fibers.
+        snapshots: the states; cut.png shows the last one.
+        write: takes a name and a function that fills the file, such as `RunFolder.write`.
+        fields: recovered fields of the states, if at hand.
+
+    Returns:
+        The names written.
+
+    Raises:
+        ValueError: no state.
+        fiberbend.stage.PictureError: nothing can be drawn on this machine.
+    """
+    album = Album(scenery, snapshots, fields)
+    jobs: dict[str, Callable[[IO[bytes]], object]] = {
+        "undeformed.png": album.undeformed,
+        "cut.png": album.cut,
+    }
+    for number, state in enumerate(snapshots):
+        jobs[f"bent_{state.label}.png"] = functools.partial(album.bent, number=number)
+    if len(snapshots) > 1:
+        jobs["montage.png"] = album.montage
+    try:
+        for name, fill in jobs.items():
+            write(name, fill)
+    finally:
+        album.close()
+    return list(jobs)
+
+
+def _select(fibers: EmbeddedFibers, kept: Mask) -> EmbeddedFibers:
+    fields = dataclasses.fields(fibers)
+    return EmbeddedFibers(**{field.name: getattr(fibers, field.name)[kept] for field in fields})
+
+
+def _one_line_each(fibers: EmbeddedFibers) -> EmbeddedFibers:
+    """The middle line of every ribbon."""
+    lines = round(1 / float(fibers.share[0]))
+    return _select(fibers, fibers.curve % lines == lines // 2)

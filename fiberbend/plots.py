@@ -1,0 +1,219 @@
+"""Curves of a run: bending angle and tip force against pressure, and the path of the tip.
+
+Rows are those of history.csv; what a row does not hold is left out. matplotlib is imported where
+it is used, and without its global state.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Mapping, Sequence
+from typing import IO, Any
+
+import numpy as np
+
+from fiberbend.page import Target, figure, save
+from geometry.mesh import Floats
+
+Row = Mapping[str, float | None]
+
+SIZE = (1000, 700)
+"""Width and height of a plot in pixels."""
+
+_BLUE, _RED = "#1f5a99", "#c0392b"
+_SAME_ANGLE = 0.05
+
+
+def plot_pressure_angle(
+    rows: Sequence[Row],
+    target: Target,
+    angles: Sequence[float] = (),
+    title: str = "",
+    reason: str | None = None,
+) -> None:
+    """Bending angle against pressure, with a mark at every requested angle that was reached.
+
+    Args:
+        rows: rows of the history with pressure_kPa and angle_deg.
+        target: a path, or a file open for writing bytes.
+        angles: requested angles in degrees.
+        title: title of the case.
+        reason: why the run ended early, or None.
+
+    Raises:
+        ValueError: no row holds both values.
+    """
+    data = _columns(rows, "pressure_kPa", "angle_deg")
+    page, axes = _axes(title, reason, "pressure P (kPa)", "bending angle θ (°)")
+    axes.plot(*data, "o-", color=_BLUE, markersize=4, linewidth=1.8)
+    for angle in angles:
+        nearest = int(np.abs(data[1] - angle).argmin())
+        if abs(data[1][nearest] - angle) > _SAME_ANGLE:
+            continue
+        pressure = data[0][nearest]
+        axes.plot(pressure, angle, "o", color=_RED, markersize=9, zorder=3)
+        axes.annotate(
+            f"{angle:g}° at {pressure:.1f} kPa",
+            (pressure, angle),
+            (-12, 4),
+            textcoords="offset points",
+            ha="right",
+            fontsize=12,
+        )
+    _range(axes, data)
+    save(page, target)
+
+
+def plot_tip_path(
+    rows: Sequence[Row], target: Target, title: str = "", reason: str | None = None
+) -> None:
+    """Path of the tip in the plane of bending, z to the right, y up, one scale.
+
+    Dots are the steps; the curve through them is a spline.
+
+    Args:
+        rows: rows of the history with tip_z_mm, tip_y_mm and pressure_kPa.
+        target: a path, or a file open for writing bytes.
+        title: title of the case.
+        reason: why the run ended early, or None.
+
+    Raises:
+        ValueError: no row holds all three values.
+    """
+    z, y, pressure = _columns(rows, "tip_z_mm", "tip_y_mm", "pressure_kPa")
+    page, axes = _axes(title, reason, "z (mm)", "y (mm)")
+    axes.plot(*_smooth(z, y), "-", color=_BLUE, linewidth=1.8)
+    axes.plot(z, y, "o", color=_BLUE, markersize=4)
+    ends = {0: "start", len(z) - 1: "end"}
+    for i, name in ends.items():
+        axes.plot(z[i], y[i], "o", color=_RED, markersize=9, zorder=3)
+        axes.annotate(
+            f"{name}: {pressure[i]:.1f} kPa",
+            (z[i], y[i]),
+            (0, 14 if y[i] >= y.mean() else -24),
+            textcoords="offset points",
+            ha="center",
+            fontsize=12,
+        )
+    reach = max(np.ptp(z), np.ptp(y), 10.0) * 0.62
+    axes.set_aspect("equal")
+    axes.set_ylim((y.min() + y.max()) / 2 - reach, (y.min() + y.max()) / 2 + reach)
+    wide = reach * SIZE[0] / SIZE[1]
+    axes.set_xlim((z.min() + z.max()) / 2 - wide, (z.min() + z.max()) / 2 + wide)
+    save(page, target)
+
+
+def plot_tip_force(
+    rows: Sequence[Row], target: Target, title: str = "", reason: str | None = None
+) -> None:
+    """Tip force of the whole body against pressure.
+
+    Args:
+        rows: rows of the history with pressure_kPa and tip_force_N.
+        target: a path, or a file open for writing bytes.
+        title: title of the case.
+        reason: why the run ended early, or None.
+
+    Raises:
+        ValueError: no row holds both values.
+    """
+    data = _columns(rows, "pressure_kPa", "tip_force_N")
+    page, axes = _axes(title, reason, "pressure P (kPa)", "tip force (N)")
+    axes.plot(*data, "o-", color=_BLUE, markersize=4, linewidth=1.8)
+    axes.annotate(
+        f"{data[1][-1]:.3g} N at {data[0][-1]:.1f} kPa",
+        (data[0][-1], data[1][-1]),
+        (-12, 4),
+        textcoords="offset points",
+        ha="right",
+        fontsize=12,
+    )
+    _range(axes, data)
+    save(page, target)
+
+
+def draw_plots(
+    rows: Sequence[Row],
+    write: Callable[[str, Callable[[IO[bytes]], object]], None],
+    angles: Sequence[float] = (),
+    title: str = "",
+    reason: str | None = None,
+) -> list[str]:
+    """Draw pressure_angle.png, tip_path.png and, with a tip force, tip_force.png.
+
+    Args:
+        rows: rows of the history; a plot whose columns are empty is not drawn.
+        write: takes a name and a function that fills the file, such as `RunFolder.write`.
+        angles: requested angles in degrees.
+        title: title of the case.
+        reason: why the run ended early, or None.
+
+    Returns:
+        The names written.
+    """
+    common = {"title": title, "reason": reason}
+    plots: dict[str, tuple[Callable[..., None], dict[str, Any], tuple[str, ...]]] = {
+        "pressure_angle.png": (
+            plot_pressure_angle,
+            common | {"angles": angles},
+            ("pressure_kPa", "angle_deg"),
+        ),
+        "tip_path.png": (plot_tip_path, common, ("tip_z_mm", "tip_y_mm", "pressure_kPa")),
+        "tip_force.png": (plot_tip_force, common, ("pressure_kPa", "tip_force_N")),
+    }
+    drawn = []
+    for name, (plot, options, columns) in plots.items():
+        if any(_complete(row, columns) for row in rows):
+            write(name, functools.partial(plot, rows, **options))
+            drawn.append(name)
+    return drawn
+
+
+def _complete(row: Row, columns: Sequence[str]) -> bool:
+    return all(row.get(name) is not None for name in columns)
+
+
+def _columns(rows: Sequence[Row], *names: str) -> list[Floats]:
+    full = [[row[name] for name in names] for row in rows if _complete(row, names)]
+    if not full:
+        raise ValueError(f"no row of the history holds {', '.join(names)}")
+    return list(np.array(full, dtype=float).T)
+
+
+def _smooth(z: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """A spline through the points, its parameter their distance along the way."""
+    from scipy.interpolate import CubicSpline
+
+    way = np.r_[0.0, np.cumsum(np.hypot(np.diff(z), np.diff(y)))]
+    kept = np.r_[True, np.diff(way) > 1e-9]
+    if kept.sum() < 3:
+        return z, y
+    fine = np.linspace(0.0, way[-1], 400)
+    spline = CubicSpline(way[kept], np.column_stack([z, y])[kept])
+    return spline(fine)[:, 0], spline(fine)[:, 1]
+
+
+def _axes(title: str, reason: str | None, across: str, up: str) -> tuple[Any, Any]:
+    page = figure(SIZE)
+    axes = page.add_axes((0.1, 0.11, 0.86, 0.77))
+    axes.set_title(title, fontsize=15, pad=24 if reason else 10)
+    if reason:
+        short = reason if len(reason) <= 110 else f"{reason[:109]}…"
+        note = f"ended early: {short}"
+        axes.text(0.5, 1.015, note, transform=axes.transAxes, ha="center", color=_RED, fontsize=10)
+    axes.set_xlabel(across, fontsize=13)
+    axes.set_ylabel(up, fontsize=13)
+    axes.tick_params(labelsize=11)
+    axes.grid(color="0.9")
+    axes.set_axisbelow(True)
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    return page, axes
+
+
+def _range(axes: Any, data: Sequence[Floats]) -> None:
+    """Show the origin, and room for labels."""
+    for values, change in zip(data, (axes.set_xlim, axes.set_ylim), strict=True):
+        low, high = min(0.0, float(values.min())), max(0.0, float(values.max()))
+        room = 0.12 * (high - low) or 1.0
+        change(low - (room if low < 0 else 0), high + room)
