@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fiberbend.snapshot import Target
+
 Image = NDArray[np.uint8]
-Target = Path | IO[bytes]
 Box = tuple[float, float, float, float]
 
 COLORS = {

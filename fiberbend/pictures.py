@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import dataclasses
 import functools
 from collections.abc import Callable, Sequence
-from typing import IO, Any
+from typing import IO
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fiberbend.page import COLORS, Page, Target, nice_above
+from fiberbend.page import Page, nice_above
+from fiberbend.props import Props
 from fiberbend.recovery import NodalFields, recover, split_nodes
-from fiberbend.snapshot import Scenery, Snapshot
+from fiberbend.snapshot import Scenery, Snapshot, Target, Write
 from fiberbend.stage import FROM_THE_SIDE, Image, Layer, Stage, frame
-from fiberbend.surface import Tessellation, boundary_facets, on_mirror
-from fiberbend.vtu import fiber_lines
-from geometry.embed import EmbeddedFibers
+from fiberbend.surface import Tessellation
 from geometry.mesh import Floats
 
 SIZE = (1400, 900)
@@ -24,11 +21,8 @@ SIZE = (1400, 900)
 
 _BAND = 730
 _OBLIQUE = (-0.62, 0.42, -0.66)
-_FIBER_RADIUS = 0.2
 _PEELED = 0.6
 """Fraction of the chamber over which the undeformed actuator shows its fibers."""
-
-Mask = NDArray[np.bool_]
 
 
 class Album:
@@ -53,18 +47,12 @@ class Album:
         if not snapshots:
             raise ValueError("no state to draw")
         self.scenery, self.snapshots = scenery, snapshots
+        self._props = Props(scenery)
         mesh = scenery.mesh
         self._nodes = split_nodes(mesh)
         fields = fields or [recover(scenery, state, self._nodes) for state in snapshots]
         self._strain = [field.log_strain[self._nodes.cells] for field in fields]
-        self._middle = mesh.nodes[mesh.cells].mean(axis=1)
-        self._fibers = None if scenery.lines is None else _one_line_each(scenery.lines)
-        everything = np.ones(len(mesh.cells), dtype=bool)
-        self._bare = everything if self._fibers is None else ~self._region("sheath")
-        pairs = boundary_facets(mesh, self._bare)
-        if mesh.half:
-            pairs = pairs[~on_mirror(mesh, pairs)]
-        self._skin = Tessellation(mesh, pairs)
+        self._skin = Tessellation(mesh, self._props.outside(self._props.bare))
         self._limits = (0.0, nice_above(max(self._peak(strain) for strain in self._strain)))
         moved = [mesh.nodes + state.displacement for state in snapshots]
         self._view = frame(np.concatenate(moved), FROM_THE_SIDE, SIZE[0] / _BAND)
@@ -73,40 +61,41 @@ class Album:
 
     def undeformed(self, target: Target) -> None:
         """The actuator at rest: whole, its sheath partly removed, and a piece cut out of it."""
-        mesh = self.scenery.mesh
-        z = self._middle[:, 2]
+        mesh, props = self.scenery.mesh, self._props
+        z = props.middle[:, 2]
         length = float(mesh.nodes[mesh.facet_nodes("section_tip"), 2].mean())
-        peeled = z > _PEELED * length if self._fibers is not None else np.ones_like(z, dtype=bool)
-        whole = self._parts(self._bare | peeled) + self._threads(None)
+        peeled = z > _PEELED * length
+        whole = props.parts(props.bare | peeled) + props.threads()
         high = SIZE[0] / _BAND
         both = np.concatenate([mesh.nodes, mesh.nodes * [-1, 1, 1]])
         top = self._stage.draw(whole, frame(both, (-1.0, 0.35, -0.25), high))
         start, end = 0.45 * length, 0.45 * length + 32
         inside = (z > start) & (z < end)
-        shown = inside & (self._bare | (z > start + 20) | (self._fibers is None))
+        shown = inside & (props.bare | (z > start + 20))
         points = mesh.nodes[mesh.cells[inside]].reshape(-1, 3)
         both = np.concatenate([points, points * [-1, 1, 1]])
         piece = self._stage.draw(
-            self._parts(shown, level=6) + self._threads(None, start, float(points[:, 2].max())),
+            props.parts(shown, level=6) + props.threads(low=start, high=float(points[:, 2].max())),
             frame(both, _OBLIQUE, high),
         )
         page = Page(SIZE, f"{self.scenery.title}: undeformed")
         page.image(top, (0.0, 0.66, 1.0, 0.26), crop=True)
         page.image(piece, (0.12, 0.07, 0.76, 0.58), crop=True)
-        page.legend(self._present())
+        page.legend(self._props.names)
         page.save(target)
 
     def cut(self, target: Target, snapshot: Snapshot | None = None) -> None:
         """A state cut open at x = 0: chamber, materials, and all fibers like a cage around it."""
         state = snapshot or self.snapshots[-1]
-        far = self._middle[:, 0] > 0
-        layers = self._parts(far, state, open_at_mirror=True) + self._threads(state)
+        props = self._props
+        far = props.middle[:, 0] > 0
+        layers = props.parts(far, state, open_at_mirror=True) + props.threads(state)
         moved = self.scenery.mesh.nodes + state.displacement
         view = frame(moved, FROM_THE_SIDE, SIZE[0] / _BAND)
         image = self._stage.draw(layers, view)
         page = Page(SIZE, f"{self.scenery.title}: cut at x = 0,  {state.caption}")
         page.image(image, (0.0, 0.09, 1.0, _BAND / SIZE[1]))
-        page.legend(self._present())
+        page.legend(self._props.names)
         page.scale_bar(view.width)
         page.save(target)
 
@@ -140,69 +129,12 @@ class Album:
     def _image(self, number: int) -> Image:
         if number not in self._images:
             state = self.snapshots[number]
-            skin = self._surface(self._skin, state, self.scenery.mesh.half)
+            skin = self._props.surface(self._skin, state, self.scenery.mesh.half)
             values = self._skin.interpolate(self._strain[number])
             skin["strain"] = np.resize(values, skin.n_points)
-            layers = [Layer(skin, scalars="strain"), *self._threads(state)]
+            layers = [Layer(skin, scalars="strain"), *self._props.threads(state)]
             self._images[number] = self._stage.draw(layers, self._view, self._limits)
         return self._images[number]
-
-    def _parts(
-        self,
-        cells: Mask,
-        state: Snapshot | None = None,
-        open_at_mirror: bool = False,
-        level: int = 3,
-    ) -> list[Layer]:
-        """The surface of some cells, one layer per region."""
-        mesh, layers = self.scenery.mesh, []
-        for name in mesh.regions:
-            pairs = boundary_facets(mesh, cells & self._region(name))
-            if mesh.half and not open_at_mirror:
-                pairs = pairs[~on_mirror(mesh, pairs)]
-            if len(pairs):
-                skin = Tessellation(mesh, pairs, level)
-                data = self._surface(skin, state, mesh.half and not open_at_mirror)
-                layers.append(Layer(data, color=COLORS.get(name, "#999999")))
-        return layers
-
-    def _surface(self, skin: Tessellation, state: Snapshot | None, mirror: bool) -> Any:
-        import pyvista as pv
-
-        mesh = self.scenery.mesh
-        nodes = mesh.nodes if state is None else mesh.nodes + state.displacement
-        at_cells = nodes[mesh.cells]
-        points, normals = skin.interpolate(at_cells), skin.normals(at_cells)
-        pieces = skin.pieces
-        if mirror:
-            flip = np.array([-1.0, 1.0, 1.0])
-            pieces = np.concatenate([pieces, pieces[:, ::-1] + len(points)])
-            points = np.concatenate([points, points * flip])
-            normals = np.concatenate([normals, normals * flip])
-        data = pv.PolyData.from_regular_faces(points, pieces)
-        data.point_data.active_normals = normals
-        return data
-
-    def _threads(
-        self,
-        state: Snapshot | None,
-        low: float = -np.inf,
-        high: float = np.inf,
-    ) -> list[Layer]:
-        """The fibers between two z, all around the body."""
-        if self._fibers is None:
-            return []
-        mesh, fibers = self.scenery.mesh, self._fibers
-        kept = (fibers.z > low) & (fibers.z < high)
-        moved = None if state is None else state.displacement
-        lines = [fiber_lines(mesh, _select(fibers, kept), moved)]
-        if mesh.half:
-            lines.append(lines[0].reflect((1, 0, 0)))
-        return [Layer(data, color=COLORS["fiber"], radius=_FIBER_RADIUS) for data in lines]
-
-    def _present(self) -> list[str]:
-        names = list(self.scenery.mesh.regions)
-        return names if self._fibers is None else [*names, "fiber"]
 
     def _peak(self, strain: Floats) -> float:
         """Strain at the upper end of the colours: the drawn surface's, short of single peaks."""
@@ -210,19 +142,13 @@ class Album:
 
     def _strain_label(self) -> str:
         label = "maximum principal logarithmic strain"
-        hidden = self._fibers is not None and "sheath" in self.scenery.mesh.regions
-        return f"{label}, sheath not drawn" if hidden else label
-
-    def _region(self, name: str) -> Mask:
-        number = self.scenery.mesh.regions.get(name, -1)
-        found: Mask = self.scenery.mesh.cell_region == number
-        return found
+        return label if self._props.bare.all() else f"{label}, sheath not drawn"
 
 
 def draw_pictures(
     scenery: Scenery,
     snapshots: Sequence[Snapshot],
-    write: Callable[[str, Callable[[IO[bytes]], object]], None],
+    write: Write,
     fields: Sequence[NodalFields] | None = None,
 ) -> list[str]:
     """Draw undeformed.png, cut.png, bent_LABEL.png of every state, and montage.png of several.
@@ -230,7 +156,7 @@ def draw_pictures(
     Args:
         scenery: mesh, materials and fibers.
         snapshots: the states; cut.png shows the last one.
-        write: takes a name and a function that fills the file, such as `RunFolder.write`.
+        write: writes a file, such as `RunFolder.write`.
         fields: recovered fields of the states, if at hand.
 
     Returns:
@@ -255,14 +181,3 @@ def draw_pictures(
     finally:
         album.close()
     return list(jobs)
-
-
-def _select(fibers: EmbeddedFibers, kept: Mask) -> EmbeddedFibers:
-    fields = dataclasses.fields(fibers)
-    return EmbeddedFibers(**{field.name: getattr(fibers, field.name)[kept] for field in fields})
-
-
-def _one_line_each(fibers: EmbeddedFibers) -> EmbeddedFibers:
-    """The middle line of every ribbon."""
-    lines = round(1 / float(fibers.share[0]))
-    return _select(fibers, fibers.curve % lines == lines // 2)

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping, Sequence
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 
-from fiberbend.page import Target, figure, save
+from fiberbend.page import figure, save
+from fiberbend.snapshot import Target, Write
 from geometry.mesh import Floats
 
 Row = Mapping[str, float | None]
@@ -52,14 +53,7 @@ def plot_pressure_angle(
             continue
         pressure = data[0][nearest]
         axes.plot(pressure, angle, "o", color=_RED, markersize=9, zorder=3)
-        axes.annotate(
-            f"{angle:g}° at {pressure:.1f} kPa",
-            (pressure, angle),
-            (-12, 4),
-            textcoords="offset points",
-            ha="right",
-            fontsize=12,
-        )
+        _label(axes, f"{angle:g}° at {pressure:.1f} kPa", (pressure, angle), (-12, 4), "right")
     _range(axes, data)
     save(page, target)
 
@@ -87,15 +81,9 @@ def plot_tip_path(
     ends = {0: "start", len(z) - 1: "end"}
     for i, name in ends.items():
         axes.plot(z[i], y[i], "o", color=_RED, markersize=9, zorder=3)
-        axes.annotate(
-            f"{name}: {pressure[i]:.1f} kPa",
-            (z[i], y[i]),
-            (0, 14 if y[i] >= y.mean() else -24),
-            textcoords="offset points",
-            ha="center",
-            fontsize=12,
-        )
-    reach = max(np.ptp(z), np.ptp(y), 10.0) * 0.62
+        above = 14 if y[i] >= y.mean() else -24
+        _label(axes, f"{name}: {pressure[i]:.1f} kPa", (z[i], y[i]), (0, above), "center")
+    reach = 0.62 * max(float(np.ptp(z)), float(np.ptp(y)), 10.0)
     axes.set_aspect("equal")
     axes.set_ylim((y.min() + y.max()) / 2 - reach, (y.min() + y.max()) / 2 + reach)
     wide = reach * SIZE[0] / SIZE[1]
@@ -120,21 +108,15 @@ def plot_tip_force(
     data = _columns(rows, "pressure_kPa", "tip_force_N")
     page, axes = _axes(title, reason, "pressure P (kPa)", "tip force (N)")
     axes.plot(*data, "o-", color=_BLUE, markersize=4, linewidth=1.8)
-    axes.annotate(
-        f"{data[1][-1]:.3g} N at {data[0][-1]:.1f} kPa",
-        (data[0][-1], data[1][-1]),
-        (-12, 4),
-        textcoords="offset points",
-        ha="right",
-        fontsize=12,
-    )
+    end = (float(data[0][-1]), float(data[1][-1]))
+    _label(axes, f"{end[1]:.3g} N at {end[0]:.1f} kPa", end, (-12, 4), "right")
     _range(axes, data)
     save(page, target)
 
 
 def draw_plots(
     rows: Sequence[Row],
-    write: Callable[[str, Callable[[IO[bytes]], object]], None],
+    write: Write,
     angles: Sequence[float] = (),
     title: str = "",
     reason: str | None = None,
@@ -143,7 +125,7 @@ def draw_plots(
 
     Args:
         rows: rows of the history; a plot whose columns are empty is not drawn.
-        write: takes a name and a function that fills the file, such as `RunFolder.write`.
+        write: writes a file, such as `RunFolder.write`.
         angles: requested angles in degrees.
         title: title of the case.
         reason: why the run ended early, or None.
@@ -209,6 +191,12 @@ def _axes(title: str, reason: str | None, across: str, up: str) -> tuple[Any, An
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
     return page, axes
+
+
+def _label(
+    axes: Any, text: str, point: tuple[float, float], shift: tuple[float, float], side: str
+) -> None:
+    axes.annotate(text, point, shift, textcoords="offset points", ha=side, fontsize=12)
 
 
 def _range(axes: Any, data: Sequence[Floats]) -> None:

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import IO
 
 from geometry.embed import EmbeddedFibers
 from geometry.mesh import Floats, MeshData
 from materials.laws import Material
+
+Target = Path | IO[bytes]
+"""A path, or a file open for writing bytes."""
+
+Write = Callable[[str, Callable[[IO[bytes]], object]], None]
+"""Takes a name and a function that fills the file of that name, as `RunFolder.write` does."""
 
 
 @dataclasses.dataclass(frozen=True)

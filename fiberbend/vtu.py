@@ -1,27 +1,22 @@
-"""Fields for ParaView: quadratic cells with nodal fields, the fibers as lines, the series.
+"""Fields for ParaView: quadratic cells with nodal fields, fibers, and the series of states.
 
 pyvista is imported where it is used: a run without output does without it.
 """
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from fiberbend.fiberlines import fiber_lines
 from fiberbend.recovery import NodalFields, SplitNodes, recover, split_nodes
-from fiberbend.snapshot import Scenery, Snapshot
-from geometry.embed import EmbeddedFibers
-from geometry.mesh import Floats, Ints, MeshData, reference_nodes
-from geometry.reference import gauss, shape_functions
-
-_JOINT = 1e-6
-"""Distance in mm within which segments of a curve touch."""
-
-Target = Path | IO[bytes]
+from fiberbend.snapshot import Scenery, Snapshot, Target, Write
+from geometry.mesh import Ints, reference_nodes
 
 
 def vtk_order(cell_type: str) -> Ints:
@@ -82,46 +77,6 @@ def body_grid(
     return grid
 
 
-def fiber_lines(
-    mesh: MeshData,
-    fibers: EmbeddedFibers,
-    displacement: Floats | None = None,
-    force: Floats | None = None,
-) -> Any:
-    """The fibers as a pyvista.PolyData of polylines in the deformed position.
-
-    A polyline follows a curve along z and ends where the curve leaves the mesh. Point data:
-    tension_N, the axial force of the line itself, the mean of both sides at a joint;
-    fiber_tension_N, the same of a whole fiber, of which a ribbon's line is a part. Cell data:
-    curve, its number.
-
-    Args:
-        mesh: the mesh.
-        fibers: segments along curves, sorted by curve and z.
-        displacement: by node number, (n, 3), mm; none for the undeformed position.
-        force: axial force of each segment, (segments,), N.
-    """
-    import pyvista as pv
-
-    points = _segment_points(mesh, fibers, mesh.nodes)
-    gap = np.linalg.norm(points[1:, 0] - points[:-1, 2], axis=1)
-    fresh = np.r_[True, (fibers.curve[1:] != fibers.curve[:-1]) | (gap > _JOINT)]
-    if displacement is not None:
-        points = _segment_points(mesh, fibers, mesh.nodes + displacement)
-    last = np.r_[fresh[1:], True]
-    # start and middle of every segment, and the end of the last one of a polyline
-    kept = np.column_stack([np.ones_like(last), np.ones_like(last), last]).ravel()
-    sizes = 2 * np.diff(np.r_[np.flatnonzero(fresh), len(fresh)]) + 1
-    lines = np.insert(np.arange(kept.sum()), np.cumsum(sizes) - sizes, sizes)
-    data = pv.PolyData(points.reshape(-1, 3)[kept], lines=lines)
-    data.cell_data["curve"] = fibers.curve[fresh]
-    if force is not None:
-        for name, value in (("tension_N", force), ("fiber_tension_N", force / fibers.share)):
-            start = np.where(fresh, value, (value + np.roll(value, 1)) / 2)
-            data.point_data[name] = np.column_stack([start, value, value]).ravel()[kept]
-    return data
-
-
 def write_grid(data: Any, target: Target) -> None:
     """Write a pyvista grid (.vtu) or polylines (.vtp).
 
@@ -159,14 +114,37 @@ def write_series(target: Target, entries: Sequence[tuple[float, Sequence[str]]])
     _put((head + "\n".join(rows) + "\n  </Collection>\n</VTKFile>\n").encode(), target)
 
 
-def _segment_points(mesh: MeshData, fibers: EmbeddedFibers, nodes: Floats) -> Floats:
-    """Start, middle and end of every segment, (segments, 3, 3)."""
-    first = gauss(fibers.points.shape[1])[0][0]
-    tangent = fibers.tangents[:, :1]
-    steps = np.array([0.0, 0.5, 1.0])[:, None]
-    values = shape_functions(mesh.cell_type, fibers.points[:, :1] + (steps - first) * tangent)[0]
-    points: Floats = values @ nodes[mesh.cells[fibers.cell]]
-    return points
+def write_fields(
+    scenery: Scenery,
+    snapshots: Sequence[Snapshot],
+    write: Write,
+    fields: Sequence[NodalFields] | None = None,
+) -> list[str]:
+    """Write LABEL.vtu, LABEL_fibers.vtp where fibers form lines, and the series states.pvd.
+
+    Args:
+        scenery: mesh, materials and fibers.
+        snapshots: the states, in the order of the series.
+        write: writes a file, such as `RunFolder.write`.
+        fields: recovered fields of the states, if at hand.
+
+    Returns:
+        The names written.
+    """
+    nodes = split_nodes(scenery.mesh)
+    entries: list[tuple[float, list[str]]] = []
+    for number, state in enumerate(snapshots):
+        grid = body_grid(scenery, state, fields[number] if fields else None, nodes)
+        files = {f"{state.label}.vtu": grid}
+        if scenery.lines is not None:
+            files[f"{state.label}_fibers.vtp"] = fiber_lines(
+                scenery.mesh, scenery.lines, state.displacement, state.fiber_force
+            )
+        for name, data in files.items():
+            write(name, functools.partial(write_grid, data))
+        entries.append((state.pressure_kpa, list(files)))
+    write("states.pvd", functools.partial(write_series, entries=entries))
+    return [*(name for _, names in entries for name in names), "states.pvd"]
 
 
 def _vtk_type(cell_type: str) -> int:
