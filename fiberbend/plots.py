@@ -23,6 +23,9 @@ SIZE = (1000, 700)
 
 _BLUE, _RED = "#1f5a99", "#c0392b"
 _SAME_ANGLE = 0.05
+_ANGLE = ("pressure_kPa", "angle_deg")
+_PATH = ("tip_z_mm", "tip_y_mm", "pressure_kPa")
+_FORCE = ("pressure_kPa", "tip_force_N")
 
 
 def plot_pressure_angle(
@@ -44,7 +47,7 @@ def plot_pressure_angle(
     Raises:
         ValueError: no row holds both values.
     """
-    data = _columns(rows, "pressure_kPa", "angle_deg")
+    data = _columns(rows, _ANGLE)
     page, axes = _axes(title, reason, "pressure P (kPa)", "bending angle θ (°)")
     axes.plot(*data, "o-", color=_BLUE, markersize=4, linewidth=1.8)
     for angle in angles:
@@ -74,7 +77,7 @@ def plot_tip_path(
     Raises:
         ValueError: no row holds all three values.
     """
-    z, y, pressure = _columns(rows, "tip_z_mm", "tip_y_mm", "pressure_kPa")
+    z, y, pressure = _columns(rows, _PATH)
     page, axes = _axes(title, reason, "z (mm)", "y (mm)")
     axes.plot(*_smooth(z, y), "-", color=_BLUE, linewidth=1.8)
     axes.plot(z, y, "o", color=_BLUE, markersize=4)
@@ -105,7 +108,7 @@ def plot_tip_force(
     Raises:
         ValueError: no row holds both values.
     """
-    data = _columns(rows, "pressure_kPa", "tip_force_N")
+    data = _columns(rows, _FORCE)
     page, axes = _axes(title, reason, "pressure P (kPa)", "tip force (N)")
     axes.plot(*data, "o-", color=_BLUE, markersize=4, linewidth=1.8)
     end = (float(data[0][-1]), float(data[1][-1]))
@@ -133,20 +136,15 @@ def draw_plots(
     Returns:
         The names written.
     """
-    common = {"title": title, "reason": reason}
-    plots: dict[str, tuple[Callable[..., None], dict[str, Any], tuple[str, ...]]] = {
-        "pressure_angle.png": (
-            plot_pressure_angle,
-            common | {"angles": angles},
-            ("pressure_kPa", "angle_deg"),
-        ),
-        "tip_path.png": (plot_tip_path, common, ("tip_z_mm", "tip_y_mm", "pressure_kPa")),
-        "tip_force.png": (plot_tip_force, common, ("pressure_kPa", "tip_force_N")),
+    plots: dict[str, tuple[Callable[..., None], tuple[str, ...]]] = {
+        "pressure_angle.png": (functools.partial(plot_pressure_angle, angles=angles), _ANGLE),
+        "tip_path.png": (plot_tip_path, _PATH),
+        "tip_force.png": (plot_tip_force, _FORCE),
     }
     drawn = []
-    for name, (plot, options, columns) in plots.items():
+    for name, (plot, columns) in plots.items():
         if any(_complete(row, columns) for row in rows):
-            write(name, functools.partial(plot, rows, **options))
+            write(name, functools.partial(plot, rows, title=title, reason=reason))
             drawn.append(name)
     return drawn
 
@@ -155,7 +153,7 @@ def _complete(row: Row, columns: Sequence[str]) -> bool:
     return all(row.get(name) is not None for name in columns)
 
 
-def _columns(rows: Sequence[Row], *names: str) -> list[Floats]:
+def _columns(rows: Sequence[Row], names: Sequence[str]) -> list[Floats]:
     full = [[row[name] for name in names] for row in rows if _complete(row, names)]
     if not full:
         raise ValueError(f"no row of the history holds {', '.join(names)}")

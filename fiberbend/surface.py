@@ -33,10 +33,12 @@ def boundary_facets(mesh: MeshData, cells: NDArray[np.bool_]) -> Ints:
     # three corners already tell facets of a conforming mesh apart
     first, second, third = corners.reshape(-1, corners.shape[2]).T[:3]
     order = np.lexsort((third, second, first))
-    same = np.ones(len(order) - 1, dtype=bool)
-    for column in (first, second, third):
-        same &= column[order][1:] == column[order][:-1]
-    single = order[~(np.r_[False, same] | np.r_[same, False])]
+    ordered = np.column_stack([first, second, third])[order]
+    same = (ordered[1:] == ordered[:-1]).all(axis=1)
+    shared = np.zeros(len(order), dtype=bool)
+    shared[1:] |= same
+    shared[:-1] |= same
+    single = order[~shared]
     facets = len(vertices)
     return np.column_stack([chosen[single // facets], single % facets])
 
