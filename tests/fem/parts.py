@@ -1,0 +1,181 @@
+"""Small meshes, states and scenes for the tests of fem."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from fem.domain import Domain
+from fem.effect import Effect
+from fem.effects.chamber_pressure import ChamberPressure
+from fem.effects.elastic import Elastic
+from fem.effects.gravity import Gravity
+from fem.effects.incompressible import Incompressible
+from fem.effects.supports import Clamp, Symmetry
+from fem.effects.winding import SmearedWinding
+from fem.effects.winding import Winding as Discrete
+from fem.frames import Frames
+from fem.march import March, Ramp, Report, Rules, State
+from fem.measures import BendingAngle, Tip
+from fem.newton import Newton, Outcome, Settings
+from fem.scene import Scene
+from geometry.dimensions import Actuator
+from geometry.embed import embed, smear
+from geometry.mesh import MeshData
+from geometry.shapes import tube_sector
+from geometry.size import MeshSize
+from geometry.sweep import swept_body
+from geometry.tets import to_tetrahedra
+from geometry.winding import Winding
+
+Floats = npt.NDArray[np.float64]
+CELLS = ("hexahedron", "tetrahedron")
+
+STUB = Actuator(radius=8, length=8, wall=2, floor=2, sheath=None, cap=4)
+"""Shortest actuator with every surface."""
+SHORT = Actuator(radius=8, length=24, wall=2, floor=2, sheath=1, cap=5)
+"""Cheapest actuator that bends."""
+PITCH = 3.0
+EA = 881.0
+
+
+def _as(cell: str, mesh: MeshData) -> MeshData:
+    return to_tetrahedra(mesh) if cell == "tetrahedron" else mesh
+
+
+@functools.cache
+def stub(cell: str, half: bool = False) -> Domain:
+    """A whole closed chamber, 80 hexahedra or 480 tetrahedra."""
+    return Domain(_as(cell, swept_body(STUB, MeshSize(axial=8, section=1, half=half))))
+
+
+@functools.cache
+def sector(cell: str) -> Domain:
+    """A quarter of a short tube."""
+    return Domain(_as(cell, tube_sector(8.0, 10.0, np.pi / 2, 3.0, (1, 2, 1))))
+
+
+def law(name: str, regions: Sequence[str], scale: float = 1.0) -> Elastic:
+    """An elastic effect with numbers of a rubber."""
+    parameters = {
+        "neo-hooke": {"mu": 0.22 * scale},
+        "mooney-rivlin": {"c10": 0.09 * scale, "c01": 0.03 * scale},
+        "yeoh": {"c1": 0.11 * scale, "c2": 0.02 * scale, "c3": 0.003 * scale},
+    }
+    return Elastic(name, dict.fromkeys(regions, parameters[name]))
+
+
+def winding(domain: Domain, width: float, tension_only: bool = False) -> Discrete:
+    """The stub's fibers, every one."""
+    segments = embed(domain.data, STUB, Winding("double-helix", PITCH, width))
+    return Discrete(segments, EA, tension_only)
+
+
+def smeared(domain: Domain, actuator: Actuator = STUB) -> SmearedWinding:
+    """The same fibers smeared."""
+    segments = smear(domain.data, actuator, Winding("double-helix", PITCH, 0.38))
+    return SmearedWinding(segments, EA)
+
+
+def perturb(scene: Scene, amplitude: float, seed: int) -> Floats:
+    """Set a random state: displacements in mm, pressures in MPa, scalars; returns w."""
+    rng = np.random.default_rng(seed)
+    for name in scene.body.scalars:
+        scene.set_scalar(name, 0.3 + rng.random())
+    scene.set(amplitude * rng.uniform(-1, 1, scene.body.owned))
+    for discrete in scene.discrete.values():
+        discrete.predict(None)
+    return scene.w.copy()
+
+
+def set_positions(scene: Scene, x: Floats) -> None:
+    """Move every node to a deformed position (n, 3) given by input numbers."""
+    body = scene.body
+    body.set_displacement((x - body.domain.data.nodes)[body.owned_nodes])
+    scene.set(scene.w.copy())
+
+
+# --- a small actuator that bends ----------------------------------------------------------------
+
+
+@functools.cache
+def short_domain() -> Domain:
+    """Half of the short actuator, 124 hexahedra."""
+    return Domain(swept_body(SHORT, MeshSize(axial=6, section=1, half=True)))
+
+
+def actuator_effects(domain: Domain) -> list[Effect]:
+    """The paper's actuator with a smeared winding."""
+    wall, floor, sheath = {"c1": 0.11, "c2": 0.02}, {"c1": 7.9}, {"c1": 0.012662}
+    return [
+        Elastic("yeoh", {"wall": wall, "floor": floor, "sheath": sheath}),
+        Incompressible(),
+        ChamberPressure(),
+        smeared(domain, SHORT),
+        Clamp(),
+        Symmetry(),
+    ]
+
+
+@dataclasses.dataclass
+class Bender:
+    """The short actuator with all that a march needs, and what the march told.
+
+    Attributes:
+        states: every converged state, the state at rest first.
+    """
+
+    scene: Scene
+    newton: Newton
+    angle: BendingAngle
+    tip: Tip
+    march: March
+    states: list[State]
+    energies: list[float]
+    warnings: list[str]
+
+    def run(self, ramps: Sequence[Ramp]) -> Report:
+        """March from where it is."""
+        if not self.march.states:
+            self.march.start()
+            self.states.append(self.march.states[-1])
+            self.energies.append(sum(stored(self.scene).values()))
+        return self.march.run(ramps)
+
+
+def stored(scene: Scene) -> dict[str, float]:
+    """Energies of everything but the load."""
+    return {key: e for key, e in scene.energies().items() if key != "ChamberPressure"}
+
+
+def bender(
+    rules: Rules | None = None,
+    settings: Settings | None = None,
+    wrap: Callable[[Newton], Newton] = lambda newton: newton,
+    domain: Domain | None = None,
+) -> Bender:
+    """A fresh short actuator at rest; `wrap` may put something in front of Newton."""
+    domain = domain or short_domain()
+    scene = Scene(domain, actuator_effects(domain))
+    newton = wrap(Newton(scene, domain.comm, settings or Settings()))
+    frames = Frames(scene.body)
+    angle = BendingAngle(scene.body, frames)
+    states: list[State] = []
+    energies: list[float] = []
+    warnings: list[str] = []
+
+    def on_step(state: State, _outcome: Outcome) -> None:
+        states.append(state)
+        energies.append(sum(stored(scene).values()))
+
+    march = March(scene, newton, frames, angle, rules or Rules(), on_step, warnings.append)
+    return Bender(scene, newton, angle, Tip(scene.body), march, states, energies, warnings)
+
+
+def gravity(regions: Sequence[str]) -> Gravity:
+    """Weight of a rubber, a thousandfold so that it counts."""
+    return Gravity(dict.fromkeys(regions, 1.07e-06), (1200.0, -9810.0, 500.0))

@@ -1,0 +1,178 @@
+"""Every effect: R = ∂Π/∂w, K = ∂R/∂w, symmetric, and blind to rigid motions."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from fem.domain import Domain
+from fem.effect import Effect
+from fem.effects.chamber_pressure import ChamberPressure
+from fem.effects.incompressible import Incompressible
+from fem.scene import Scene
+from geometry.checks import region_volumes
+from tests.fem.parts import CELLS, Floats, gravity, law, perturb, smeared, stub, winding
+
+REGIONS = ("wall", "floor")
+# The fibers' matrix lives in the sparsity of a solid: one so soft that it does not count.
+SOFT = law("neo-hooke", REGIONS, scale=1e-9)
+
+EFFECTS: dict[str, Callable[[Domain], list[Effect]]] = {
+    "neo-hooke": lambda _: [law("neo-hooke", REGIONS)],
+    "mooney-rivlin": lambda _: [law("mooney-rivlin", REGIONS)],
+    "yeoh": lambda _: [law("yeoh", REGIONS)],
+    "incompressible": lambda _: [Incompressible()],
+    "perturbed": lambda _: [Incompressible({"wall": 40.0, "floor": 11.0})],
+    "pressure": lambda _: [ChamberPressure()],
+    "ribbon": lambda domain: [SOFT, winding(domain, 0.38)],
+    "line": lambda domain: [SOFT, winding(domain, 0.0)],
+    "tension-only": lambda domain: [SOFT, winding(domain, 0.38, tension_only=True)],
+    "smeared": lambda domain: [SOFT, smeared(domain)],
+    "gravity": lambda _: [gravity(REGIONS)],
+}
+LINEAR = {"gravity"}
+AMPLITUDE = 0.03
+"""Of the random displacements in mm: strains of some 5 %."""
+STENCIL = ((1, 2 / 3), (2, -1 / 12))
+"""Central differences of order 4."""
+
+cases = pytest.mark.parametrize("name", EFFECTS)
+cells = pytest.mark.parametrize("cell", CELLS)
+
+
+@functools.cache
+def _scene(name: str, cell: str) -> Scene:
+    domain = stub(cell)
+    return Scene(domain, EFFECTS[name](domain))
+
+
+def _step(name: str) -> float:
+    """In mm; so small for slack fibers that none is caught between tension and slack."""
+    return 1e-7 if name == "tension-only" else 1e-4
+
+
+def _direction(scene: Scene, seed: int) -> Floats:
+    return np.random.default_rng(seed).uniform(-1, 1, scene.body.owned)
+
+
+def _potential(scene: Scene, w: Floats) -> float:
+    scene.set(w)
+    return sum(scene.energies().values())
+
+
+def _residual(scene: Scene, w: Floats) -> Floats:
+    scene.set(w)
+    return scene.residual()[0]
+
+
+def _differences(f: Callable[[Floats], Floats | float], w: Floats, v: Floats, h: float) -> Floats:
+    return np.asarray(sum(c * (f(w + k * h * v) - f(w - k * h * v)) for k, c in STENCIL)) / h
+
+
+def _times_tangent(scene: Scene, w: Floats, v: Floats) -> Floats:
+    scene.set(w)
+    matrix = scene.assemble_tangent()
+    x, y = matrix.createVecs()
+    x.array_w[:] = v
+    matrix.mult(x, y)
+    result: Floats = y.array_r.copy()
+    return result
+
+
+@cells
+@cases
+def test_residual_is_the_derivative_of_the_potential(name: str, cell: str) -> None:
+    # along R itself plus noise, so that the derivative is not small by chance; a step of 1e-4 mm
+    # leaves 1e-9 of truncation and of round-off
+    scene = _scene(name, cell)
+    w = perturb(scene, AMPLITUDE, 1)
+    r = _residual(scene, w)
+    v = r / np.abs(r).max() + _direction(scene, 2)
+    slope = float(_differences(lambda at: _potential(scene, at), w, v, _step(name)))
+    assert r @ v == pytest.approx(slope, rel=1e-7)
+    assert np.abs(r).max() > 0
+
+
+@cells
+@cases
+def test_tangent_is_the_derivative_of_the_residual(name: str, cell: str) -> None:
+    # K is stored as one triangle, so an unsymmetric K would fail here as well
+    scene = _scene(name, cell)
+    w = perturb(scene, AMPLITUDE, 3)
+    v = _direction(scene, 4)
+    slope = _differences(lambda at: _residual(scene, at), w, v, _step(name))
+    product = _times_tangent(scene, w, v)
+    assert np.abs(product - slope).max() <= 1e-7 * max(np.abs(slope).max(), 1e-10)
+    assert (name in LINEAR) == (not np.abs(product).max() > 0)
+
+
+@cells
+@cases
+def test_second_derivative_is_symmetric(name: str, cell: str) -> None:
+    # of the residual, without K: a load without a potential would have no symmetric tangent
+    scene = _scene(name, cell)
+    w = perturb(scene, AMPLITUDE, 5)
+    a, b = _direction(scene, 6), _direction(scene, 7)
+    along_a = _differences(lambda at: _residual(scene, at), w, a, _step(name))
+    along_b = _differences(lambda at: _residual(scene, at), w, b, _step(name))
+    scale = float(np.linalg.norm(along_a) * np.linalg.norm(b) / np.sqrt(len(b)))
+    assert float(b @ along_a) == pytest.approx(float(a @ along_b), abs=1e-7 * max(scale, 1e-10))
+
+
+@cells
+@pytest.mark.parametrize("name", [name for name in EFFECTS if name != "gravity"])
+def test_rigid_motion_changes_nothing(name: str, cell: str) -> None:
+    # Π is objective, and forces turn with the body
+    scene = _scene(name, cell)
+    body, nodes = scene.body, scene.domain.data.nodes
+    w = perturb(scene, AMPLITUDE, 8)
+    before, forces = _potential(scene, w), _residual(scene, w)
+    turn = Rotation.from_rotvec([0.9, -1.7, 0.6]).as_matrix()
+    moved = w.copy()
+    x = nodes + w[body.node_dofs]
+    moved[body.node_dofs] = x @ turn.T + [20.0, -7.0, 11.0] - nodes
+    after, turned = _potential(scene, moved), _residual(scene, moved)
+    expected = forces.copy()
+    expected[body.node_dofs] = forces[body.node_dofs] @ turn.T
+    assert after == pytest.approx(before, rel=1e-10)
+    assert np.abs(turned - expected).max() < 1e-10 * np.abs(forces).max()
+
+
+def test_gravity_does_the_work_of_the_weight() -> None:
+    # Π under a translation is −m g · c, exactly
+    scene = _scene("gravity", "hexahedron")
+    scene.set_scalar("gravity", 0.4)
+    shift = np.array([3.0, -2.0, 5.0])
+    w = np.zeros(scene.body.owned)
+    w[scene.body.node_dofs] = shift
+    mass = 1.07e-6 * sum(region_volumes(scene.domain.data).values())
+    work = 0.4 * mass * (shift @ [1200.0, -9810.0, 500.0])
+    assert _potential(scene, w) == pytest.approx(-work, rel=1e-9)
+
+
+def test_pressure_is_conjugate_to_the_volume() -> None:
+    # ∂Π/∂P = −V, and ∂R/∂P is the load that closures use
+    scene = _scene("pressure", "hexahedron")
+    w = perturb(scene, AMPLITUDE, 9)
+    scene.set_scalar("pressure", 0.7)
+    r = _residual(scene, w)
+    assert scene.energies()["ChamberPressure"] == pytest.approx(-0.7 * scene.conjugate("pressure"))
+    assert r == pytest.approx(0.7 * scene.load("pressure"), abs=1e-12 * np.abs(r).max())
+
+
+def test_slack_fibers_carry_nothing() -> None:
+    # a uniform contraction makes every fiber slack, an expansion none
+    scene = _scene("tension-only", "hexahedron")
+    nodes = scene.domain.data.nodes
+    for factor, carries in ((-0.02, False), (0.02, True)):
+        w = np.zeros(scene.body.owned)
+        w[scene.body.node_dofs] = factor * nodes
+        scene.set(w)
+        potential = scene.discrete["Winding"]
+        assert (potential.energy() > 0) == carries
+        e = scene.discrete["Winding"].strain  # type: ignore[attr-defined]
+        assert e == pytest.approx(factor, abs=1e-12)
