@@ -44,7 +44,8 @@ def figure(size: tuple[int, int]) -> Any:
 
 def save(page: Any, target: Target) -> None:
     """Write a matplotlib figure as PNG to a path or to a file open for writing bytes."""
-    page.savefig(target, format="png", dpi=_DPI, facecolor="white")
+    quick = {"compress_level": 4}
+    page.savefig(target, format="png", dpi=_DPI, facecolor="white", pil_kwargs=quick)
 
 
 class Page:

@@ -7,6 +7,7 @@ it is used, and without its global state.
 from __future__ import annotations
 
 import functools
+import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -20,7 +21,6 @@ Row = Mapping[str, float | None]
 
 SIZE = (1000, 700)
 """Width and height of a plot in pixels."""
-
 _BLUE, _RED = "#1f5a99", "#c0392b"
 _SAME_ANGLE = 0.05
 _ANGLE = ("pressure_kPa", "angle_deg")
@@ -81,16 +81,15 @@ def plot_tip_path(
     page, axes = _axes(title, reason, "z (mm)", "y (mm)")
     axes.plot(*_smooth(z, y), "-", color=_BLUE, linewidth=1.8)
     axes.plot(z, y, "o", color=_BLUE, markersize=4)
-    ends = {0: "start", len(z) - 1: "end"}
-    for i, name in ends.items():
+    for i, name in {0: "start", len(z) - 1: "end"}.items():
         axes.plot(z[i], y[i], "o", color=_RED, markersize=9, zorder=3)
         above = 14 if y[i] >= y.mean() else -24
         _label(axes, f"{name}: {pressure[i]:.1f} kPa", (z[i], y[i]), (0, above), "center")
     reach = 0.62 * max(float(np.ptp(z)), float(np.ptp(y)), 10.0)
     axes.set_aspect("equal")
     axes.set_ylim((y.min() + y.max()) / 2 - reach, (y.min() + y.max()) / 2 + reach)
-    wide = reach * SIZE[0] / SIZE[1]
-    axes.set_xlim((z.min() + z.max()) / 2 - wide, (z.min() + z.max()) / 2 + wide)
+    reach *= SIZE[0] / SIZE[1]
+    axes.set_xlim((z.min() + z.max()) / 2 - reach, (z.min() + z.max()) / 2 + reach)
     save(page, target)
 
 
@@ -111,7 +110,7 @@ def plot_tip_force(
     data = _columns(rows, _FORCE)
     page, axes = _axes(title, reason, "pressure P (kPa)", "tip force (N)")
     axes.plot(*data, "o-", color=_BLUE, markersize=4, linewidth=1.8)
-    end = (float(data[0][-1]), float(data[1][-1]))
+    end = (data[0][-1], data[1][-1])
     _label(axes, f"{end[1]:.3g} N at {end[0]:.1f} kPa", end, (-12, 4), "right")
     _range(axes, data)
     save(page, target)
@@ -178,16 +177,14 @@ def _axes(title: str, reason: str | None, across: str, up: str) -> tuple[Any, An
     axes = page.add_axes((0.1, 0.11, 0.86, 0.77))
     axes.set_title(title, fontsize=15, pad=24 if reason else 10)
     if reason:
-        short = reason if len(reason) <= 110 else f"{reason[:109]}…"
-        note = f"ended early: {short}"
+        note = f"ended early: {textwrap.shorten(reason, 110, placeholder=' …')}"
         axes.text(0.5, 1.015, note, transform=axes.transAxes, ha="center", color=_RED, fontsize=10)
     axes.set_xlabel(across, fontsize=13)
     axes.set_ylabel(up, fontsize=13)
     axes.tick_params(labelsize=11)
     axes.grid(color="0.9")
     axes.set_axisbelow(True)
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(False)
+    axes.spines[["top", "right"]].set_visible(False)
     return page, axes
 
 
