@@ -26,8 +26,6 @@ COLORS = {
 }
 """Colour of each region and of the fibers."""
 
-COLORMAP = "viridis"
-
 _NAMES = {"layer": "strain-limiting layer", "fiber": "fibers"}
 _DPI = 100
 
@@ -40,6 +38,14 @@ def figure(size: tuple[int, int]) -> Any:
     page = Figure(figsize=(size[0] / _DPI, size[1] / _DPI), dpi=_DPI)
     FigureCanvasAgg(page)
     return page
+
+
+def colormap() -> Any:
+    """Viridis without its darkest part, on which dark fibers would not show."""
+    from matplotlib import colormaps
+    from matplotlib.colors import ListedColormap
+
+    return ListedColormap(colormaps["viridis"](np.linspace(0.2, 1.0, 256)))
 
 
 def save(page: Any, target: Target) -> None:
@@ -97,7 +103,7 @@ class Page:
 
         height = self._size[1]
         axes = self._figure.add_axes((0.27, 62 / height, 0.46, 16 / height))
-        colors = ScalarMappable(Normalize(*limits), COLORMAP)
+        colors = ScalarMappable(Normalize(*limits), colormap())
         bar = self._figure.colorbar(colors, cax=axes, orientation="horizontal", extend="max")
         bar.ax.tick_params(labelsize=12)
         bar.set_label(label, fontsize=13)

@@ -8,7 +8,7 @@ from typing import IO
 
 import numpy as np
 
-from fiberbend.page import Page, nice_above
+from fiberbend.page import Page, colormap, nice_above
 from fiberbend.props import Props
 from fiberbend.recovery import NodalFields, recover, split_nodes
 from fiberbend.snapshot import Scenery, Snapshot, Target, Write
@@ -133,7 +133,7 @@ class Album:
             values = self._skin.interpolate(self._strain[number])
             skin["strain"] = np.resize(values, skin.n_points)
             layers = [Layer(skin, scalars="strain"), *self._props.threads(state)]
-            self._images[number] = self._stage.draw(layers, self._view, self._limits)
+            self._images[number] = self._stage.draw(layers, self._view, self._limits, colormap())
         return self._images[number]
 
     def _peak(self, strain: Floats) -> float:

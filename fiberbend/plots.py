@@ -1,7 +1,6 @@
 """Curves of a run: bending angle and tip force against pressure, and the path of the tip.
 
-Rows are those of history.csv; what a row does not hold is left out. matplotlib is imported where
-it is used, and without its global state.
+Rows are those of history.csv; what a row does not hold is left out.
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ def plot_pressure_angle(
     """
     data = _columns(rows, _ANGLE)
     page, axes = _axes(title, reason, "pressure P (kPa)", "bending angle θ (°)")
-    axes.plot(*data, "o-", color=_BLUE, markersize=4, linewidth=1.8)
+    axes.plot(*data, "o-", color=_BLUE, markersize=4, linewidth=1.8, clip_on=False)
     for angle in angles:
         nearest = int(np.abs(data[1] - angle).argmin())
         if abs(data[1][nearest] - angle) > _SAME_ANGLE:
@@ -109,7 +108,7 @@ def plot_tip_force(
     """
     data = _columns(rows, _FORCE)
     page, axes = _axes(title, reason, "pressure P (kPa)", "tip force (N)")
-    axes.plot(*data, "o-", color=_BLUE, markersize=4, linewidth=1.8)
+    axes.plot(*data, "o-", color=_BLUE, markersize=4, linewidth=1.8, clip_on=False)
     end = (data[0][-1], data[1][-1])
     _label(axes, f"{end[1]:.3g} N at {end[0]:.1f} kPa", end, (-12, 4), "right")
     _range(axes, data)
@@ -168,8 +167,8 @@ def _smooth(z: Floats, y: Floats) -> tuple[Floats, Floats]:
     if kept.sum() < 3:
         return z, y
     fine = np.linspace(0.0, way[-1], 400)
-    spline = CubicSpline(way[kept], np.column_stack([z, y])[kept])
-    return spline(fine)[:, 0], spline(fine)[:, 1]
+    curve = CubicSpline(way[kept], np.column_stack([z, y])[kept])(fine)
+    return curve[:, 0], curve[:, 1]
 
 
 def _axes(title: str, reason: str | None, across: str, up: str) -> tuple[Any, Any]:
@@ -183,7 +182,6 @@ def _axes(title: str, reason: str | None, across: str, up: str) -> tuple[Any, An
     axes.set_ylabel(up, fontsize=13)
     axes.tick_params(labelsize=11)
     axes.grid(color="0.9")
-    axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     return page, axes
 

@@ -103,7 +103,7 @@ class Stage:
         layers: Sequence[Layer],
         view: View,
         limits: tuple[float, float] = (0.0, 1.0),
-        colormap: str = "viridis",
+        colors: Any = "viridis",
     ) -> Image:
         """Draw layers on white.
 
@@ -111,7 +111,7 @@ class Stage:
             layers: what to draw.
             view: from where.
             limits: values at the ends of the colour map.
-            colormap: name of a matplotlib colour map.
+            colors: a matplotlib colour map or its name.
 
         Returns:
             Pixels (height, width, 3).
@@ -126,7 +126,7 @@ class Stage:
                 data,
                 color=None if layer.scalars else layer.color,
                 scalars=layer.scalars,
-                cmap=colormap if layer.scalars else None,
+                cmap=colors if layer.scalars else None,
                 clim=limits if layer.scalars else None,
                 n_colors=256,
                 show_scalar_bar=False,
