@@ -1,7 +1,61 @@
-"""Fields, pictures and plots of a run."""
+"""Fields, pictures and plots of a run, from its snapshots and history."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from typing import IO, Any
 
-def draw(*_args: object) -> None:
-    """Placeholder while the output is being written."""
+import numpy as np
+
+from fiberbend.case import Case
+from fiberbend.recovery import NodalFields, recover
+from fiberbend.runfolder import RunFolder
+from fiberbend.snapshot import Scenery, Snapshot
+
+
+def draw(
+    folder: RunFolder,
+    case: Case,
+    scenery: Scenery,
+    snapshots: Sequence[Snapshot],
+    rows: Sequence[dict[str, Any]],
+    reason: str | None,
+    say: Callable[[str], None],
+) -> None:
+    """Write fields/*.vtu, pictures/*.png and the plots of a run folder; on rank 0.
+
+    Args:
+        folder: where to write.
+        case: says which of them are wanted, and names the requested angles.
+        scenery: mesh, materials and fibers.
+        snapshots: the states to show; none for a run that never converged a step.
+        rows: the history.
+        reason: why the run ended early, for the plots' titles, or None.
+        say: takes a line for the user where nothing can be drawn.
+    """
+    output = case.output
+
+    def into(sub: str) -> Callable[[str, Callable[[IO[bytes]], object]], None]:
+        return lambda name, fill: folder.write(f"{sub}/{name}", fill)
+
+    fields: list[NodalFields] = []
+    if snapshots and (output.fields or output.pictures):
+        fields = [recover(scenery, snapshot) for snapshot in snapshots]
+    if output.fields and snapshots:
+        from fiberbend.vtu import write_fields
+
+        write_fields(scenery, snapshots, into("fields"), fields)
+    if not output.pictures:
+        return
+    from fiberbend.plots import draw_plots
+
+    angles = [float(np.rad2deg(angle)) for angle in output.at_angles]
+    draw_plots(rows, into("pictures"), angles, case.title, reason)
+    if snapshots:
+        from fiberbend.pictures import draw_pictures
+        from fiberbend.stage import PictureError
+
+        try:
+            draw_pictures(scenery, snapshots, into("pictures"), fields)
+        except PictureError as error:
+            say(f"no pictures: {error}")

@@ -320,7 +320,7 @@ class _Run:
             scenery,
             self.snapshots,
             self.recorder.rows,
-            "" if status == "converged" else f"{status}: {reason}",
+            None if status == "converged" else f"{status}: {reason}",
             self.progress.message,
         )
 

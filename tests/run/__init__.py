@@ -1,0 +1,1 @@
+"""Whole runs: from a case to its folder."""
