@@ -1,0 +1,45 @@
+"""A bent body with discrete fibers on however many ranks there are; prints what it found."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+from mpi4py import MPI
+
+from fem.domain import Domain
+from fem.march import Ramp
+from geometry.size import MeshSize
+from geometry.sweep import swept_body
+from tests.fem.parts import SHORT, bender
+
+ANGLE = np.deg2rad(4.0)
+
+
+def measure(comm: MPI.Comm) -> dict[str, float]:
+    """Bend the short actuator to an angle and by a pressure."""
+    domain = Domain(swept_body(SHORT, MeshSize(axial=6, section=1, half=True)), comm)
+    body = bender(domain=domain)
+    report = body.run([Ramp("pressure", 0.03, largest=0.01, at=(ANGLE,))])
+    assert report.status == "converged", report.reason
+    bent = next(s for s in body.states if abs(s.measures["followed"] - ANGLE) < 1e-9)
+    low, high = body.scene.discrete["SmearedWinding"].force_range()  # type: ignore[attr-defined]
+    tip = body.tip.position()
+    return {
+        "pressure at the angle": bent.scalars["pressure"],
+        "angle": body.angle.value(),
+        "tip y": float(tip[1]),
+        "tip z": float(tip[2]),
+        "volume": body.scene.conjugate("pressure"),
+        "least fiber force": low,
+        "greatest fiber force": high,
+        "least det F": body.scene.det_f(),
+        "energy": sum(body.scene.energies().values()),
+        "unknowns": float(body.scene.body.size),
+    }
+
+
+if __name__ == "__main__":
+    found = measure(MPI.COMM_WORLD)
+    if MPI.COMM_WORLD.rank == 0:
+        print(json.dumps(found))

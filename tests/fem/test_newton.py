@@ -1,0 +1,104 @@
+"""Newton's method on a bending body: its order, its variants, its failures."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from fem.newton import Outcome, Settings
+from tests.fem.parts import Bender, Floats, bender
+
+PRESSURE = 0.004
+"""MPa; the body turns by some 2°, enough for the fibers' geometric stiffness to matter."""
+
+
+def _solve(hybrid: bool, tolerance: float = 1e-9) -> tuple[Bender, Outcome]:
+    body = bender(settings=Settings(tolerance=tolerance, iterations=25, hybrid=hybrid, reuse=False))
+    body.scene.set_scalar("pressure", PRESSURE)
+    for discrete in body.scene.discrete.values():
+        discrete.predict(None)
+    outcome = body.newton.solve(body.scene.w.copy())
+    assert outcome.converged, outcome.reason
+    return body, outcome
+
+
+@pytest.fixture(scope="module")
+def plain() -> tuple[Bender, Outcome]:
+    """The solution with the true tangent."""
+    return _solve(hybrid=False)
+
+
+def test_corrections_shrink_quadratically_with_the_true_tangent() -> None:
+    # an inconsistent term of R or K would leave them linear
+    body, _ = _solve(hybrid=False)
+    scene, newton = body.scene, body.newton
+    scene.set_scalar("pressure", 3 * PRESSURE)
+    sizes = []
+    for _ in range(6):
+        scene.assemble_tangent()
+        newton.factor.renew()
+        r, _ = scene.residual()
+        r[~scene.free[: scene.body.owned]] = 0.0
+        step = newton.solve_linear(r)
+        scene.set(scene.w - step)
+        sizes.append(np.abs(step[scene.body.node_dofs]).max())
+    # fibers 1e5 stiffer than rubber give large constants: 0.07 to 10 per mm are seen; round-off
+    # ends it at 1e-13 mm
+    for before, after in itertools.pairwise(sizes[2:]):
+        assert after < max(100 * before**2, 1e-12)
+    assert sizes[-1] < 1e-10
+
+
+def test_predicted_fiber_force_changes_the_way_and_not_the_end() -> None:
+    body, plain = _solve(hybrid=False)
+    other, hybrid = _solve(hybrid=True)
+    assert hybrid.iterations <= plain.iterations
+    assert other.angle.value() == pytest.approx(body.angle.value(), rel=1e-7)
+    found, exact = (b.scene.body.displacement() for b in (other, body))
+    assert np.abs(found - exact).max() < 1e-7 * np.abs(exact).max()
+
+
+class _Volume:
+    """Closing equation: the chamber's volume takes a value."""
+
+    def __init__(self, body: Bender, target: float) -> None:
+        self._scene, self._target = body.scene, target
+
+    def value(self) -> float:
+        return self._scene.conjugate("pressure") / self._target - 1
+
+    def row(self) -> Floats:
+        return -self._scene.load("pressure") / self._target
+
+
+def test_border_finds_the_scalar(plain: tuple[Bender, Outcome]) -> None:
+    # the pressure that belongs to a volume, from a wrong one
+    body, _ = plain
+    volume = body.scene.conjugate("pressure")
+    w = body.scene.w.copy()
+    body.scene.set_scalar("pressure", 0.7 * PRESSURE)
+    outcome = body.newton.solve(0.95 * w, ["pressure"], [_Volume(body, volume)])
+    assert outcome.converged, outcome.reason
+    assert body.scene.scalar("pressure") == pytest.approx(PRESSURE, rel=1e-7)
+    with pytest.raises(ValueError, match="closing equation"):
+        body.newton.solve(w, ["pressure"], [])
+
+
+def test_inertia_counts_the_pressure_dofs(plain: tuple[Bender, Outcome]) -> None:
+    # on a stable branch K has as many negative eigenvalues as there are constraints on the volume
+    body, _ = plain
+    body.scene.assemble_tangent()
+    body.newton.factor.renew()
+    assert body.newton.factor.negative_pivots == int(body.scene.volumetric.sum())
+
+
+def test_an_inverted_start_is_refused() -> None:
+    # det F <= 0 must not reach a logarithm or a root, and must not pass for converged
+    body = bender()
+    w = body.scene.w.copy()
+    w[body.scene.body.node_dofs[:, 2]] = -1.5 * body.scene.domain.data.nodes[:, 2]
+    outcome = body.newton.solve(w)
+    assert not outcome.converged
+    assert outcome.least_det_f < 0
