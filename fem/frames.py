@@ -51,6 +51,10 @@ class Frames:
         position = (self._nodes[:, 2] - low[2]) / (self.z[1] - self.z[0])
         self._below = np.clip(position.astype(int), 0, count - 2)
         self._above_share = position - self._below
+        ones = np.ones((len(self._nodes), 1))
+        sums = self._station_sums(np.hstack([ones, self._nodes[:, 2:]]))
+        self.mean_z: Floats = sums[:, 1] / sums[:, 0]
+        """Where the fitted rotations belong: mean z of the nodes that each station weighs, (k,)."""
         section = self._nodes.copy()
         section[:, 2] = 0.0
         self._section = section

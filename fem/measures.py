@@ -9,7 +9,7 @@ import numpy.typing as npt
 from mpi4py import MPI
 
 from fem.domain import Domain
-from fem.frames import Frames
+from fem.frames import Frames, Shape
 from fem.kinematics import Body
 from fem.scene import Scene
 
@@ -86,6 +86,35 @@ class BendingAngle:
         self._tip.add_row(row, 1.0)
         self._root.add_row(row, -1.0)
         return row
+
+
+class UniformAngle:
+    """L times the curvature of the body's middle half: what the angle were without end effects.
+
+    Near the caps the sections warp and the curvature differs; models of uniform bending compare
+    with this angle.
+
+    Args:
+        body: kinematics of a mesh with the surfaces 'section_root' and 'section_tip'.
+        frames: stations.
+    """
+
+    def __init__(self, body: Body, frames: Frames) -> None:
+        nodes, domain = body.domain.data.nodes, body.domain
+        root, tip = (
+            float(nodes[domain.surface_nodes(name), 2].mean())
+            for name in ("section_root", "section_tip")
+        )
+        self._frames = frames
+        self._length = tip - root
+        middle = np.abs(frames.mean_z - (root + tip) / 2)
+        self._middle = np.argsort(middle)[: max(2, int(np.sum(middle <= (tip - root) / 4)))]
+
+    def value(self, shape: Shape) -> float:
+        """The angle of a shape, rad."""
+        z = self._frames.mean_z[self._middle]
+        slope = np.polyfit(z, self._frames.bending(shape)[self._middle], 1)[0]
+        return float(slope * self._length)
 
 
 class Tip:

@@ -8,8 +8,9 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 
 from fem.embedded import FiberPotential
+from fem.frames import Frames
 from fem.linear import Factor
-from fem.measures import Tip, balance, mirror_factor
+from fem.measures import Tip, UniformAngle, balance, mirror_factor
 from fem.newton import Outcome
 from fem.program import State
 from fem.scene import Scene
@@ -20,20 +21,22 @@ class Recorder:
 
     Args:
         scene: the scene whose states are recorded.
+        frames: rod frames of the body.
         blocked: the tip is blocked: reactions and balances are of interest.
         rest: the state before any load.
-        rows: earlier rows of a run that is resumed.
+
+    Attributes:
+        rows: the rows so far; a run that is resumed puts the earlier ones here.
     """
 
-    def __init__(
-        self, scene: Scene, blocked: bool, rest: State, rows: list[dict[str, Any]]
-    ) -> None:
+    def __init__(self, scene: Scene, frames: Frames, blocked: bool, rest: State) -> None:
         self._scene = scene
         self._blocked = blocked
         self._factor = mirror_factor(scene.domain)
         self._tip = Tip(scene.body)
         self._volumetric = int(scene.domain.comm.allreduce(int(np.count_nonzero(scene.volumetric))))
-        self.rows = rows or [self._row(0, rest, None, None)]
+        self._uniform = UniformAngle(scene.body, frames)
+        self.rows = [self._row(0, rest, None, None)]
 
     def add(self, state: State, outcome: Outcome, factor: Factor) -> dict[str, Any]:
         """Append the row of a new state, at which the scene is; collective."""
@@ -56,6 +59,7 @@ class Recorder:
         }
         if "pressure" in state.scalars:
             row["chamber_mm3"] = self._factor * state.measures["conjugate pressure"]
+        row["uniform_angle_deg"] = float(np.rad2deg(self._uniform.value(state.shape)))
         row["newton_iterations"] = outcome.iterations if outcome else 0
         row["min_det_F"] = outcome.least_det_f if outcome else 1.0
         for discrete in scene.discrete.values():

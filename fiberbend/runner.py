@@ -135,7 +135,9 @@ class _Run:
             self.progress.message,
         )
         self.march.start()
-        self.recorder = Recorder(self.scene, self.blocked is not None, self.march.states[0], [])
+        self.recorder = Recorder(
+            self.scene, self.frames, self.blocked is not None, self.march.states[0]
+        )
         if again and self.folder is not None:
             self.snapshots = resume.load(self.folder, self.archive, self.march, self.recorder)
             self.progress.message(f"resumed after step {self.recorder.rows[-1]['step']}")
