@@ -260,11 +260,19 @@ def create_matrix(form: Any) -> PETSc.Mat:
     pattern = dolfinx.fem.petsc.create_matrix(form)
     assemble_matrix(pattern, form, None)
     pattern.assemble()
-    pattern.setOption(PETSc.Mat.Option.SYMMETRIC, True)
-    matrix = pattern.convert("sbaij", PETSc.Mat())
+    starts, columns, _ = pattern.getValuesCSR()
+    first, end = pattern.getOwnershipRange()
+    rows = np.repeat(np.arange(end - first), np.diff(starts))
+    upper = columns >= rows + first
+    here = upper & (columns < end)
+    counts = [np.bincount(rows[part], minlength=end - first) for part in (here, upper & ~here)]
+    matrix = PETSc.Mat().create(pattern.getComm())
+    matrix.setSizes(pattern.getSizes())
+    matrix.setType(PETSc.Mat.Type.SBAIJ)
+    matrix.setPreallocationNNZ(tuple(count.astype(PETSc.IntType) for count in counts))
     matrix.setLGMap(*pattern.getLGMap())
     matrix.setOption(PETSc.Mat.Option.IGNORE_LOWER_TRIANGULAR, True)
-    matrix.setOption(PETSc.Mat.Option.NEW_NONZERO_LOCATION_ERR, True)
+    matrix.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, True)
     matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)
     pattern.destroy()
     return matrix
