@@ -115,17 +115,35 @@ def closed_tube(slope: Slope, inner: float, outer: float, deformed_inner: float)
     return Tube(slope, inner, outer, deformed_inner, stretch)
 
 
-def wound_tube(slope: Slope, inner: float, outer: float, stretch: float) -> Tube:
-    """A tube with closed free ends and inextensible hoops on its outer surface, r(B) = B.
+def wound_tube(
+    slope: Slope, inner: float, outer: float, stretch: float, stiffness: float = math.inf
+) -> Tube:
+    """A tube with closed free ends and hoops on its outer surface.
 
     The hoops press on the tube; `outside` is that pressure. They carry no axial load, so the
     thrust of the pressure inside alone balances the section.
+
+    Args:
+        slope: dW/dI1.
+        inner: inner radius at rest, mm.
+        outer: outer radius at rest, mm.
+        stretch: axial stretch.
+        stiffness: axial stiffness EA of the hoops per reference length of the tube, N/mm; without
+            it they cannot stretch and r(B) = B.
     """
-    deformed_inner = math.sqrt(outer**2 - (outer**2 - inner**2) / stretch)
-    bare = Tube(slope, inner, outer, deformed_inner, stretch)
-    # the same pressure more inside and outside moves nothing, and adds π b² of thrust
-    contact = bare.axial_force / (math.pi * outer**2)
-    return dataclasses.replace(bare, outside=contact)
+
+    def at(radius: float) -> Tube:
+        deformed_inner = math.sqrt(radius**2 - (outer**2 - inner**2) / stretch)
+        bare = Tube(slope, inner, outer, deformed_inner, stretch)
+        # the same pressure more inside and outside moves nothing, and adds π b² of thrust
+        return dataclasses.replace(bare, outside=bare.axial_force / (math.pi * radius**2))
+
+    def tension(radius: float) -> float:
+        return stiffness * (radius / outer - 1) - at(radius).outside * radius * stretch
+
+    if math.isinf(stiffness):
+        return at(outer)
+    return at(brentq(tension, outer, 1.2 * outer, xtol=1e-15, rtol=1e-15))
 
 
 @dataclasses.dataclass(frozen=True)

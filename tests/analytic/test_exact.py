@@ -54,6 +54,15 @@ def test_hoop_wound_tube(stretch: float, stated: str) -> None:
     assert abs(tube.axial_force) < 1e-12
 
 
+def test_hoops_that_stretch() -> None:
+    # soft hoops are no hoops: the closed tube; stiff ones the inextensible winding
+    stiff, soft = (wound_tube(YEOH, 8, 10, 1.1, k) for k in (1e9, 1.0))
+    assert stiff.pressure == pytest.approx(wound_tube(YEOH, 8, 10, 1.1).pressure, rel=1e-8)
+    tension = 1.0 * (float(soft.radius(10.0)) / 10 - 1)
+    assert soft.outside * float(soft.radius(10.0)) * 1.1 == pytest.approx(tension, rel=1e-9)
+    assert abs(soft.axial_force) < 1e-10
+
+
 def test_sphere_and_its_limit_point() -> None:
     assert agrees(sphere_pressure(YEOH, 10, 11, 12), "0.02459874")
     ratio, pressure = sphere_limit(yeoh_slope(0.11), 10, 11)
