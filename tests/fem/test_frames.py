@@ -58,12 +58,12 @@ def test_angle_counts_full_turns(body: Body, degrees: float) -> None:
     inside = (frames.z >= 0) & (frames.z <= LENGTH)
     # a station is a fit over some 7 mm that turn within themselves, at the ends one-sided
     error = np.abs(along - angle * frames.z / LENGTH)[inside]
-    assert error.max() < 0.25 * abs(angle) * (frames.z[1] - frames.z[0]) / LENGTH
+    assert error.max() < 0.15 * abs(angle) * (frames.z[1] - frames.z[0]) / LENGTH
 
 
 def test_extrapolation_of_an_arc_stays_an_arc(body: Body) -> None:
-    # angle linear in the load, stretch quadratic: what a bending actuator does; the end stations
-    # and the curve through the centres leave 2 % of a step of 40°, plain extrapolation 23 mm
+    # angle linear in the load, over a step of 40°: the curve through the centres leaves 0.014 mm,
+    # extrapolating displacements 8 mm
     frames = Frames(body)
     shapes = [frames.fit(_arc(body, np.deg2rad(d))) for d in (20, 60, 100)]
     found = frames.rebuild(frames.extrapolate(shapes, np.array([1.0, -3.0, 3.0])))
@@ -71,7 +71,7 @@ def test_extrapolation_of_an_arc_stays_an_arc(body: Body) -> None:
     fields = [_arc(body, np.deg2rad(d)) for d in (20, 60, 100)]
     plain = fields[0] - 3 * fields[1] + 3 * fields[2]
     error = np.abs(found - exact).max()
-    assert error < 0.05 * np.abs(plain - exact).max()
+    assert error < 0.005 * np.abs(plain - exact).max()
 
 
 def test_row_is_the_gradient_of_the_angle(body: Body) -> None:
