@@ -1,0 +1,77 @@
+"""DESIGN's test of 'an effect that is not in the list does not exist', from YAML to kernels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from fem.domain import Domain
+from fem.scene import Scene
+from fiberbend import bridge
+from fiberbend.reader import as_case
+from fiberbend.registry import build
+from geometry.mesh import MeshData
+from geometry.sweep import swept_body
+from tests.run.conftest import small
+
+DENSE = {
+    "wall": "elastosil-m4601",
+    "floor": {"name": "combined-base", "density": "1.2 g/cm^3"},
+    "sheath": "ecoflex-0030",
+}
+EFFECTS: dict[str, dict[str, Any]] = {
+    "pressure": {"to": "10 kPa"},
+    "winding": {"pattern": "double-helix", "pitch": "3 mm", "fiber": "kevlar"},
+    "gravity": {"direction": "-y"},
+    "blocked-tip": {},
+}
+CLASSES = {
+    "pressure": "ChamberPressure",
+    "winding": "Winding",
+    "gravity": "Gravity",
+    "blocked-tip": "BlockedTip",
+}
+
+
+@pytest.fixture(scope="module")
+def mesh() -> MeshData:
+    """A coarse body that has every surface an effect may ask for."""
+    case = as_case(small(effects=[{"pressure": {"to": "1 kPa"}}, {"blocked-tip": {}}]))
+    tip = case.effects[1]
+    return swept_body(
+        bridge.dimensions(case.actuator),
+        bridge.mesh_size(case.mesh, True),
+        bridge.strips(tip),  # type: ignore[arg-type]
+    )
+
+
+def scene(mesh: MeshData, names: list[str], leave_out: str = "") -> Scene:
+    """The scene of a case with these effects, without one class of them."""
+    materials = DENSE if "gravity" in names else small()["materials"]
+    case = as_case(small(effects=[{n: EFFECTS[n]} for n in names], materials=materials, output={}))
+    effects = build(case, mesh).effects
+    return Scene(Domain(mesh), [e for e in effects if type(e).__name__ != leave_out])
+
+
+@pytest.mark.parametrize("absent", list(EFFECTS))
+def test_absent_effect_leaves_no_trace(mesh: MeshData, absent: str) -> None:
+    """No form, dof, kernel, constraint or discrete potential; with it something differs."""
+    others = [name for name in EFFECTS if name != absent]
+    without, by_hand = scene(mesh, others), scene(mesh, list(EFFECTS), CLASSES[absent])
+    whole = scene(mesh, list(EFFECTS))
+
+    def trace(s: Scene) -> tuple[Any, ...]:
+        held = int((~s.free).sum())
+        return s.signatures, s.kernels, s.body.size, held, sorted(s.discrete), s.supports
+
+    assert [k for k, v in without.signatures.items() if by_hand.signatures.get(k) != v] == []
+    assert trace(without) == trace(by_hand)
+    assert trace(without) != trace(whole)
+
+
+def test_order_of_the_case_does_not_matter(mesh: MeshData) -> None:
+    """The scene sorts its effects: a permutation does not even recompile."""
+    one, other = scene(mesh, list(EFFECTS)), scene(mesh, list(EFFECTS)[::-1])
+    assert one.signatures == other.signatures
+    assert one.keys == other.keys
