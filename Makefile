@@ -1,6 +1,8 @@
 # The commands of this project; `make help` lists them.
 SHELL := /bin/bash
 BIN := .venv/bin
+RANKS ?= $(shell n=$$(nproc); [ $$n -gt 2 ] && echo 2 || echo $$n)
+MPIRUN := mpirun -n $(RANKS)
 
 # mpirun refuses root and more ranks than cores unless told; containers often have both.
 export OMPI_ALLOW_RUN_AS_ROOT := 1
@@ -8,7 +10,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test verify check format schema clean
+.PHONY: help setup demo test verify tables check format schema clean
 
 help: ## list the commands
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -17,13 +19,16 @@ setup: ## install what is needed; under a second when nothing is to do
 	@./setup.sh
 
 demo: setup ## bend the baseline actuator: curves, pictures and fields in runs/free_bending
-	$(BIN)/fiberbend run cases/free_bending.yaml --out runs/free_bending --overwrite
+	$(MPIRUN) $(BIN)/fiberbend run cases/free_bending.yaml --out runs/free_bending --overwrite
 
 test: setup ## run the tests, on one rank and on two
 	$(BIN)/python -m pytest
 
 verify: setup ## run the slow convergence ladders against exact solutions
 	$(BIN)/python -m pytest -m verify
+
+tables: setup ## make the accuracy tables in docs/ again; a quarter of an hour
+	$(MPIRUN) $(BIN)/python bench/tables.py
 
 check: setup ## lint, format and types
 	$(BIN)/ruff check .

@@ -22,8 +22,7 @@ print("compiled", compat.assemble_scalar(form))
 
 
 def test_killed_compiler_leaves_nothing_in_the_way(tmp_path: Path) -> None:
-    """Killed between writing the source and the mark that it is compiled: dolfinx waits 10 s for
-    that mark and dies; here the next process clears it away."""
+    """A source without the mark that it is compiled: dolfinx waits 10 s for the mark, then dies."""
     environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path)}
     command = [sys.executable, "-c", PROGRAM]
     process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL)
