@@ -31,7 +31,8 @@ TITLE = "Hoop-wound extending tube, a double helix of decreasing pitch"
 TEXT = (
     "A = 8, B = 10, λz = 1.1, closed free ends; a slice of half a pitch, half the circumference, "
     "elements in proportion to the pitch, fibers of EA = 881 N as ribbons. The exact "
-    "pressure is that of hoops, the limit of zero pitch. Rubber bulges between the fibers, so the error is of the first order in the pitch."
+    "pressure is that of hoops, the limit of zero pitch. Rubber bulges between "
+    "the fibers, so the error is of the first order in the pitch."
 )
 EXACT = wound_tube(SLOPE, INNER, OUTER, STRETCH)
 FINENESS = (2, 3, 4, 6)
