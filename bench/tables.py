@@ -82,7 +82,9 @@ def free_bending() -> list[str]:
         name = f"body, {kind}, {axial} mm, section {section}"
         pressures = [at(result, "pressure_kPa", a) for a in angles]
         rows.append([name, data["unknowns"], steps, data["cutbacks"], *pressures])
-        share = [p * a / at(result, "uniform_angle_deg", a) for p, a in zip(pressures, angles)]
+        share = [
+            at(result, "pressure_kPa", a) * a / at(result, "uniform_angle_deg", a) for a in angles
+        ]
         rows.append(["… its middle, P at a uniform angle", "", "", "", *share])
     return [
         "## Free bending: P in kPa at 90, 180, 270 and 360°",
