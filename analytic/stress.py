@@ -1,0 +1,66 @@
+"""Axial stress of rubber inside a winding: circumference fixed, thickness free. MPa.
+
+Polygerinos et al. 2015, doi 10.1109/TRO.2015.2428504, eqs. (6)–(11): λ1 = λ, λ2 = 1, λ3 = 1/λ and
+s3 = 0. For any W(I1) they give the nominal stresses
+
+    s1 = 2 W'(I1) (λ − λ⁻³),   s2 = 2 W'(I1) (1 − λ⁻²),   I1 = 1 + λ² + λ⁻²,
+
+of which (8) and (9) are the case 2 W' = μ̄.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Stress = Callable[[Floats], Floats]
+"""Nominal axial stress s in MPa, elementwise, as a function of the axial stretch λ > 0."""
+
+CALIBRATED_MODULUS = 0.314
+"""μ̄ in MPa that the paper's section IV-B calibrated on (a, b, t, L) = (8, 2, 2, 160) mm."""
+
+
+def effective(modulus: float = CALIBRATED_MODULUS) -> Stress:
+    """Eqs. (8), (16), (18): s = μ̄ (λ − λ⁻³).
+
+    Args:
+        modulus: effective initial shear modulus μ̄, MPa.
+
+    Raises:
+        ValueError: the modulus is not positive and finite.
+    """
+    if not 0 < modulus < np.inf:
+        raise ValueError(f"effective shear modulus: positive MPa expected, not {modulus}")
+
+    def stress(stretch: Floats) -> Floats:
+        # λ**-3 calls pow, which is ten times slower than three products
+        return modulus * (stretch - 1 / (stretch * stretch * stretch))
+
+    return stress
+
+
+def wound(slope: Callable[[Floats], Floats]) -> Stress:
+    """Eqs. (6)–(11) for any law W(I1), so that measured materials replace the fitted μ̄.
+
+    Args:
+        slope: dW/dI1 in MPa as a function of I1, elementwise.
+    """
+
+    def stress(stretch: Floats) -> Floats:
+        square = stretch * stretch
+        return 2 * slope(1 + square + 1 / square) * (stretch - 1 / (stretch * square))
+
+    return stress
+
+
+def hoop_ratio(stretch: Floats | float) -> Floats:
+    """s2/s1 = λ/(λ² + 1), of any law W(I1) under (7).
+
+    The paper drops s2 as 'significantly smaller, s2 < s1/2' under (9); the ratio is 0.50 at rest
+    and still 0.46 at λ = 1.5.
+    """
+    stretch = np.asarray(stretch, dtype=float)
+    return stretch / (stretch**2 + 1)
