@@ -60,7 +60,8 @@ def create_mesh(
         nodes: (n, d), the same on every rank.
         cells: (m, nodes per cell), the same on every rank, in `geometry.mesh` order.
     """
-    element = ufl.VectorElement("Lagrange", cell_type, 2)
+    # FFCx sets this variant itself at the first compilation, which would change every signature
+    element = ufl.VectorElement("Lagrange", cell_type, 2, variant="equispaced")
     share = np.array_split(np.arange(len(cells)), comm.size)[comm.rank]
     points = np.array_split(np.arange(len(nodes)), comm.size)[comm.rank]
     return dolfinx.mesh.create_mesh(

@@ -19,6 +19,10 @@ Floats = npt.NDArray[np.float64]
 NEAR, NEAR_RATIO, CHORD_RATIO = 1e-3, 0.02, 0.1
 """A factor is used again below this residual, after this reduction, and while it reduces so."""
 
+INVERTED = "an element turned inside out (least det F {:.3g})"
+PATIENCE = 6
+"""Iterations after which a residual that grows makes Newton take the true tangent."""
+
 
 class Problem(Protocol):
     """What Newton needs of a scene."""
@@ -238,6 +242,10 @@ class _Solve:
         start = time.perf_counter()
         problem = self.problem
         self.tangents.append(len(self.history))
+        if len(self.history) > PATIENCE and max(self.history[-1]) > max(self.history[-2]):
+            # predicted fiber forces can cycle where fibers are very stiff
+            for discrete in problem.discrete.values():
+                discrete.predict(None)
         problem.assemble_tangent()
         self.newton._assembly["tangent"] += time.perf_counter() - start
         self.newton.factor.renew()
@@ -287,7 +295,7 @@ class _Solve:
         force, volume, closing = self.history[-1]
         tolerance = self.newton.settings.tolerance
         if not np.isfinite(force):
-            self.reason = f"an element turned inside out (least det F {self.least:.3g})"
+            self.reason = INVERTED.format(self.least)
             return int(reasons.DIVERGED_FNORM_NAN)
         if force <= tolerance and volume <= tolerance and closing <= tolerance:
             return int(reasons.CONVERGED_FNORM_RELATIVE)
@@ -330,6 +338,9 @@ class _Solve:
         try:
             snes.solve(None, x)
             converged = snes.getConvergedReason() > 0 and not self.reason
+            if not converged and not self.reason:
+                # SNES stops at a starting guess that is not a number without asking the test
+                self.reason = INVERTED.format(self.least)
         except (PETSc.Error, ZeroDivisionError, np.linalg.LinAlgError) as error:
             self.reason = f"the linear solve failed ({error})"
             converged = False
