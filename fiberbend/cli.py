@@ -133,7 +133,7 @@ def _run(options: argparse.Namespace) -> int:
         from fiberbend.runner import run_case
 
         result = run_case(
-            case, out, overwrite=options.overwrite, progress=progress, again=options.resume
+            case, out, overwrite=options.overwrite, progress=progress, resume=options.resume
         )
     except CaseError:
         raise

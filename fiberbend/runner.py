@@ -20,7 +20,7 @@ from fem.measures import BendingAngle
 from fem.newton import Newton, Outcome, Settings
 from fem.program import Ramp, Report, Rules, State
 from fem.scene import Scene
-from fiberbend import bridge, resume
+from fiberbend import bridge, restart
 from fiberbend.case import Case
 from fiberbend.case_effects import BlockedTipEffect, WindingEffect
 from fiberbend.choice import choose_half, choose_model
@@ -65,7 +65,7 @@ def run_case(
     out: Path | None,
     overwrite: bool = False,
     progress: Progress | None = None,
-    again: bool = False,
+    resume: bool = False,
 ) -> RunResult:
     """Solve a case; collective over MPI.COMM_WORLD.
 
@@ -74,7 +74,7 @@ def run_case(
         out: run folder, or None to write nothing.
         overwrite: replace an earlier run.
         progress: what is told meanwhile; silent unless given.
-        again: go on from the checkpoint in the folder.
+        resume: go on from the checkpoint in the folder.
 
     Raises:
         CaseError: the folder cannot be used.
@@ -83,11 +83,11 @@ def run_case(
     comm = MPI.COMM_WORLD
     progress = progress or Progress(quiet=True)
     folder = None
-    if out is not None and again:
+    if out is not None and resume:
         folder = RunFolder.resume(out, case, comm)
     elif out is not None:
         folder = RunFolder.create(out, case, overwrite, comm)
-    return _Run(case, folder, progress, comm).go(again)
+    return _Run(case, folder, progress, comm).go(resume)
 
 
 def _on_rank_0(comm: MPI.Comm, action: Callable[[], Any]) -> Any:
@@ -139,7 +139,7 @@ class _Run:
             self.scene, self.frames, self.blocked is not None, self.march.states[0]
         )
         if again and self.folder is not None:
-            self.snapshots = resume.load(self.folder, self.archive, self.march, self.recorder)
+            self.snapshots = restart.load(self.folder, self.archive, self.march, self.recorder)
             self.progress.message(f"resumed after step {self.recorder.rows[-1]['step']}")
         self._remark()
         self.progress.phase("solve")
@@ -201,7 +201,7 @@ class _Run:
         if label:
             self._snapshot(label)
         if self.folder is not None:
-            resume.save(self.folder, self.archive, self.march, self.recorder.rows)
+            restart.save(self.folder, self.archive, self.march, self.recorder.rows)
 
     def _fraction(self, state: State) -> float:
         """Part of all ramps that is done."""
