@@ -153,6 +153,7 @@ class _Run:
             run["wall_s"] = self._wall()
             self.folder.write_run(**run)
         self.comm.barrier()
+        self._tell(run)
         path = self.folder.path if self.folder else None
         return RunResult(status, reason, self.recorder.rows, run, path)
 
@@ -303,6 +304,16 @@ class _Run:
             self.folder.write_history(self.recorder.rows)
             self.folder.write_run(**run)
         return run
+
+    def _tell(self, run: dict[str, Any]) -> None:
+        """Say what the run took."""
+        say = self.progress.message
+        say(
+            f"{run['unknowns']} unknowns: {run['load_steps']} steps, {run['newton_iterations']} "
+            f"iterations, {run['factorisations']} factorisations, {run['cutbacks']} cut-backs"
+        )
+        phases = ", ".join(f"{name} {value:.1f} s" for name, value in self._wall().items())
+        say(f"{phases}; peak memory {run['peak_memory_MB']:.0f} MB on {run['ranks']} ranks")
 
     def _draw(self, status: str, reason: str) -> None:
         """Fields, pictures and plots, on rank 0."""
