@@ -11,22 +11,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import yaml
+
 from fiberbend import launch, run
 from fiberbend.runner import RunResult
 
-BASELINE: dict[str, Any] = {
-    "actuator": {
-        "section": "hemicircle",
-        "radius": "8 mm",
-        "length": "160 mm",
-        "wall": "2 mm",
-        "floor": "2 mm",
-        "sheath": "1 mm",
-        "cap": "15 mm",
-    },
-    "materials": {"wall": "elastosil-m4601", "floor": "combined-base", "sheath": "ecoflex-0030"},
-    "model": "body",
-}
+ROOT = Path(__file__).resolve().parent.parent
+CASE = yaml.safe_load((ROOT / "cases" / "free_bending.yaml").read_text(encoding="utf-8"))
+BASELINE: dict[str, Any] = {key: CASE[key] for key in ("actuator", "materials", "model")}
 WINDING: dict[str, Any] = {"pattern": "double-helix", "pitch": "3 mm", "fiber": "kevlar"}
 SECTION = {90: 45.1, 180: 89.2, 270: 134.3, 360: 181.5}
 CELL = {90: 46.7, 180: 92.9, 270: 140.6, 360: 190.8}
@@ -256,11 +248,10 @@ def main() -> None:
     """Write the tables named on the command line, or all."""
     parts = {"free": free_bending, "winding": winding, "blocked": blocked, "causes": causes}
     wanted = sys.argv[1:] or list(parts)
-    folder = Path(__file__).resolve().parent.parent / "docs"
     for name in wanted:
         lines = parts[name]()
         if launch.rank() == 0:
-            (folder / f"accuracy_{name}.md").write_text("\n".join(lines), encoding="utf-8")
+            (ROOT / "docs" / f"accuracy_{name}.md").write_text("\n".join(lines), encoding="utf-8")
 
 
 if __name__ == "__main__":

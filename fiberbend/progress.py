@@ -77,7 +77,10 @@ class Progress:
         if not self._speaks:
             return
         if self._stream.isatty() and launch.size() == 1:
-            self._draw(fraction, f"{text}  {times}")
+            short = (
+                f"step {step}  {pressure_kpa:.1f} kPa  {angle_deg:.1f}°  {iterations} iterations"
+            )
+            self._draw(fraction, f"{short}  {times}")
         else:
             self._say(f"{text}  {100 * fraction:5.1f} %  {times}")
 
@@ -111,7 +114,7 @@ class Progress:
             from rich.progress import Progress as RichProgress
 
             self._bar = RichProgress(
-                BarColumn(bar_width=24),
+                BarColumn(bar_width=10),
                 TextColumn("{task.description}", markup=False),
                 console=Console(file=self._stream),
             )

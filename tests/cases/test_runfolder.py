@@ -123,7 +123,7 @@ def test_a_bar_on_a_terminal() -> None:
     stream = _Terminal()
     _report(stream)
     assert "\x1b[" in stream.getvalue()
-    assert "374.00°" in stream.getvalue()
+    assert "374.0°" in stream.getvalue()
     assert "step 2 cut back" in stream.getvalue()
 
 

@@ -3,23 +3,15 @@
 from __future__ import annotations
 
 import pytest
+import yaml
 
 from fiberbend import run
 from fiberbend.runner import RunResult
+from tests.conftest import ROOT
 
-BASELINE = {
-    "actuator": {
-        "section": "hemicircle",
-        "radius": "8 mm",
-        "length": "160 mm",
-        "wall": "2 mm",
-        "floor": "2 mm",
-        "sheath": "1 mm",
-        "cap": "15 mm",
-    },
-    "materials": {"wall": "elastosil-m4601", "floor": "combined-base", "sheath": "ecoflex-0030"},
-    "model": "body",
-    "mesh": {"axial": "4 mm"},
+CASE = yaml.safe_load((ROOT / "cases" / "free_bending.yaml").read_text(encoding="utf-8"))
+BASELINE = {key: CASE[key] for key in ("actuator", "materials", "model")} | {
+    "mesh": {"axial": "4 mm"}
 }
 SMEARED = {
     "winding": {"pattern": "double-helix", "pitch": "3 mm", "fiber": "kevlar", "as": "smeared"}
