@@ -84,7 +84,7 @@ def free_bending() -> list[str]:
         "",
         "'Its middle' is the pressure at which L times the curvature of the middle half would "
         "reach the angle (proportionally from the state at hand): what models of uniform bending "
-        "predict. Near the caps the sections warp, and the whole body bends 0.6 to 1.1 % further.",
+        "predict. Near the caps the sections warp, and the whole body bends 0.6 to 1.4 % further.",
         "",
         *table(
             ["model", "unknowns", "steps; iterations; factors", "cut-backs", *map(str, angles)],

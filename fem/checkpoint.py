@@ -44,9 +44,6 @@ class Archive:
         owned = scene.domain.owned
         self._cells = scene.domain.cells[:owned]
         self._multiplier: compat.PointValues | None = None
-        if "p" in scene.body.names:
-            nodes = reference_nodes(scene.domain.data.cell_type)
-            self._multiplier = compat.PointValues(scene.domain.mesh, scene.body.p, nodes)
 
     def pack(self, state: State) -> dict[str, Any] | None:
         """A state as arrays on rank 0, None elsewhere; collective."""
@@ -101,8 +98,12 @@ class Archive:
 
     def multiplier(self) -> Floats | None:
         """Pressure field at the nodes of every cell, MPa, (m, k), on rank 0."""
-        if self._multiplier is None:
+        scene = self._scene
+        if "p" not in scene.body.names:
             return None
+        if self._multiplier is None:
+            nodes = reference_nodes(scene.domain.data.cell_type)
+            self._multiplier = compat.PointValues(scene.domain.mesh, scene.body.p, nodes)
         return _gather(self._comm, self._cells, self._multiplier()[..., 0])
 
     def forces(self, key: str) -> Floats | None:

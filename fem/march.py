@@ -123,8 +123,8 @@ class March:
         self.restore(base)
         return state
 
-    def _predict(self, abscissa: str, target: float, history: list[State]) -> tuple[Floats, float]:
-        """Set the scene to the extrapolated state; returns its coefficients and |weights|."""
+    def _predict(self, abscissa: str, target: float, history: list[State]) -> Floats:
+        """Set the scene to the extrapolated state and return its coefficients."""
         t = np.array([state.measures[abscissa] for state in history])
         weights = np.array(
             [np.prod([(target - b) / (a - b) for b in np.delete(t, i)]) for i, a in enumerate(t)]
@@ -139,7 +139,7 @@ class March:
             self.scene.set_scalar(name, float(weights @ values))
         for key, discrete in self.scene.discrete.items():
             discrete.extrapolate([state.discrete[key] for state in history], weights)
-        return self.scene.w.copy(), float(np.abs(weights).sum())
+        return self.scene.w.copy()
 
     def _history(self, abscissa: str) -> list[State]:
         """The last states with distinct abscissae, at most three, oldest first."""
@@ -158,7 +158,7 @@ class March:
     def _solve(self, ramp: Ramp, kind: str, target: float) -> Outcome:
         """Predict and solve one increment; kind is 'value', 'conjugate' or 'followed'."""
         abscissa = kind if kind == "followed" else f"{kind} {ramp.scalar}"
-        start, _ = self._predict(abscissa, target, self._history(abscissa))
+        start = self._predict(abscissa, target, self._history(abscissa))
         if kind == "value":
             self.scene.set_scalar(ramp.scalar, target)
             return self.newton.solve(start)
@@ -169,12 +169,11 @@ class March:
             closure = _Target(self.followed, target)
         return self.newton.solve(start, [ramp.scalar], [closure])
 
-    def _guess(self, ramp: Ramp, kind: str, target: float, wanted: str) -> float:
-        """Extrapolated value of a measure where the increment would end."""
-        abscissa = kind if kind == "followed" else f"{kind} {ramp.scalar}"
-        history = self._history(abscissa)
-        t = [state.measures[abscissa] for state in history]
-        y = [state.measures[wanted] for state in history]
+    def _guess(self, drive: str, target: float) -> float:
+        """Extrapolated value of the followed functional where the increment would end."""
+        history = self._history(drive)
+        t = [state.measures[drive] for state in history]
+        y = [state.measures["followed"] for state in history]
         return float(np.polynomial.Polynomial(_interpolate(t, y))(target - t[-1]))
 
     def start(self) -> None:
@@ -226,9 +225,7 @@ class March:
                 target = nearest
             kind = ramp.drive
             goal = self._due(pending, state)
-            close = goal is not None and (
-                insist or self._guess(ramp, kind, target, "followed") > goal - 0.02
-            )
+            close = goal is not None and (insist or self._guess(drive, target) > goal - 0.02)
             insist = False
             if goal is not None and close:
                 kind, aim = "followed", goal

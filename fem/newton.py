@@ -334,6 +334,9 @@ class _Solve:
         pc = ksp.getPC()
         pc.setType(PETSc.PC.Type.PYTHON)
         pc.setPythonContext(self)
+        if not self.newton.settings.hybrid:
+            for discrete in self.problem.discrete.values():
+                discrete.predict(None)  # the march may have extrapolated forces
         self.join(x, w, np.array([self.problem.scalar(name) for name in self.unknown]))
         try:
             snes.solve(None, x)

@@ -18,6 +18,7 @@ from fem.effects.winding import SmearedWinding, Winding
 from fem.program import Ramp
 from fiberbend import bridge
 from fiberbend.case import Case
+from fiberbend.case_defaults import DEFAULT_LINES
 from fiberbend.case_effects import (
     BlockedTipEffect,
     GravityEffect,
@@ -54,7 +55,7 @@ class Parts:
 def helix(effect: WindingEffect) -> helices.Winding:
     """The winding's curves as the geometry takes them; a width of zero is one line."""
     width = effect.width if effect.width is not None else bridge.fiber(effect.fiber).diameter
-    lines = effect.lines if effect.lines is not None else 5
+    lines = effect.lines if effect.lines is not None else DEFAULT_LINES
     return helices.Winding(effect.pattern, effect.pitch, width, lines if width > 0 else 1)
 
 
