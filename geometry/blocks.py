@@ -38,6 +38,10 @@ class Block:
     fill: bool = False
 
 
+def _key(point: Point) -> Point:
+    return (round(point[0], 9), round(point[1], 9))
+
+
 class Layout:
     """Points and blocks of a section.
 
@@ -45,12 +49,14 @@ class Layout:
         points: coordinates in mm of the corner points.
         blocks: the blocks, in the order of their cells.
         half: True when only x ≥ 0 is laid out and x = 0 is a mirror plane.
+        named: number of each named corner point.
     """
 
     def __init__(self, half: bool = False) -> None:
         self.points: list[Point] = []
         self.blocks: list[Block] = []
         self.half = half
+        self.named: dict[str, int] = {}
         self._numbers: dict[Point, int] = {}
 
     def add(
@@ -84,8 +90,20 @@ class Layout:
             )
         )
 
+    def name_point(self, name: str, point: Point) -> None:
+        """Name a corner point of blocks already laid out.
+
+        Args:
+            name: its name in the meshes.
+            point: its coordinates in mm.
+
+        Raises:
+            KeyError: no block has a corner there.
+        """
+        self.named[name] = self._numbers[_key(point)]
+
     def _number(self, point: Point) -> int:
-        key = (round(point[0], 9), round(point[1], 9))
+        key = _key(point)
         if key not in self._numbers:
             self._numbers[key] = len(self.points)
             self.points.append(point)
@@ -109,11 +127,14 @@ class Layout:
                 if (center := block.centers[side]) is not None
             }
             full.add(block.region, (b, a, d, c), block.divisions, centers, names, block.fill)
+        for name, number in self.named.items():
+            full.name_point(name, self.points[number])
         return full
 
     def without_fill(self) -> Layout:
         """The same layout with an open chamber."""
         ring = Layout(self.half)
         ring.points = self.points
+        ring.named = self.named
         ring.blocks = [block for block in self.blocks if not block.fill]
         return ring

@@ -42,14 +42,17 @@ def _volumes(mesh: MeshData, jacobian: Floats) -> dict[str, float]:
 
 
 def surface_area(mesh: MeshData, name: str) -> float:
-    """Area of a named surface in mm²."""
+    """Area of a named surface in mm² (length in mm of a section's edges)."""
     return float(np.linalg.norm(area_vectors(mesh, name)[1], axis=2).sum())
 
 
 def chamber_volume(mesh: MeshData) -> float:
-    """Volume in mm³ that the surface "chamber" encloses, −∮ x·n dA / 3; half of it for a half."""
+    """Volume in mm³ that the surface "chamber" encloses, −∮ x·n dA / d; half of it for a half.
+
+    Of a section the area in mm².
+    """
     x, normal = area_vectors(mesh, "chamber")
-    return float(-(x * normal).sum() / 3)
+    return float(-(x * normal).sum() / x.shape[-1])
 
 
 def chamber_gap(mesh: MeshData) -> float:

@@ -19,19 +19,21 @@ _SHORTEST = 1e-9
 class EmbeddedFibers:
     """Fiber segments, each within one cell; n segments with q points each.
 
-    With J the Jacobian of the cell's geometry, length = Σ_q weights |J tangents|.
+    With J the Jacobian of the cell's geometry, length = Σ_q weights |J tangents|. A section has no
+    z of its own: there d = 2 and length = Σ_q weights √(|J tangents|² + axial²), in mm per mm of z.
 
     Attributes:
         cell: host cell, (n,).
         facet: local facet of the host cell, (n,).
-        points: reference coordinates in the host cell, (n, q, 3).
+        points: reference coordinates in the host cell, (n, q, d).
         tangents: derivative of the reference coordinates along the segment, parameter in [0, 1],
-            (n, q, 3).
+            (n, q, d).
+        axial: derivative of z along the segment in mm where the mesh has no z, else 0, (n, q).
         weights: weights of the points, (n, q); they sum to 1.
-        length: length in mm in the mesh's own geometry, (n,).
+        length: length in mm in the mesh's own geometry, (n,); see above for a section.
         share: fraction of the fiber's stiffness, (n,).
         curve: number of the curve (of the helix, when smeared), (n,).
-        z: z in mm of the segment's middle, (n,).
+        z: z in mm of the segment's middle, (n,); 0 on a section.
         s: arc length in mm on the outline of the segment's middle, (n,).
     """
 
@@ -39,6 +41,7 @@ class EmbeddedFibers:
     facet: Ints
     points: Floats
     tangents: Floats
+    axial: Floats
     weights: Floats
     length: Floats
     share: Floats
@@ -49,15 +52,16 @@ class EmbeddedFibers:
 
 @dataclasses.dataclass(frozen=True)
 class _Facets:
-    """The winding's facets as affine images of their reference square or triangle.
+    """The winding's facets as affine images of their reference interval, square or triangle.
 
     Attributes:
         cell: host cells, (k,).
         facet: their local facets, (k,).
-        origin: developed coordinates (s, z) of the facet's first vertex, (k, 2).
-        axes: developed edge vectors as columns, (k, 2, 2).
-        base: first vertex in the cell's reference coordinates, (k, 3).
-        edges: reference edge vectors, (k, 2, 3).
+        origin: developed coordinates (s, z), of a section (s), of the facet's first vertex,
+            (k, d - 1).
+        axes: developed edge vectors as columns, (k, d - 1, d - 1).
+        base: first vertex in the cell's reference coordinates, (k, d).
+        edges: reference edge vectors, (k, d - 1, d).
         triangle: True for triangles.
     """
 
@@ -72,12 +76,13 @@ class _Facets:
 
 def _develop(mesh: MeshData, actuator: Actuator) -> _Facets:
     pairs = mesh.facets["winding"]
-    corners = np.array(FACET_VERTICES[mesh.cell_type])[pairs[:, 1]][:, :3]
+    d = mesh.nodes.shape[1]
+    corners = np.array(FACET_VERTICES[mesh.cell_type])[pairs[:, 1]][:, :d]
     vertices = vertex_positions(mesh.cell_type)
     nodes = mesh.nodes[mesh.cells[pairs[:, :1], vertices[corners]]]
     negative = nodes[..., 0].sum(axis=1) < 0
-    s = arc_length(actuator, nodes[..., :2], np.repeat(negative[:, None], 3, axis=1))
-    developed = np.stack([s, nodes[..., 2]], axis=-1)
+    s = arc_length(actuator, nodes[..., :2], np.repeat(negative[:, None], d, axis=1))
+    developed = np.concatenate([s[..., None], nodes[..., 2:]], axis=-1)
     reference = reference_nodes(mesh.cell_type)[vertices][corners]
     return _Facets(
         cell=pairs[:, 0],
@@ -142,7 +147,12 @@ def embed(mesh: MeshData, actuator: Actuator, winding: Winding, q: int = 3) -> E
 
     Returns:
         One segment per crossing of a curve with a facet, sorted by curve and z.
+
+    Raises:
+        ValueError: a section, which has no z for a fiber to rise in.
     """
+    if mesh.cell_type == "quadrilateral":
+        raise ValueError("a section holds smeared windings only")
     facets = _develop(mesh, actuator)
     n = winding.lines_per_fiber
     rows = []
@@ -175,6 +185,7 @@ def embed(mesh: MeshData, actuator: Actuator, winding: Winding, q: int = 3) -> E
         facet=facets.facet[facet],
         points=points,
         tangents=tangents,
+        axial=np.zeros((len(cell), q)),
         weights=np.tile(w, (len(cell), 1)),
         length=speed @ w,
         share=np.full(len(cell), 1 / n),
@@ -192,10 +203,12 @@ def smear(mesh: MeshData, actuator: Actuator, winding: Winding) -> EmbeddedFiber
     """Spread the winding over its surface: at each quadrature point a bit of every helix.
 
     A point stands for weight × area × √(S² + pitch²)/(S pitch) of fiber per helix, along the
-    helix's direction; the area is the mesh's own.
+    helix's direction; the area is the mesh's own. On a section, which stands for 1 mm of z, the
+    area is the length of the edge and the direction has its z part in `axial`.
 
     Args:
-        mesh: hexahedra or tetrahedra with the surface "winding"; half, full, or a slice.
+        mesh: hexahedra, tetrahedra or quadrilaterals with the surface "winding"; half, full, or a
+            slice.
         actuator: dimensions the mesh was built from.
         winding: pattern and pitch; the ribbon's width does not matter.
 
@@ -207,26 +220,31 @@ def smear(mesh: MeshData, actuator: Actuator, winding: Winding) -> EmbeddedFiber
     areas = np.linalg.norm(area_vectors(mesh, "winding")[1], axis=2)
     facet = np.repeat(np.arange(len(facets.cell)), len(flat))
     cell = facets.cell[facet]
-    points = (facets.base[:, None] + flat @ facets.edges).reshape(-1, 1, 3)
-    developed = facets.origin[:, None] + flat @ facets.axes.swapaxes(1, 2)
-    s, z = developed.reshape(-1, 2).T
+    d = mesh.nodes.shape[1]
+    points = (facets.base[:, None] + flat @ facets.edges).reshape(-1, 1, d)
+    developed = (facets.origin[:, None] + flat @ facets.axes.swapaxes(1, 2)).reshape(-1, d - 1)
+    rise = winding.pitch if d == 2 else 0.0
     length = winding.density(actuator) * areas.ravel()
-    parts = []
+    parts, axial = [], []
     for hand in winding.hands:
-        direction = np.array([-hand * actuator.winding_perimeter, winding.pitch])
+        direction = np.array([-hand * actuator.winding_perimeter, winding.pitch])[: d - 1]
         tangents = (np.linalg.inv(facets.axes) @ direction)[facet][:, None] @ facets.edges[facet]
-        speed = np.linalg.norm(_push(mesh, cell, points, tangents), axis=2)
-        parts.append(tangents * (length[:, None] / speed)[..., None])
+        speed = np.hypot(np.linalg.norm(_push(mesh, cell, points, tangents), axis=2), rise)
+        scale = length[:, None] / speed
+        parts.append(tangents * scale[..., None])
+        axial.append(rise * scale)
     helices, n = len(winding.hands), len(cell)
+    z = developed[:, 1] if d == 3 else np.zeros(n)
     return EmbeddedFibers(
         cell=np.tile(cell, helices),
         facet=np.tile(facets.facet[facet], helices),
         points=np.tile(points, (helices, 1, 1)),
         tangents=np.concatenate(parts),
+        axial=np.concatenate(axial),
         weights=np.ones((helices * n, 1)),
         length=np.tile(length, helices),
         share=np.ones(helices * n),
         curve=np.repeat(np.arange(helices), n),
         z=np.tile(z, helices),
-        s=np.tile(s, helices),
+        s=np.tile(developed[:, 0], helices),
     )

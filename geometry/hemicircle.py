@@ -15,7 +15,8 @@ _CORE_CORNER = 0.72
 def hemicircle(actuator: Actuator, size: MeshSize, strips: Strips | None = None) -> Layout:
     """Lay out the section, with the blocks that fill the chamber in the caps.
 
-    Regions are "wall", "floor", "layer", "sheath"; named sides "chamber", "winding", "outer",
+    The point "pin" is (0, 0), on the floor's lower face. Regions are "wall", "floor", "layer",
+    "sheath"; named sides "chamber", "winding", "outer",
     "symmetry" (half only), and with `strips` "roof" and "post". Curved regions have one block per
     quad through the thickness, so that every mesh line along an arc is an exact arc in gmsh too.
 
@@ -37,6 +38,7 @@ def _half(actuator: Actuator, size: MeshSize, strips: Strips | None) -> Layout:
         _add_arcs(layout, actuator, size, "sheath", angles, pieces, strips)
         _add_base(layout, actuator, size, core, strips, sheath=True)
     _add_fill(layout, actuator, size, core, angles, pieces)
+    layout.name_point("pin", (0.0, 0.0))
     return layout
 
 

@@ -97,6 +97,7 @@ class MeshData:
         facets: for each named surface the pairs (cell, local facet), (k, 2). A surface inside the
             body lists every facet once, from the cell with the lower number.
         half: True when only x ≥ 0 is meshed and x = 0 is a mirror plane.
+        points: number of each named node; "pin" lies on x = 0, on the floor's lower face, at z = 0.
     """
 
     cell_type: str
@@ -106,6 +107,7 @@ class MeshData:
     cell_region: Ints
     facets: dict[str, Ints]
     half: bool = False
+    points: dict[str, int] = dataclasses.field(default_factory=dict)
 
     def facet_nodes(self, name: str) -> Ints:
         """Node numbers of every facet of a named surface, (k, nodes per facet)."""
@@ -115,7 +117,12 @@ class MeshData:
 
     def save(self, path: Path) -> None:
         """Write the mesh to an .npz file, atomically."""
-        header = {"cell_type": self.cell_type, "regions": self.regions, "half": self.half}
+        header = {
+            "cell_type": self.cell_type,
+            "regions": self.regions,
+            "half": self.half,
+            "points": self.points,
+        }
         arrays = {f"facets/{name}": pairs for name, pairs in self.facets.items()}
         part = path.with_suffix(f".{os.getpid()}.part.npz")
         np.savez(
@@ -150,4 +157,5 @@ class MeshData:
                 cell_region=file["cell_region"],
                 facets=facets,
                 half=header["half"],
+                points=header.get("points", {}),
             )

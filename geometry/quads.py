@@ -108,8 +108,8 @@ def section_mesh(layout: Layout) -> MeshData:
         layout: the blocks; neighbours must have the same divisions on their common side.
 
     Returns:
-        Two-dimensional mesh with the layout's regions and named sides; nodes of curved sides lie
-        on their circle.
+        Two-dimensional mesh with the layout's regions, named sides and named points; nodes of
+        curved sides lie on their circle.
 
     Raises:
         ValueError: neighbours with different divisions.
@@ -141,4 +141,5 @@ def section_mesh(layout: Layout) -> MeshData:
         cell_region=np.concatenate(cell_region),
         facets={name: np.concatenate(pairs) for name, pairs in facets.items()},
         half=layout.half,
+        points={name: int(np.searchsorted(used, i)) for name, i in layout.named.items()},
     )

@@ -85,24 +85,28 @@ def cell_rule(cell_type: str) -> tuple[Floats, Floats]:
 
 
 def facet_rule(cell_type: str) -> tuple[Floats, Floats]:
-    """Quadrature points (q, 2) and weights (q,) of degree 5 on the facets of a solid cell."""
+    """Quadrature points (q, d - 1) and weights (q,) of degree 5 on the facets of a cell."""
+    if cell_type == "quadrilateral":
+        points, weights = gauss(3)
+        return points[:, None], weights
     return _simplex(2) if cell_type == "tetrahedron" else cell_rule("quadrilateral")
 
 
 def facet_rules(cell_type: str) -> tuple[Floats, Floats, Floats]:
-    """Quadrature of degree 5 on every facet of a three-dimensional reference cell.
+    """Quadrature of degree 5 on every facet (edge of a quadrilateral) of a reference cell.
 
     Returns:
-        Points (facets, q, 3) in the cell, weights (q,) that sum to the area of the reference
-        facet, and outward normals (facets, 3) scaled so that weight × normal is the area vector.
+        Points (facets, q, d) in the cell, weights (q,) that sum to the area of the reference
+        facet, and outward normals (facets, d) scaled so that weight × normal is the area vector.
     """
     flat, weights = facet_rule(cell_type)
     vertices = reference_nodes(cell_type)[vertex_positions(cell_type)]
     points, normals = [], []
     for corners in FACET_VERTICES[cell_type]:
-        base, first, second = vertices[list(corners[:3])]
-        points.append(base + flat[:, :1] * (first - base) + flat[:, 1:] * (second - base))
-        normal = np.cross(first - base, second - base)
+        base = vertices[corners[0]]
+        spans = vertices[list(corners[1 : len(base)])] - base
+        points.append(base + flat @ spans)
+        normal = np.cross(*spans) if len(base) == 3 else spans[0, ::-1] * [1, -1]
         inside = vertices.mean(axis=0) - base
         normals.append(-normal * np.sign(normal @ inside))
     return np.array(points), weights, np.array(normals)
@@ -133,10 +137,11 @@ def jacobians(mesh: MeshData, cells: np.ndarray, points: Floats) -> tuple[Floats
 
 
 def area_vectors(mesh: MeshData, name: str) -> tuple[Floats, Floats]:
-    """Positions and weighted outward normals on a named surface of a three-dimensional mesh.
+    """Positions and weighted outward normals on a named surface (named edges of a section).
 
     Returns:
-        Positions (k, q, 3) in mm and vectors n dA (k, q, 3) in mm², out of the listed cell.
+        Positions (k, q, d) in mm and vectors n dA (k, q, d) in mm² (mm of a section), out of the
+        listed cell.
     """
     points, weights, normals = facet_rules(mesh.cell_type)
     pairs = mesh.facets[name]

@@ -35,10 +35,12 @@ class Stations:
         segments: the segments, each starting where the last one ended.
         planes: for each of the segments + 1 planes the surface's name on blocks that are there on
             both sides or belong to the ring, and its name on the chamber's blocks; None: unnamed.
+        origin: number of the plane whose nodes take the names of the section's named points.
     """
 
     segments: tuple[Segment, ...]
     planes: tuple[tuple[str | None, str | None], ...]
+    origin: int = 0
 
 
 _EVERYWHERE = frozenset({"symmetry", "outer"})
@@ -70,7 +72,7 @@ def body_stations(actuator: Actuator, size: MeshSize, strips: Strips | None = No
         with_post = _EVERYWHERE | {"post"}
         segments.append(Segment(post, end, divisions(end - post, size.axial), with_post, True))
         planes.insert(3, (None, None))
-    return Stations(tuple(segments), tuple(planes))
+    return Stations(tuple(segments), tuple(planes), origin=1)
 
 
 def slice_stations(length: float, number: int) -> Stations:

@@ -47,6 +47,7 @@ def sweep(section: MeshData, stations: Stations, fill: Ints | None = None) -> Me
     facets: dict[str, list[Ints]] = {}
     _name_sides(section, stations, np.array(layer_segment), number, facets)
     _name_planes(stations, is_fill, number, facets)
+    first = 2 * sum(segment.divisions for segment in stations.segments[: stations.origin]) * nodes
     return MeshData(
         cell_type="hexahedron",
         nodes=points,
@@ -55,6 +56,7 @@ def sweep(section: MeshData, stations: Stations, fill: Ints | None = None) -> Me
         cell_region=np.broadcast_to(section.cell_region, present.shape)[present],
         facets={name: np.concatenate(pairs) for name, pairs in facets.items()},
         half=section.half,
+        points={n: int(np.searchsorted(used, first + i)) for n, i in section.points.items()},
     )
 
 

@@ -98,4 +98,5 @@ def to_tetrahedra(mesh: MeshData) -> MeshData:
         cell_region=np.repeat(mesh.cell_region, 6),
         facets=facets,
         half=mesh.half,
+        points={name: int(np.searchsorted(used, i)) for name, i in mesh.points.items()},
     )

@@ -74,6 +74,7 @@ def _fibers(
         facet=pairs[:, 1],
         points=points,
         tangents=tangents,
+        axial=np.zeros(weights.shape),
         weights=weights,
         length=(speed * weights).sum(axis=1),
         share=np.full(number, share),
