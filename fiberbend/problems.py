@@ -16,7 +16,9 @@ from fiberbend.fields import Model, Quantity
 
 _PLAIN = {
     "model_type": "expected a mapping",
+    "dict_type": "expected a mapping",
     "tuple_type": "expected a list",
+    "too_short": "expected at least one entry",
     "string_type": "expected text",
     "bool_type": "expected true or false",
     "int_type": "expected a whole number",

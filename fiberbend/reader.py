@@ -159,6 +159,20 @@ def apply_setting(data: dict[str, Any], setting: str) -> None:
         value = yaml.load(text, _Loader)
     except yaml.YAMLError:
         raise CaseError([Problem(path, f"{text!r} is not a YAML value")]) from None
+    put(data, path, value)
+
+
+def put(data: dict[str, Any], path: str, value: Any) -> None:
+    """Put a value at a dotted path of a case that is not yet checked.
+
+    Args:
+        data: the case; changed in place.
+        path: as in `apply_setting`.
+        value: as YAML would give it.
+
+    Raises:
+        CaseError: the path leads nowhere.
+    """
     keys = path.split(".")
     place: Any = data
     for depth, key in enumerate(keys):
