@@ -6,7 +6,6 @@ one-step least squares: P is linear in μ̄, P = μ̄ g(θ).
 
 from __future__ import annotations
 
-import csv
 import dataclasses
 import math
 from pathlib import Path
@@ -15,6 +14,7 @@ import numpy as np
 
 from analytic.bending import FORWARD, Hemicircle
 from analytic.stress import Floats, effective
+from analytic.table import read_columns
 
 COLUMNS = ("pressure_kPa", "angle_deg")
 FEWEST = 3
@@ -98,28 +98,5 @@ def read_curve(path: Path) -> tuple[Floats, Floats]:
         ValueError: a missing column, a value that is not a finite number, or no rows.
         OSError: the file cannot be read.
     """
-    rows = []
-    with path.open(encoding="utf-8-sig", newline="") as file:
-        reader = csv.DictReader(file, skipinitialspace=True)
-        missing = [name for name in COLUMNS if name not in (reader.fieldnames or ())]
-        if missing:
-            raise ValueError(f"{path.name}: no column {' or '.join(missing)}")
-        for row in reader:
-            values = [_number(row[name]) for name in COLUMNS]
-            for name, value in zip(COLUMNS, values, strict=True):
-                if not math.isfinite(value):
-                    raise ValueError(
-                        f"{path.name}, line {reader.line_num}: {name} expected, not {row[name]!r}"
-                    )
-            rows.append(values)
-    if not rows:
-        raise ValueError(f"{path.name}: no rows")
-    pressure, angle = np.array(rows).T
+    pressure, angle = np.array(read_columns(path, COLUMNS)).T
     return 1e-3 * pressure, np.radians(angle)
-
-
-def _number(text: str | None) -> float:
-    try:
-        return float(text or "")
-    except ValueError:
-        return math.nan
