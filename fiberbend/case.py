@@ -140,6 +140,10 @@ class Output(Model):
     """Pressures that are hit exactly, with pictures and fields."""
     stop_at_angle: Angle | None = None
     """The run ends at this bending angle, before the load's end."""
+    measured: str | None = None
+    """CSV file of measured points that are drawn over the curves and compared with them, with the
+    columns pressure_kPa and angle_deg, or tip_force_N where the tip is blocked; relative to the
+    case file."""
     pictures: bool = True
     """Draw pictures."""
     fields: bool = True

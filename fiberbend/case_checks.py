@@ -17,6 +17,7 @@ from fiberbend.case_effects import (
     WindingEffect,
 )
 from fiberbend.choice import mirror_breakers
+from fiberbend.measured import what_is_wrong
 from fiberbend.problems import Problem, found
 from fiberbend.units import show
 
@@ -262,6 +263,14 @@ def _output(parts: Parts) -> Iterator[Problem]:
     _, pressure = parts.find(PressureEffect)
     if parts.broken_effects:
         return
+    if output.measured is not None:
+        if pressure is None:
+            wrong: str | None = "no effect without pressure, expected no value"
+        else:
+            blocked = parts.find(BlockedTipEffect)[1] is not None
+            wrong = what_is_wrong(output.measured, blocked)
+        if wrong is not None:
+            yield Problem("output.measured", wrong)
     for index, value in enumerate(output.at_pressures):
         path = f"output.at_pressures.{index}"
         if pressure is None:

@@ -30,7 +30,8 @@ def read_case(path: Path | str, settings: Iterable[str] = ()) -> Case:
 
     Args:
         path: the YAML file.
-        settings: changes to it, `effects.0.pressure.to=150 kPa`, any path of the case.
+        settings: changes to it, `effects.0.pressure.to=150 kPa`, any path of the case. A file that
+            the case file names is relative to it, one in a setting to the working folder.
 
     Returns:
         The checked case.
@@ -39,6 +40,7 @@ def read_case(path: Path | str, settings: Iterable[str] = ()) -> Case:
         CaseError: everything that is wrong with file, settings and case.
     """
     data = load_yaml(Path(path))
+    root_paths(data, Path(path).parent)
     problems: list[Problem] = []
     for setting in settings:
         try:
@@ -47,6 +49,7 @@ def read_case(path: Path | str, settings: Iterable[str] = ()) -> Case:
             problems += error.problems
     if problems:
         raise CaseError(problems)
+    root_paths(data, Path())
     return parse_case(data)
 
 
@@ -138,6 +141,18 @@ def load_yaml(path: Path) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise CaseError([Problem(str(path), "holds no mapping, expected a case")])
     return data
+
+
+def root_paths(data: dict[str, Any], folder: Path) -> None:
+    """Make the files that a case names independent of where it lies.
+
+    Args:
+        data: the case, not yet checked; changed in place.
+        folder: that of the case file.
+    """
+    output = data.get("output")
+    if isinstance(output, dict) and isinstance(output.get("measured"), str):
+        output["measured"] = str(folder.resolve() / output["measured"])
 
 
 def apply_setting(data: dict[str, Any], setting: str) -> None:
