@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
 import numpy.typing as npt
 from petsc4py import PETSc
 
-from fem.kinematics import Body
+from fem.kinematics import Kinematics
 
 Floats = npt.NDArray[np.float64]
 
@@ -53,8 +54,19 @@ class Discrete(Protocol):
     def add_tangent(self, matrix: PETSc.Mat, free: npt.NDArray[np.bool_]) -> None:
         """Add ∂²Π/∂w² on the free local dofs."""
 
-    def predict(self, correction: Floats | None) -> None:
-        """Take Newton's last correction (None: none yet) for forces the next tangent may use."""
+    def predict(
+        self, correction: Floats | None, scalars: Mapping[str, float] | None = None
+    ) -> None:
+        """Take Newton's last correction, which the next tangent may use; None: none yet."""
+
+    def conjugate(self, name: str) -> float:
+        """This rank's −∂Π/∂q of a global scalar; zero where it does not enter."""
+
+    def add_load(self, name: str, b: Floats) -> None:
+        """Add ∂²Π/∂w∂q of a global scalar to local coefficients (owned and ghosts)."""
+
+    def corner(self, first: str, second: str) -> float:
+        """This rank's ∂²Π/∂q∂r of two global scalars."""
 
     def state(self) -> dict[str, Floats]:
         """What a converged step must remember, this rank's part."""
@@ -77,14 +89,18 @@ class Effect:
         """Name that sorts it within the scene and labels its energy."""
         return type(self).__name__
 
-    def potential(self, body: Body) -> Any:
+    def potential(self, body: Kinematics) -> Any:
         """Its signed potential as a UFL form in N mm, or None."""
         return None
 
-    def discrete(self, body: Body) -> Discrete | None:
+    def discrete(self, body: Kinematics) -> Discrete | None:
         """Its signed potential as own code, or None."""
         return None
 
     def constraints(self) -> tuple[Constraint, ...]:
         """Displacement components that it holds."""
         return ()
+
+    def held_scalars(self) -> dict[str, float]:
+        """Natural unknowns of the kinematics, such as the curvature, that it holds at a value."""
+        return {}

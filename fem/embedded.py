@@ -2,17 +2,41 @@
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Mapping
+
 import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
 
 from fem import compat
-from fem.kinematics import Body
+from fem.kinematics import Kinematics
 from geometry.embed import EmbeddedFibers
 from geometry.mesh import facet_positions
 
 Floats = npt.NDArray[np.float64]
+
+
+@dataclasses.dataclass(frozen=True)
+class _Second:
+    """Second derivatives of s segments with k dofs each.
+
+    Attributes:
+        block: ∂²Π/∂w², (s, k, k).
+        borders: by scalar, ∂²Π/∂w∂q, (s, k).
+        corners: by pair of scalars, ∂²Π/∂q∂r of all segments together.
+    """
+
+    block: Floats
+    borders: dict[str, Floats]
+    corners: dict[tuple[str, str], float]
+
+
+def _cross(spin: Floats) -> Floats:
+    """The matrix of spin ×."""
+    x, y, z = spin
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 class FiberPotential:
@@ -25,6 +49,9 @@ class FiberPotential:
     EA (e + b·δu), instead of EA e: the converged state is the same, the iterations fewer. That is
     not the tangent at the solution; `predict(None)` switches it off.
 
+    In uniform bending F T has a part T_z (λ0 e_z + ω × x') that depends on global scalars; the
+    derivatives with respect to these are `conjugate`, `add_load` and `corner`.
+
     Args:
         body: the kinematics.
         segments: pieces of fiber; those of cells owned elsewhere are left out.
@@ -33,7 +60,11 @@ class FiberPotential:
     """
 
     def __init__(
-        self, body: Body, segments: EmbeddedFibers, stiffness: float, tension_only: bool = False
+        self,
+        body: Kinematics,
+        segments: EmbeddedFibers,
+        stiffness: float,
+        tension_only: bool = False,
     ) -> None:
         self._body = body
         domain = body.domain
@@ -52,38 +83,71 @@ class FiberPotential:
 
         positions = facet_positions(domain.data.cell_type)[facet]
         count, quadrature = len(self.index), segments.weights.shape[1]
-        nodes = positions.shape[1]
-        points = segments.points[self.index].reshape(-1, 3)
+        dim = segments.points.shape[2]
+        points = segments.points[self.index].reshape(-1, dim)
         _, gradient = compat.tabulate_gradient(domain.data.cell_type, points)
-        tangent = segments.tangents[self.index].reshape(-1, 3)
+        tangent = segments.tangents[self.index].reshape(-1, dim)
         along = np.einsum("pad,pd->pa", gradient, tangent).reshape(count, quadrature, -1)
         along = np.take_along_axis(along, positions[:, None, :], axis=2)
-        self._dofs = body.cell_dofs[local[:, None], positions].reshape(count, 3 * nodes)
+        self._dofs = body.cell_dofs[local[:, None], positions].reshape(count, -1)
         cells = domain.data.cells[segments.cell[self.index, None], positions]
         self._reference = domain.data.nodes[cells]
-        x_t = along @ self._reference
-        metric = np.linalg.norm(x_t, axis=2)
-        self._slope = along / metric[:, :, None]  # ∂φ_a/∂S, 1/mm
+        rise = segments.axial[self.index]
+        if self._reference.shape[2] == 3:
+            rise = np.einsum("nqa,na->nq", along, self._reference[:, :, 2])
+        plane = along @ self._reference[:, :, :2]
+        metric = np.sqrt(np.sum(plane**2, axis=2) + rise**2)
+        slope = along / metric[:, :, None]  # ∂φ_a/∂S, 1/mm
         share = segments.weights[self.index] * metric
         self._share = share / share.sum(axis=1, keepdims=True)
-        self._matrices: Floats = np.zeros(0)
+        self._uniform = body.carry() is not None
+        parts = body.components
+        if self._uniform:
+            value, _ = compat.tabulate_gradient(domain.data.cell_type, points)
+            value = np.take_along_axis(
+                value.reshape(count, quadrature, -1), positions[:, None, :], axis=2
+            )
+            self._value = np.einsum("nqa,ij->nqiaj", value, np.eye(3)[:, :parts]).reshape(
+                count, quadrature, 3, -1
+            )
+            self._rise: Floats = (rise / metric)[:, :, None]
+        self._slope = np.einsum("nqa,ij->nqiaj", slope, np.eye(3)[:, :parts]).reshape(
+            count, quadrature, 3, -1
+        )
+        rest = np.zeros((*self._reference.shape[:2], parts))
+        # x' in the turning frame: z is not a position there
+        shown = 2 if self._uniform else 3
+        rest[:, :, :shown] = self._reference[:, :, :shown]
+        self._reference = rest.reshape(count, -1)
         self._predicted: Floats | None = None
-        self._b = np.zeros((count, 3 * nodes))
+        self._second: _Second | None = None
         self.strain = np.zeros(count)
-        self._first_force: Floats | None = None
 
     # --- state ---------------------------------------------------------------------------------
 
     def update(self, w: Floats) -> None:
-        """Strain and its gradient at the local coefficients w."""
-        count, width = self._dofs.shape
-        x = self._reference + w[self._dofs].reshape(count, width // 3, 3)
-        t = self._slope @ x
+        """Strain and its derivatives at the local coefficients w and the present scalars."""
+        x = self._reference + w[self._dofs]
+        self._map = self._slope
+        self._rates: dict[str, Floats] = {}
+        t = (self._slope @ x[:, None, :, None])[..., 0]
+        carry = self._body.carry()
+        if carry is not None:
+            position = (self._value @ x[:, None, :, None])[..., 0]
+            along, spin = np.array([0.0, 0.0, carry.stretch]), carry.spin
+            t = t + self._rise * (along + np.cross(spin, position))
+            self._map = self._slope + self._rise[..., None] * (_cross(spin) @ self._value)
+            for name, (vector, turn) in carry.rates.items():
+                self._rates[name] = self._rise * (vector + np.cross(turn, position))
         self._stretch = np.linalg.norm(t, axis=2)
         self._direction = t / self._stretch[:, :, None]
         self.strain = np.einsum("nq,nq->n", self._share, self._stretch) - 1
         weighted = self._share[:, :, None] * self._direction
-        self._b = np.matmul(self._slope.transpose(0, 2, 1), weighted).reshape(count, width)
+        self._b = np.einsum("nqi,nqik->nk", weighted, self._map, optimize=True)
+        self._e_q = {
+            name: np.einsum("nqi,nqi->n", weighted, rate) for name, rate in self._rates.items()
+        }
+        self._second = None
 
     @property
     def force(self) -> Floats:
@@ -109,19 +173,24 @@ class FiberPotential:
         """Add ∂Π/∂w = Σ ℓ N ∂e/∂w to local coefficients."""
         np.add.at(b, self._dofs, (self.length * self.force)[:, None] * self._b)
 
-    def predict(self, correction: Floats | None) -> None:
-        """Force EA (e + b·δw) from the strain and gradient at the last tangent; None: EA e."""
+    def predict(
+        self, correction: Floats | None, scalars: Mapping[str, float] | None = None
+    ) -> None:
+        """Force EA (e + b·δw + e_q δq) from strain and gradient at the last tangent; None: EA e."""
+        self._second = None
         if correction is None:
             self._predicted = None
             return
         change = np.einsum("nk,nk->n", self._b, correction[self._dofs])
+        for name, value in (scalars or {}).items():
+            if name in self._e_q:
+                change += self._e_q[name] * value
         self._predicted = self.stiffness * (self.strain + change)
 
-    def add_tangent(self, matrix: PETSc.Mat, free: npt.NDArray[np.bool_]) -> None:
-        """Add ∂²Π/∂w², summed facet by facet, on the free dofs."""
-        if not len(self._start):
-            return
-        count, width = self._dofs.shape
+    def _second_derivatives(self) -> _Second:
+        """∂²Π of every segment in its own dofs and the scalars, at the present state."""
+        if self._second is not None:
+            return self._second
         force, stiffness = self.force, self.stiffness
         if self._predicted is not None:
             force = np.maximum(self._predicted, 0) if self.tension_only else self._predicted
@@ -129,25 +198,57 @@ class FiberPotential:
             stiffness = np.where(self.strain > 0, stiffness, 0.0)
         n = self._direction
         across = np.eye(3) - n[..., :, None] * n[..., None, :]
-        across *= (self.length[:, None] * force[:, None] * self._share / self._stretch)[
-            ..., None, None
-        ]
-        nodes = width // 3
-        block = np.zeros((count, nodes, 3, nodes, 3))
-        for q in range(n.shape[1]):
-            s = self._slope[:, q]
-            pair = s[:, :, None] * s[:, None, :]
-            block += pair[:, :, None, :, None] * across[:, q, None, :, None, :]
-        full = block.reshape(count, width, width)
-        full += (self.length * stiffness)[:, None, None] * (
-            self._b[:, :, None] * self._b[:, None, :]
-        )
-        sums = np.add.reduceat(full, self._start, axis=0)
+        pull = self.length[:, None] * force[:, None] * self._share
+        across *= (pull / self._stretch)[..., None, None]
+        stiff = self.length * stiffness
+        side = across @ self._map
+        block = np.einsum("nqik,nqil->nkl", self._map, side, optimize=True)
+        block += stiff[:, None, None] * (self._b[:, :, None] * self._b[:, None, :])
+        borders: dict[str, Floats] = {}
+        corners: dict[tuple[str, str], float] = {}
+        carry = self._body.carry()
+        for name, rate in self._rates.items():
+            assert carry is not None
+            turned = self._rise[..., None] * (_cross(carry.rates[name][1]) @ self._value)
+            border = np.einsum("nqik,nqi->nk", side, rate)
+            border += np.einsum("nq,nqi,nqik->nk", pull, n, turned, optimize=True)
+            borders[name] = border + (stiff * self._e_q[name])[:, None] * self._b
+            for other, last in self._rates.items():
+                geometric = np.einsum("nqi,nqij,nqj->", rate, across, last, optimize=True)
+                material = np.sum(stiff * self._e_q[name] * self._e_q[other])
+                corners[name, other] = float(geometric + material)
+        self._second = _Second(block, borders, corners)
+        return self._second
+
+    def add_tangent(self, matrix: PETSc.Mat, free: npt.NDArray[np.bool_]) -> None:
+        """Add ∂²Π/∂w², summed facet by facet, on the free dofs."""
+        if not len(self._start):
+            return
+        sums = np.add.reduceat(self._second_derivatives().block, self._start, axis=0)
         dofs = self._dofs[self._start]
         keep = free[dofs].astype(float)
         sums *= keep[:, :, None] * keep[:, None, :]
         for rows, values in zip(dofs, sums, strict=True):
             matrix.setValuesLocal(rows, rows, values, PETSc.InsertMode.ADD_VALUES)
+
+    # --- global scalars ------------------------------------------------------------------------
+
+    def conjugate(self, name: str) -> float:
+        """This rank's −∂Π/∂q of a global scalar; zero where it does not enter."""
+        if name not in self._e_q:
+            return 0.0
+        return -float(np.sum(self.length * self.force * self._e_q[name]))
+
+    def add_load(self, name: str, b: Floats) -> None:
+        """Add ∂²Π/∂w∂q to local coefficients (owned and ghosts)."""
+        if name in self._e_q:
+            np.add.at(b, self._dofs, self._second_derivatives().borders[name])
+
+    def corner(self, first: str, second: str) -> float:
+        """This rank's ∂²Π/∂q∂r of two global scalars."""
+        if first not in self._e_q or second not in self._e_q:
+            return 0.0
+        return self._second_derivatives().corners[first, second]
 
     # --- memory of converged steps ---------------------------------------------------------
 

@@ -10,7 +10,7 @@ from mpi4py import MPI
 from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation, Slerp
 
-from fem.kinematics import Body
+from fem.kinematics import Kinematics
 
 Floats = npt.NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class Frames:
         z: reference positions of the stations, mm, (k,).
     """
 
-    def __init__(self, body: Body) -> None:
+    def __init__(self, body: Kinematics) -> None:
         self._body = body
         nodes = body.domain.data.nodes
         low, high = nodes.min(axis=0), nodes.max(axis=0)

@@ -1,7 +1,8 @@
-"""How positions follow from the unknowns: the three-dimensional body."""
+"""How positions follow from the unknowns: what every model shares, and the 3-D body."""
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -18,40 +19,71 @@ Floats = npt.NDArray[np.float64]
 Dofs = npt.NDArray[np.int32]
 
 
-def _displacement(cell: str) -> tuple[Any, int]:
+def _displacement(cell: str) -> Any:
     # scalar elements, not one vector element: contiguous rows let the compiler vectorise kernels
-    return ufl.FiniteElement("Lagrange", cell, 2), 3
+    return ufl.FiniteElement("Lagrange", cell, 2)
 
 
-def _pressure(cell: str) -> tuple[Any, int]:
+def _pressure(cell: str) -> Any:
     """P1 discontinuous on bricks (Q2–P1disc), continuous on tetrahedra (Taylor–Hood)."""
-    family = "DPC" if cell == "hexahedron" else "Lagrange"
-    return ufl.FiniteElement(family, cell, 1), 1
+    family = "Lagrange" if cell == "tetrahedron" else "DPC"
+    return ufl.FiniteElement(family, cell, 1)
 
 
-FIELDS: dict[str, Callable[[str], tuple[Any, int]]] = {"u": _displacement, "p": _pressure}
-"""Scalar element and number of components of each field that an effect may ask for."""
+FIELDS: dict[str, Callable[[str], Any]] = {"u": _displacement, "p": _pressure}
+"""Scalar element of each field that an effect may ask for."""
 
 
-class Body:
-    """The 3-D body: F = I + ∂u/∂X, x = X + u.
+@dataclasses.dataclass(frozen=True)
+class Carry:
+    """The part of F e_z that no gradient gives: stretch e_z + spin × x, x in the section's frame.
 
-    Only the fields that some effect asks for exist.
+    Attributes:
+        stretch: λ0.
+        spin: (k, 0, τ), 1/mm.
+        rates: by scalar, its derivative as a pair (of the vector λ0 e_z, of the spin).
+    """
+
+    stretch: float
+    spin: Floats
+    rates: dict[str, tuple[Floats, Floats]]
+
+
+class Kinematics:
+    """How positions follow from the unknowns; the effects ask it for F, x and measures.
+
+    A subclass gives `F`, `x` and `volume_density`. Only the fields that some effect asks for
+    exist.
+
+    Args:
+        domain: the mesh with names.
+        fields: names of the fields that the effects ask for.
+        components: number of displacement components.
 
     Attributes:
         domain: the mesh with names.
         space: the one mixed space of all fields.
         w: all unknown fields together, a dolfinx function.
         names: the fields present, in their order within the space.
-        scalars: values of the global scalars, by name, that the effects declared.
+        components: number of displacement components.
+        scalars: the global scalars, by name, that effects and kinematics declared.
+        natural: those of them that are unknowns of the kinematics: at an equilibrium the
+            potential is stationary in them.
+        pins: (node, component) held so that no rigid motion is left.
+        copies: how many of what is modelled the whole actuator is.
     """
 
-    def __init__(self, domain: Domain, fields: Iterable[str]) -> None:
+    def __init__(self, domain: Domain, fields: Iterable[str], components: int) -> None:
         self.domain = domain
+        self.components = components
+        self.natural: tuple[str, ...] = ()
+        self.pins: tuple[tuple[int, int], ...] = ()
+        self.copies = 2.0 if domain.data.half else 1.0
         cell = domain.data.cell_type
         wanted = set(fields)
         self.names = [name for name in FIELDS if name in wanted]
-        elements = {name: FIELDS[name](cell) for name in self.names}
+        counts = {"u": components, "p": 1}
+        elements = {name: (FIELDS[name](cell), counts[name]) for name in self.names}
         self.space = compat.mixed_space(
             domain.mesh, [element for element, count in elements.values() for _ in range(count)]
         )
@@ -70,9 +102,10 @@ class Body:
 
         order = np.argsort(compat.node_permutation(cell))
         self.cell_dofs: Dofs = self._dofs["u"][:, order]
-        """Displacement dofs of every local cell, (cells, nodes, 3), `geometry.mesh` order."""
-        self.node_dofs: Dofs = np.full((len(domain.data.nodes), 3), -1, dtype=np.int32)
-        """Local displacement dofs of every input node, (n, 3); -1 where the node is not here."""
+        """Displacement dofs of every local cell, (cells, nodes, components), `geometry.mesh`
+        order."""
+        self.node_dofs: Dofs = np.full((len(domain.data.nodes), components), -1, dtype=np.int32)
+        """Local displacement dofs of every input node, (n, components); -1: not here."""
         self.node_dofs[domain.data.cells[domain.cells]] = self.cell_dofs
         index_map = self.space.dofmap.index_map
         self.owned = int(index_map.size_local)
@@ -95,7 +128,7 @@ class Body:
 
     @property
     def u(self) -> Any:
-        """Displacement, a UFL vector in mm."""
+        """Displacement, a UFL vector in mm; in uniform bending in the section's own frame."""
         return ufl.as_vector(self.part(self.w, "u"))
 
     @property
@@ -109,13 +142,21 @@ class Body:
 
     @property
     def x(self) -> Any:
-        """Deformed position, a UFL vector in mm."""
-        return ufl.SpatialCoordinate(self.domain.mesh) + self.u
+        """Deformed position, a UFL vector of three in mm."""
+        raise NotImplementedError
 
     @property
     def F(self) -> Any:
         """Deformation gradient, a UFL 3×3 tensor."""
-        return ufl.Identity(3) + ufl.grad(self.u)
+        raise NotImplementedError
+
+    def volume_density(self, surface: str) -> Any:
+        """Density per reference area of the volume that a closed cavity surface encloses."""
+        raise NotImplementedError
+
+    def carry(self) -> Carry | None:
+        """How the axis carries positions along z at the present state; None in a 3-D body."""
+        return None
 
     def dx(self) -> Any:
         """Reference volume measure, mm³."""
@@ -125,14 +166,14 @@ class Body:
         """Reference area measure of a named boundary surface, mm²."""
         return self.domain.ds(surface)
 
-    def volume_density(self, surface: str) -> Any:
-        """Density per reference area of the volume a closed cavity surface encloses.
+    @property
+    def span(self) -> float:
+        """Greatest extent of what is modelled, mm."""
+        return float(np.ptp(self.domain.data.nodes, axis=0).max())
 
-        V = −∮ x_x (cof F · N)_x dS with N out of the solid: x e_x has no flux through planes
-        y = const or z = const that close the cavity, nor through x = 0.
-        """
-        normal = ufl.FacetNormal(self.domain.mesh)
-        return -self.x[0] * ufl.dot(ufl.cofac(self.F), normal)[0]
+    def size_of(self, scalar: str) -> float:
+        """A change of a natural scalar that strains like a stretch of one."""
+        raise KeyError(scalar)
 
     def coefficient(self, by_region: dict[str, float]) -> Any:
         """A material constant as a piecewise constant field, one value per region."""
@@ -160,7 +201,7 @@ class Body:
         return self._dofs[field]
 
     def displacement(self) -> Floats:
-        """Displacement of the owned nodes in mm, (len(owned_nodes), 3)."""
+        """Displacement of the owned nodes in mm, (len(owned_nodes), components)."""
         values: Floats = self.w.x.array[self.node_dofs[self.owned_nodes]]
         return values
 
@@ -180,3 +221,29 @@ class Body:
             return float(self.domain.comm.allreduce(mine, MPI.MIN))
 
         return least
+
+
+class Body(Kinematics):
+    """The 3-D body: F = I + ∂u/∂X, x = X + u."""
+
+    def __init__(self, domain: Domain, fields: Iterable[str]) -> None:
+        super().__init__(domain, fields, components=3)
+
+    @property
+    def x(self) -> Any:
+        """Deformed position, a UFL vector in mm."""
+        return ufl.SpatialCoordinate(self.domain.mesh) + self.u
+
+    @property
+    def F(self) -> Any:
+        """Deformation gradient, a UFL 3×3 tensor."""
+        return ufl.Identity(3) + ufl.grad(self.u)
+
+    def volume_density(self, surface: str) -> Any:
+        """Density per reference area of the volume a closed cavity surface encloses.
+
+        V = −∮ x_x (cof F · N)_x dS with N out of the solid: x e_x has no flux through planes
+        y = const or z = const that close the cavity, nor through x = 0.
+        """
+        normal = ufl.FacetNormal(self.domain.mesh)
+        return -self.x[0] * ufl.dot(ufl.cofac(self.F), normal)[0]

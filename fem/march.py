@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fem.frames import Frames
-from fem.newton import Newton, Outcome
+from fem.newton import Closure, Newton, Outcome
 from fem.program import Functional, Ramp, Report, Rules, State
 from fem.scene import Scene
 
@@ -28,6 +28,30 @@ class _Conjugate:
     def row(self) -> Floats:
         return -self._scene.load(self._name) / self._scale
 
+    def slope(self, scalar: str) -> float:
+        return -self._scene.corner(self._name, scalar) / self._scale
+
+
+class _Stationary:
+    """Closing equation: the potential is stationary in a natural scalar."""
+
+    def __init__(self, scene: Scene, name: str) -> None:
+        self._scene, self._name = scene, name
+        self._lever = scene.body.span / scene.body.size_of(name)
+
+    @property
+    def _scale(self) -> float:
+        return self._scene.force_scale * self._lever
+
+    def value(self) -> float:
+        return -self._scene.conjugate(self._name) / self._scale
+
+    def row(self) -> Floats:
+        return self._scene.load(self._name) / self._scale
+
+    def slope(self, scalar: str) -> float:
+        return self._scene.corner(self._name, scalar) / self._scale
+
 
 class _Target:
     """Closing equation: a functional takes a value."""
@@ -41,6 +65,9 @@ class _Target:
     def row(self) -> Floats:
         return self._functional.row()
 
+    def slope(self, scalar: str) -> float:
+        return self._functional.slope(scalar)
+
 
 class March:
     """Drives a scene along its ramps.
@@ -48,7 +75,7 @@ class March:
     Args:
         scene: the problem, at rest.
         newton: solver of that problem.
-        frames: rod frames for the predictor.
+        frames: rod frames for the predictor; None where the kinematics turns by itself.
         followed: functional that requests refer to (the bending angle), or None.
         rules: incrementation.
         on_step: called after every converged increment with the state and its outcome.
@@ -59,7 +86,7 @@ class March:
         self,
         scene: Scene,
         newton: Newton,
-        frames: Frames,
+        frames: Frames | None,
         followed: Functional | None,
         rules: Rules,
         on_step: Callable[[State, Outcome], None],
@@ -93,7 +120,7 @@ class March:
             w=scene.w.copy(),
             scalars=scalars,
             measures=measures,
-            shape=self.frames.fit(scene.body.displacement()),
+            shape=self.frames.fit(scene.body.displacement()) if self.frames else None,
             discrete={key: item.state() for key, item in scene.discrete.items()},
         )
 
@@ -103,22 +130,28 @@ class March:
             self.scene.set_scalar(name, value)
         self.scene.set(state.w)
 
+    def _natural(self) -> list[_Stationary]:
+        """One equation for each natural scalar."""
+        return [_Stationary(self.scene, name) for name in self.scene.natural]
+
     def _tangent_state(self, scalar: str) -> State:
         """A neighbour of the last state along the linear response to a scalar."""
         base = self.states[-1]
         self.restore(base)
         for discrete in self.scene.discrete.values():
             discrete.predict(None)
-        self.scene.assemble_tangent()
-        self.newton.factor.renew()
-        rate = -self.newton.solve_linear(self.scene.load(scalar))
-        body = self.scene.body
+        scene, body = self.scene, self.scene.body
+        rate, natural = self.newton.response(scalar, scene.natural, self._natural())
         nodal = body.with_ghosts(rate)[body.node_dofs[body.owned_nodes]]
         top = float(np.max(np.abs(nodal), initial=0.0))
-        largest = max(self.scene.domain.comm.allgather(top))
-        step = 1e-5 * float(self.frames.z[-1] - self.frames.z[0]) / max(largest, 1e-300)
-        self.scene.set(base.w + step * rate)
-        self.scene.set_scalar(scalar, base.scalars[scalar] + step)
+        largest = max(scene.domain.comm.allgather(top)) / body.span
+        for name, value in natural.items():
+            largest = max(largest, abs(value) / body.size_of(name))
+        step = 1e-5 / max(largest, 1e-300)
+        scene.set_scalar(scalar, base.scalars[scalar] + step)
+        for name, value in natural.items():
+            scene.set_scalar(name, base.scalars[name] + step * value)
+        scene.set(base.w + step * rate)
         state = self.capture()
         self.restore(base)
         return state
@@ -130,13 +163,15 @@ class March:
             [np.prod([(target - b) / (a - b) for b in np.delete(t, i)]) for i, a in enumerate(t)]
         )
         body = self.scene.body
-        shape = self.frames.extrapolate([state.shape for state in history], weights)
-        self.scene.set(np.tensordot(weights, [state.w for state in history], axes=1))
-        body.set_displacement(self.frames.rebuild(shape))
-        self.scene.set(self.scene.w.copy())
         for name in body.scalars:
             values = [state.scalars[name] for state in history]
             self.scene.set_scalar(name, float(weights @ values))
+        self.scene.set(np.tensordot(weights, [state.w for state in history], axes=1))
+        if self.frames is not None:
+            shapes = [state.shape for state in history if state.shape is not None]
+            shape = self.frames.extrapolate(shapes, weights)
+            body.set_displacement(self.frames.rebuild(shape))
+            self.scene.set(self.scene.w.copy())
         for key, discrete in self.scene.discrete.items():
             discrete.extrapolate([state.discrete[key] for state in history], weights)
         return self.scene.w.copy()
@@ -157,17 +192,19 @@ class March:
 
     def _solve(self, ramp: Ramp, kind: str, target: float) -> Outcome:
         """Predict and solve one increment; kind is 'value', 'conjugate' or 'followed'."""
-        abscissa = kind if kind == "followed" else f"{kind} {ramp.scalar}"
+        abscissa = _key(kind, ramp.scalar)
         start = self._predict(abscissa, target, self._history(abscissa))
+        unknown: list[str] = list(self.scene.natural)
+        closures: list[Closure] = list(self._natural())
         if kind == "value":
             self.scene.set_scalar(ramp.scalar, target)
-            return self.newton.solve(start)
+            return self.newton.solve(start, unknown, closures)
         if kind == "conjugate":
-            closure: _Conjugate | _Target = _Conjugate(self.scene, ramp.scalar, target)
+            closures.append(_Conjugate(self.scene, ramp.scalar, target))
         else:
             assert self.followed is not None
-            closure = _Target(self.followed, target)
-        return self.newton.solve(start, [ramp.scalar], [closure])
+            closures.append(_Target(self.followed, target))
+        return self.newton.solve(start, [*unknown, ramp.scalar], closures)
 
     def _guess(self, drive: str, target: float) -> float:
         """Extrapolated value of the followed functional where the increment would end."""
@@ -193,7 +230,7 @@ class March:
         return self.report
 
     def _ramp(self, ramp: Ramp) -> bool:
-        drive = f"{ramp.drive} {ramp.scalar}"
+        drive = _key(ramp.drive, ramp.scalar)
         now = self.states[-1].measures[drive]
         span = ramp.target - now
         if span == 0:
@@ -208,16 +245,18 @@ class March:
         size = self.increment
         failures = 0
         insist = False
-        pending = sorted(ramp.at)
+        pending, halts = sorted(ramp.at), ramp.stops
         if ramp.until is not None:
             pending = sorted({*(a for a in ramp.at if a < ramp.until), ramp.until})
+        if ramp.drive == "followed":
+            pending, halts = [], (*ramp.stops, *ramp.at)
         while True:
             state = self.states[-1]
             now = state.measures[drive]
             left = abs(ramp.target - now)
             if left <= 1e-12 * abs(span):
                 return True
-            stops = [s for s in (*ramp.stops, ramp.target) if sign * (s - now) > 1e-9 * abs(span)]
+            stops = [s for s in (*halts, ramp.target) if sign * (s - now) > 1e-9 * abs(span)]
             nearest = min(stops, key=lambda s: abs(s - now))
             size = min(size, self._turn_limit(drive))
             target = now + sign * size
@@ -295,6 +334,11 @@ class March:
         if abs(turned) < 1e-14 or abs(driven) < 1e-300:
             return span / 20
         return float(abs(driven / turned) * self.rules.first_turn)
+
+
+def _key(kind: str, scalar: str) -> str:
+    """Name of the measure that a ramp or a step drives."""
+    return kind if kind == "followed" else f"{kind} {scalar}"
 
 
 def _interpolate(t: list[float], y: list[float]) -> Floats:

@@ -10,7 +10,7 @@ from mpi4py import MPI
 
 from fem.domain import Domain
 from fem.frames import Frames, Shape
-from fem.kinematics import Body
+from fem.kinematics import Kinematics
 from fem.scene import Scene
 
 Floats = npt.NDArray[np.float64]
@@ -22,7 +22,7 @@ class _SectionAngle:
     tan α = Σ m (Y − Ȳ) z / Σ m (Y − Ȳ) y, positive toward −y; two linear functionals.
     """
 
-    def __init__(self, body: Body, surface: str) -> None:
+    def __init__(self, body: Kinematics, surface: str) -> None:
         self._body = body
         domain = body.domain
         weights = domain.surface_weights(surface)
@@ -61,7 +61,7 @@ class BendingAngle:
         frames: stations, to count full turns along the body.
     """
 
-    def __init__(self, body: Body, frames: Frames) -> None:
+    def __init__(self, body: Kinematics, frames: Frames) -> None:
         self._body = body
         self._frames = frames
         self._root = _SectionAngle(body, "section_root")
@@ -87,6 +87,10 @@ class BendingAngle:
         self._root.add_row(row, -1.0)
         return row
 
+    def slope(self, scalar: str) -> float:
+        """∂θ/∂q of a global scalar: none enters."""
+        return 0.0
+
 
 class UniformAngle:
     """L times the curvature of the body's middle half: what the angle were without end effects.
@@ -99,7 +103,7 @@ class UniformAngle:
         frames: stations.
     """
 
-    def __init__(self, body: Body, frames: Frames) -> None:
+    def __init__(self, body: Kinematics, frames: Frames) -> None:
         nodes, domain = body.domain.data.nodes, body.domain
         root, tip = (
             float(nodes[domain.surface_nodes(name), 2].mean())
@@ -120,7 +124,7 @@ class UniformAngle:
 class Tip:
     """Centroid of the tip cap's outer face."""
 
-    def __init__(self, body: Body, surface: str = "tip") -> None:
+    def __init__(self, body: Kinematics, surface: str = "tip") -> None:
         self._body = body
         weights = body.domain.surface_weights(surface)
         weights /= weights.sum()

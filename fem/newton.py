@@ -60,13 +60,16 @@ class Problem(Protocol):
 
 
 class Closure(Protocol):
-    """One more equation g(w) = 0, in exchange for one global scalar that is found."""
+    """One more equation g(w, q) = 0, in exchange for one global scalar that is found."""
 
     def value(self) -> float:
         """g at the present state, scaled so that 1 is a large error."""
 
     def row(self) -> Floats:
         """∂g/∂w on the owned dofs."""
+
+    def slope(self, scalar: str) -> float:
+        """∂g/∂q of a global scalar."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -159,11 +162,56 @@ class Newton:
             raise ValueError("every unknown scalar needs one closing equation")
         return _Solve(self, list(unknown), list(closures)).run(w)
 
+    def response(
+        self, scalar: str, unknown: Sequence[str] = (), closures: Sequence[Closure] = ()
+    ) -> tuple[Floats, dict[str, float]]:
+        """Rates of the fields and of unknown scalars with a given one, along the equilibrium.
+
+        The tangent at the present state is assembled and factorised for it.
+        """
+        self.problem.assemble_tangent()
+        self.factor.renew()
+        border = _Border(self, unknown, closures)
+        a = self.solve_linear(self.problem.load(scalar))
+        sides = np.array([closure.slope(scalar) for closure in closures])
+        a, q = border.eliminate(a, sides)
+        return -a, dict(zip(unknown, -q, strict=True))
+
     def solve_linear(self, r: Floats) -> Floats:
         """K⁻¹ r with the present factor, owned part."""
         self._b.array_w[:] = r
         self.factor.solve(self._b, self._x)
         return self._x.array_r.copy()
+
+
+class _Border:
+    """Rows and columns of the scalars at the present tangent, and their Schur complement."""
+
+    def __init__(self, newton: Newton, unknown: Sequence[str], closures: Sequence[Closure]) -> None:
+        problem, self._comm = newton.problem, newton.comm
+        free = problem.free[: newton._owned]
+        columns = [problem.load(name) for name in unknown]
+        self.rows = [np.where(free, closure.row(), 0.0) for closure in closures]
+        self.spread = [newton.solve_linear(column) for column in columns]
+        slopes = [[closure.slope(name) for name in unknown] for closure in closures]
+        self.schur = np.array(slopes).reshape(len(closures), len(unknown))
+        for spread, column in zip(self.spread, self.schur.T, strict=True):
+            column -= self._dots(spread)
+
+    def _dots(self, a: Floats) -> Floats:
+        """Inner products of the rows with a vector, over all ranks."""
+        mine = np.array([float(row @ a) for row in self.rows])
+        total: Floats = self._comm.allreduce(mine, MPI.SUM)
+        return total
+
+    def eliminate(self, a: Floats, r_q: Floats) -> tuple[Floats, Floats]:
+        """Solution (w, q) of the bordered system from a = K⁻¹ r and the scalars' right side."""
+        if not self.rows:
+            return a, np.zeros(0)
+        q = np.linalg.solve(self.schur, r_q - self._dots(a))
+        for value, spread in zip(q, self.spread, strict=True):
+            a = a - value * spread
+        return a, q
 
 
 class _Solve:
@@ -199,10 +247,6 @@ class _Solve:
         array[: self.owned] = w
         if self.last and self.unknown:
             array[self.owned :] = scalars
-
-    def dot(self, a: Floats, b: Floats) -> float:
-        """Inner product over all ranks."""
-        return float(self.comm.allreduce(float(a @ b), MPI.SUM))
 
     # --- callbacks -----------------------------------------------------------------------------
 
@@ -249,13 +293,7 @@ class _Solve:
         problem.assemble_tangent()
         self.newton._assembly["tangent"] += time.perf_counter() - start
         self.newton.factor.renew()
-        columns = [problem.load(name) for name in self.unknown]
-        free = problem.free[: self.owned]
-        self.rows = [np.where(free, closure.row(), 0.0) for closure in self.closures]
-        self.spread = [self.newton.solve_linear(column) for column in columns]
-        self.schur = -np.array(
-            [[self.dot(row, spread) for spread in self.spread] for row in self.rows]
-        ).reshape(len(self.rows), len(self.spread))
+        self.border = _Border(self.newton, self.unknown, self.closures)
 
     def fast(self) -> bool:
         """Whether the last factor is likely to reduce the residual tenfold once more."""
@@ -272,22 +310,18 @@ class _Solve:
         self.solves += 1
         r_w, r_q = self.split(r)
         a = self.newton.solve_linear(r_w)
-        q = np.zeros(0)
-        if self.unknown:
-            q = np.linalg.solve(self.schur, r_q - np.array([self.dot(row, a) for row in self.rows]))
-            for value, spread in zip(q, self.spread, strict=True):
-                a -= value * spread
+        a, q = self.border.eliminate(a, r_q)
         self.join(y, a, q)
-        # SNES takes the step x − y, so the correction of the fields is −a
-        self.correct(-a)
+        # SNES takes the step x − y, so the correction is −(a, q)
+        self.correct(-a, dict(zip(self.unknown, -q, strict=True)))
 
-    def correct(self, correction: Floats) -> None:
+    def correct(self, correction: Floats, scalars: dict[str, float]) -> None:
         """Tell the discrete potentials the correction, ghosts included."""
         if not self.newton.settings.hybrid or not self.problem.discrete:
             return
         full = self.problem.body.with_ghosts(correction)
         for discrete in self.problem.discrete.values():
-            discrete.predict(full)
+            discrete.predict(full, scalars)
 
     def test(self, _snes: PETSc.SNES, iteration: int, _norms: tuple[float, ...]) -> int:
         """Force, volume and closing equations, each for itself."""

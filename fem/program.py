@@ -22,6 +22,9 @@ class Functional(Protocol):
     def row(self) -> Floats:
         """∂/∂w on the owned dofs."""
 
+    def slope(self, scalar: str) -> float:
+        """∂/∂q of a global scalar."""
+
 
 @dataclasses.dataclass
 class State:
@@ -31,14 +34,14 @@ class State:
         w: owned coefficients.
         scalars: values of the global scalars.
         measures: values that ramps and requests refer to, by name.
-        shape: rod description of the displacement.
+        shape: rod description of the displacement; None where the kinematics turns by itself.
         discrete: memory of the discrete potentials, by effect.
     """
 
     w: Floats
     scalars: dict[str, float]
     measures: dict[str, float]
-    shape: Shape
+    shape: Shape | None
     discrete: dict[str, dict[str, Floats]]
 
 
@@ -49,7 +52,8 @@ class Ramp:
     Attributes:
         scalar: name of the global scalar, such as 'pressure'.
         target: its final value, or its conjugate's (the chamber volume).
-        drive: 'value', or 'conjugate' to find the scalar so that its conjugate follows the ramp.
+        drive: 'value'; 'conjugate' to find the scalar so that its conjugate follows the ramp; or
+            'followed' to find it so that the followed functional does.
         first: first increment of the driven quantity; None: from the linear response.
         largest: greatest increment; None: no limit but the convergence.
         stops: values of the driven quantity to be hit exactly.

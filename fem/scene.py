@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import functools
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from petsc4py import PETSc
 from fem import compat
 from fem.domain import Domain
 from fem.effect import Constraint, Discrete, Effect
-from fem.kinematics import Body
+from fem.kinematics import Body, Kinematics
 
 Floats = npt.NDArray[np.float64]
 
@@ -40,10 +41,13 @@ class Scene:
     Args:
         domain: the mesh.
         effects: the summands; each key at most once.
+        kinematics: makes the kinematics from the domain and the names of the fields.
 
     Attributes:
         body: kinematics with the unknowns.
         keys: names of the effects, sorted.
+        natural: global scalars in which the potential is stationary at an equilibrium.
+        force_scale: scale of the forces in the last residual.
         free: local dofs (owned and ghosts) that no constraint holds.
         discrete: by key, the potentials with own code.
 
@@ -51,14 +55,20 @@ class Scene:
         ValueError: an effect given twice.
     """
 
-    def __init__(self, domain: Domain, effects: Iterable[Effect]) -> None:
+    def __init__(
+        self,
+        domain: Domain,
+        effects: Iterable[Effect],
+        kinematics: Callable[[Domain, Iterable[str]], Kinematics] = Body,
+    ) -> None:
         ordered = sorted(effects, key=lambda effect: effect.key)
         self.keys = [effect.key for effect in ordered]
         for key in self.keys:
             if self.keys.count(key) > 1:
                 raise ValueError(f"the effect {key} is given twice")
         self.domain = domain
-        self.body = Body(domain, (name for effect in ordered for name in effect.fields))
+        self.body = kinematics(domain, (name for effect in ordered for name in effect.fields))
+        self.force_scale = 1.0
         self.discrete: dict[str, Discrete] = {}
         potentials: dict[str, Any] = {}
         constraints: list[Constraint] = []
@@ -70,6 +80,10 @@ class Scene:
             if discrete is not None:
                 self.discrete[effect.key] = discrete
             constraints += effect.constraints()
+        held = {name: value for effect in ordered for name, value in effect.held_scalars().items()}
+        for name, value in held.items():
+            self.set_scalar(name, value)
+        self.natural = tuple(name for name in self.body.natural if name not in held)
         self._compile(potentials)
         self._constrain(constraints)
 
@@ -84,10 +98,14 @@ class Scene:
         forms: dict[str, Any] = {"residual": residual, "tangent": tangent}
         for key, form in potentials.items():
             forms[f"energy {key}"] = form
-        for name in body.scalars:
+        for i, name in enumerate(body.scalars):
             conjugate = _differentiate(total, body.scalar(name))
             forms[f"conjugate {name}"] = conjugate
             forms[f"load {name}"] = ufl.derivative(conjugate, body.w, test)
+            for other in list(body.scalars)[i:] if body.natural else ():
+                corner = _differentiate(conjugate, body.scalar(other))
+                if corner is not None:
+                    forms[f"corner {name} {other}"] = corner
         if "p" in body.names:
             forms["volume"] = body.part(test, "p")[0] * body.dx()
         self._forms = {name: compat.compile_form(mesh, form) for name, form in forms.items()}
@@ -114,6 +132,10 @@ class Scene:
             self._held_values[dofs] = constraint.value
             old = self._held.get(constraint.name, np.zeros(0, dtype=np.int32))
             self._held[constraint.name] = np.union1d(old, dofs).astype(np.int32)
+        if body.pins:
+            dofs = np.array([body.node_dofs[pin] for pin in body.pins], dtype=np.int32)
+            self.free[dofs] = False
+            self._held["pin"] = dofs
         self._dirichlet = compat.dirichlet(body.space, np.flatnonzero(~self.free))
         p = body.dofs("p").ravel() if "p" in body.names else np.zeros(0, dtype=np.int32)
         self.volumetric = np.zeros(body.owned, dtype=bool)
@@ -175,18 +197,28 @@ class Scene:
 
     def conjugate(self, name: str) -> float:
         """−∂Π/∂q of a global scalar q: the chamber volume in mm³ for the pressure."""
-        mine = compat.assemble_scalar(self._forms[f"conjugate {name}"])
-        return -float(self.domain.comm.allreduce(mine, MPI.SUM))
+        mine = -compat.assemble_scalar(self._forms[f"conjugate {name}"])
+        mine += sum(discrete.conjugate(name) for discrete in self.discrete.values())
+        return float(self.domain.comm.allreduce(mine, MPI.SUM))
 
-    def _sum(self, form: Any, discrete: Iterable[Discrete]) -> tuple[Floats, float]:
+    def corner(self, first: str, second: str) -> float:
+        """∂²Π/∂q∂r of two global scalars at the present state."""
+        mine = sum(discrete.corner(first, second) for discrete in self.discrete.values())
+        for key in (f"corner {first} {second}", f"corner {second} {first}"):
+            if key in self._forms:
+                mine += compat.assemble_scalar(self._forms[key])
+                break
+        return float(self.domain.comm.allreduce(mine, MPI.SUM))
+
+    def _sum(self, form: Any, add: Iterable[Callable[[Floats], None]]) -> tuple[Floats, float]:
         """Owned part of an assembled vector, and the norm of its discrete part."""
         vector = self._vector
         norm = 0.0
         with vector.localForm() as local:
             local.set(0.0)
             part = np.zeros(len(local.array_r))
-            for potential in discrete:
-                potential.add_residual(part)
+            for fill in add:
+                fill(part)
             norm = float(np.linalg.norm(part))
             local.array_w[:] = part
         compat.assemble_vector(vector, form)
@@ -200,15 +232,19 @@ class Scene:
             Its owned part (owned,), constrained dofs included: there it is the reaction; and a
             scale for the forces in it: the larger of reactions and fiber forces.
         """
-        r, norm = self._sum(self._forms["residual"], self.discrete.values())
+        r, norm = self._sum(
+            self._forms["residual"], [item.add_residual for item in self.discrete.values()]
+        )
         held = ~self.free[: self.body.owned]
         reaction = self.norm(r[held])
         total = float(np.sqrt(self.domain.comm.allreduce(norm**2, MPI.SUM)))
-        return r, max(reaction, total)
+        self.force_scale = max(reaction, total, 1e-30)
+        return r, self.force_scale
 
     def load(self, name: str, constrained: bool = False) -> Floats:
         """∂R/∂q of a global scalar, owned part; zero on constrained dofs unless they are wanted."""
-        vector, _ = self._sum(self._forms[f"load {name}"], ())
+        fills = [functools.partial(item.add_load, name) for item in self.discrete.values()]
+        vector, _ = self._sum(self._forms[f"load {name}"], fills)
         if not constrained:
             vector[~self.free[: self.body.owned]] = 0.0
         return vector

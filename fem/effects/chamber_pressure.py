@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from fem.effect import Effect
-from fem.kinematics import Body
+from fem.kinematics import Kinematics
 
 
 class ChamberPressure(Effect):
@@ -23,7 +23,7 @@ class ChamberPressure(Effect):
     def __init__(self, surface: str = "chamber") -> None:
         self.surface = surface
 
-    def potential(self, body: Body) -> Any:
+    def potential(self, body: Kinematics) -> Any:
         """−P V as a form over the cavity's surface."""
         pressure = body.scalar(self.scalar)
         return -pressure * body.volume_density(self.surface) * body.ds(self.surface)

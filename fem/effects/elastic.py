@@ -7,7 +7,7 @@ from typing import Any
 import ufl
 
 from fem.effect import Effect
-from fem.kinematics import Body
+from fem.kinematics import Kinematics
 from materials.laws import LAWS
 
 
@@ -39,7 +39,7 @@ class Elastic(Effect):
         """Elastic energy is labelled by its law."""
         return f"Elastic[{self.law.name}]"
 
-    def potential(self, body: Body) -> Any:
+    def potential(self, body: Kinematics) -> Any:
         """The energy as a form; parameters are piecewise constant fields."""
         c = body.F.T * body.F
         j = ufl.det(body.F)

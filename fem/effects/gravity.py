@@ -7,7 +7,7 @@ from typing import Any
 import ufl
 
 from fem.effect import Effect
-from fem.kinematics import Body
+from fem.kinematics import Kinematics
 
 
 class Gravity(Effect):
@@ -24,7 +24,7 @@ class Gravity(Effect):
         self.density = density
         self.acceleration = acceleration
 
-    def potential(self, body: Body) -> Any:
+    def potential(self, body: Kinematics) -> Any:
         """The load's potential as a form; the direction is a coefficient, not code."""
         load = ufl.as_vector(
             [

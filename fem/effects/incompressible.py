@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import ufl
 
 from fem.effect import Effect
-from fem.kinematics import Body
+from fem.kinematics import Kinematics
 
 
 class Incompressible(Effect):
@@ -25,7 +25,7 @@ class Incompressible(Effect):
             raise ValueError("a bulk modulus must be positive")
         self.bulk = bulk
 
-    def potential(self, body: Body) -> Any:
+    def potential(self, body: Kinematics) -> Any:
         """The constraint's Lagrangian as a form."""
         density = body.p * (ufl.det(body.F) - 1)
         if self.bulk:

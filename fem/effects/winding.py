@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fem.effect import Effect
 from fem.embedded import FiberPotential
-from fem.kinematics import Body
+from fem.kinematics import Kinematics
 from geometry.embed import EmbeddedFibers
 
 
@@ -29,7 +29,7 @@ class _Fibers(Effect):
         self.stiffness = stiffness
         self.tension_only = tension_only
 
-    def discrete(self, body: Body) -> FiberPotential:
+    def discrete(self, body: Kinematics) -> FiberPotential:
         """The fibers' potential on this body."""
         return FiberPotential(body, self.segments, self.stiffness, self.tension_only)
 

@@ -74,6 +74,9 @@ class _Volume:
     def row(self) -> Floats:
         return -self._scene.load("pressure") / self._target
 
+    def slope(self, scalar: str) -> float:
+        return 0.0  # V does not depend on P
+
 
 def test_border_finds_the_scalar(plain: tuple[Bender, Outcome]) -> None:
     # the pressure that belongs to a volume, from a wrong one

@@ -177,6 +177,10 @@ class VolumeRatio:
         """Its gradient."""
         return -self._scene.load("pressure") / self._rest
 
+    def slope(self, scalar: str) -> float:
+        """V depends on no scalar."""
+        return 0.0
+
 
 def volume_at_rest(scene: Scene) -> float:
     """Volume of the cavity in the mesh's own geometry; the state is kept."""
