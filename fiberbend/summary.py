@@ -6,10 +6,8 @@ import platform
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from fem import compat
-from fiberbend import __version__
+from fiberbend import __version__, bridge
 from fiberbend.case import Actuator
 from fiberbend.case_effects import BlockedTipEffect
 
@@ -29,19 +27,18 @@ def blocked_tip(
     """F L_f beside κ P of Polygerinos et al. 2015, eqs. (20) and (21).
 
     Args:
-        actuator: dimensions; κ takes the chamber's radius and the floor's thickness.
+        actuator: dimensions; κ is the chamber's first moment about y = 0.
         effect: the strips; L_f reaches from z = L to the middle of the post.
         row: the last row of the history.
     """
-    a, b = actuator.radius, actuator.floor
-    kappa = (4 * a**3 + 3 * np.pi * a**2 * b) / 6
+    kappa = bridge.dimensions(actuator).chamber_moment
     lever = actuator.cap - effect.post_length / 2
     return {
         "L_f_mm": lever,
         "tip_force_N": row["tip_force_N"],
         "roof_force_N": row["roof_force_N"],
         "F_L_f_Nmm": row["tip_force_N"] * lever,
-        "kappa_P_Nmm": float(kappa) * row["pressure_kPa"] * 1e-3,
+        "kappa_P_Nmm": kappa * row["pressure_kPa"] * 1e-3,
         "tip_section_rotation_deg": row["angle_deg"],
         "balance_force": row["balance_force"],
         "balance_moment": row["balance_moment"],

@@ -66,12 +66,14 @@ def geometry_error(mesh: MeshData) -> float:
     """Relative error to allow for the order-2 interpolation of the arcs.
 
     An arc of half angle β encloses too little area by β⁴/30 and is too short by β⁴/90 (leading
-    terms); three times the former is allowed, with the widest facet of the winding for β.
+    terms); three times the former is allowed, with the most curved facet of the winding for β,
+    twice the ratio of its rise to its half chord.
     """
     nodes = mesh.nodes[mesh.facet_nodes("winding")][..., :2]
-    reach = np.linalg.norm(nodes - nodes.mean(axis=1, keepdims=True), axis=2).max()
-    radius = np.abs(nodes[..., 0]).max()
-    return float(3 * (reach / radius) ** 4 / 30 + 1e-9)
+    nodes = nodes - nodes.mean(axis=1, keepdims=True)
+    axes = np.linalg.eigh(nodes.swapaxes(1, 2) @ nodes)[1]
+    rise, chord = np.moveaxis(np.ptp(nodes @ axes, axis=1), -1, 0)
+    return float(3 * (4 * rise / chord).max() ** 4 / 30 + 1e-9)
 
 
 def check(

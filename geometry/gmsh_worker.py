@@ -19,7 +19,7 @@ import numpy as np
 from geometry.blocks import SIDES, Layout, Point
 from geometry.dimensions import Actuator
 from geometry.gmsh_read import read_mesh
-from geometry.hemicircle import hemicircle
+from geometry.layouts import section_layout
 from geometry.size import MeshSize, Strips
 from geometry.stations import Stations, body_stations
 
@@ -183,7 +183,7 @@ def mesh_body(spec: dict[str, Any], out: Path) -> None:
     gmsh.model.add("fiberbend")
     coarse = dataclasses.replace(size, section=1, axial=size.axial / size.section)
     size = coarse if size.element == "tetrahedron" else size
-    layout = hemicircle(actuator, size, strips)
+    layout = section_layout(actuator, size, strips)
     stations = body_stations(actuator, size, strips)
     body = BodyModel(layout, stations, size)
     geo.synchronize()

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Iterator
 
 from geometry.dimensions import Actuator
 
 MAX_ASPECT = 25.0
+_ROUNDING = 1e-9
 
 
 @dataclasses.dataclass(frozen=True)
@@ -17,7 +19,8 @@ class MeshSize:
     Attributes:
         axial: target length of the elements along z in mm.
         section: refinement of the section; n gives n quads through wall, floor and sheath, 4 n
-            along a quarter arc and 3 n along the half floor; tetrahedra have edges of axial / n.
+            along a quarter arc, 3 n along the half floor of a hemicircle and along the shorter of
+            half width and height of a rectangle; tetrahedra have edges of axial / n.
         element: "hexahedron" or "tetrahedron".
         half: mesh x ≥ 0 only.
 
@@ -44,8 +47,9 @@ class Strips:
     """Strips of the outer surface on which a blocked tip is held; lengths in mm.
 
     Attributes:
-        roof_half_width: the roof is |x| ≤ this on the top of the outermost arc, 0 ≤ z ≤ L.
-        post_length: the post is the last part of the tip cap's underside, this long.
+        roof_half_width: the roof is |x| ≤ this on the top of the outer surface, 0 ≤ z ≤ L.
+        post_length: the post is the last part of the tip cap's underside, this long. The underside
+            of a circle is |x| ≤ roof_half_width.
     """
 
     roof_half_width: float
@@ -57,11 +61,11 @@ def elements_through(thickness: str, size: MeshSize) -> int:
     return 1 if thickness == "layer" else size.section
 
 
-def check_size(actuator: Actuator, size: MeshSize, strips: Strips | None = None) -> None:
-    """Refuse a mesh whose elements would be too flat, or strips that do not fit.
+def too_thin(actuator: Actuator, size: MeshSize) -> Iterator[tuple[str, str]]:
+    """Thicknesses whose elements would be too flat.
 
-    Raises:
-        ValueError: says which dimension, and the least value it can have with this mesh.
+    Yields:
+        Name of the dimension, and a message with the least value it can have with this mesh.
     """
     for name in ("wall", "floor", "sheath", "layer"):
         thickness = getattr(actuator, name)
@@ -69,13 +73,39 @@ def check_size(actuator: Actuator, size: MeshSize, strips: Strips | None = None)
             continue
         least = size.axial * elements_through(name, size) / MAX_ASPECT
         if thickness < least:
-            raise ValueError(
-                f"{name} {thickness:g} mm is too thin for elements {size.axial:g} mm long: "
-                f"expected at least {least:g} mm"
+            yield (
+                name,
+                f"{thickness:g} mm is too thin for elements {size.axial:g} mm long: "
+                f"expected at least {least:g} mm",
             )
+        elif name == "floor" and 0 < (above := wall_above_floor(actuator)) < least:
+            most = f"{actuator.wall - least:g} mm or all of the wall, {actuator.wall:g} mm"
+            yield (
+                name,
+                f"{thickness:g} mm leaves {above:.3g} mm of the wall, too thin for elements "
+                f"{size.axial:g} mm long: expected at most {most}",
+            )
+
+
+def wall_above_floor(actuator: Actuator) -> float:
+    """Thickness in mm of the wall between a circle's chamber and its floor; else 0."""
+    if actuator.section != "circle" or actuator.floor is None:
+        return 0.0
+    above = actuator.wall - actuator.floor
+    return above if above > _ROUNDING * actuator.wall else 0.0
+
+
+def check_size(actuator: Actuator, size: MeshSize, strips: Strips | None = None) -> None:
+    """Refuse a mesh whose elements would be too flat, or strips that do not fit.
+
+    Raises:
+        ValueError: says which dimension, and the least value it can have with this mesh.
+    """
+    for name, text in too_thin(actuator, size):
+        raise ValueError(f"{name} {text}")
     if strips is None:
         return
-    widest = actuator.outer_radius * math.sin(math.pi / 4)
+    widest = actuator.profile.widest_roof
     if not 0 < strips.roof_half_width < widest:
         raise ValueError(
             f"roof half width {strips.roof_half_width:g} mm: expected more than 0 and less than "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from geometry.dimensions import Actuator
-from geometry.hemicircle import hemicircle
+from geometry.layouts import section_layout
 from geometry.mesh import Ints, MeshData
 from geometry.quads import section_mesh
 from geometry.size import MeshSize, Strips
@@ -100,7 +100,7 @@ def swept_section(actuator: Actuator, size: MeshSize) -> MeshData:
     Raises:
         ValueError: dimensions that this mesh cannot hold.
     """
-    return section_mesh(hemicircle(actuator, size).without_fill())
+    return section_mesh(section_layout(actuator, size).without_fill())
 
 
 def swept_slice(actuator: Actuator, size: MeshSize, length: float, number: int) -> MeshData:
@@ -118,7 +118,7 @@ def swept_body(actuator: Actuator, size: MeshSize, strips: Strips | None = None)
     Raises:
         ValueError: dimensions that this mesh cannot hold.
     """
-    layout = hemicircle(actuator, size, strips)
+    layout = section_layout(actuator, size, strips)
     counts = [block.divisions[0] * block.divisions[1] for block in layout.blocks]
     is_fill = np.repeat([block.fill for block in layout.blocks], counts)
     stations = body_stations(actuator, size, strips)

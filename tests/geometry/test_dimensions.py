@@ -22,14 +22,14 @@ def test_baseline_closed_forms() -> None:
     assert areas["wall"] == pytest.approx(18 * math.pi)
     assert areas["floor"] == pytest.approx(40)
     assert areas["sheath"] == pytest.approx(10.5 * math.pi + 4 + 22)
-    assert BASELINE.outer_height == pytest.approx(14)
+    assert BASELINE.outer_top - BASELINE.outer_bottom == pytest.approx(14)
 
 
 def test_regions_add_up_to_the_outline() -> None:
     # catches an overlap or a gap between regions, whatever the dimensions
     actuator = Actuator(radius=7, length=90, wall=1.5, floor=3, sheath=0.8, cap=11, layer=0.4)
-    outer = actuator.outer_radius
-    base = 2 * outer * (actuator.floor - actuator.outer_bottom)
+    outer = actuator.outer_half_width
+    base = 2 * outer * (actuator.profile.bottom - actuator.outer_bottom)
     solid = (math.pi * outer**2 / 2 + base) * actuator.total_length
     total = sum(actuator.region_volumes().values()) + actuator.chamber_volume
     assert total == pytest.approx(solid)

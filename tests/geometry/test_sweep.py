@@ -42,17 +42,18 @@ def test_named_facets_have_the_areas_of_their_surfaces() -> None:
     a = BASELINE
     mesh = swept_body(a, MeshSize(axial=4, section=2, half=False), Strips(2.0, 3.0))
     solid = sum(a.region_areas().values())
-    perimeter = math.pi * a.outer_radius + 2 * (a.floor - a.outer_bottom) + 2 * a.outer_radius
+    radius, outer = a.profile.half_width, a.outer_half_width
+    perimeter = math.pi * outer + 2 * (a.profile.bottom - a.outer_bottom) + 2 * outer
     expected = {
         "clamp": solid + a.chamber_area,
         "tip": solid + a.chamber_area,
         "section_root": solid,
         "section_tip": solid,
-        "chamber": (math.pi + 2) * a.radius * a.length + 2 * a.chamber_area,
+        "chamber": (math.pi + 2) * radius * a.length + 2 * a.chamber_area,
         "winding": a.winding_perimeter * a.length,
         "outer": perimeter * a.total_length,
-        "roof": 2 * a.outer_radius * math.asin(2.0 / a.outer_radius) * a.length,
-        "post": 2 * a.outer_radius * 3.0,
+        "roof": 2 * outer * math.asin(2.0 / outer) * a.length,
+        "post": 2 * outer * 3.0,
     }
     assert {name: surface_area(mesh, name) for name in mesh.facets} == pytest.approx(
         expected, rel=1e-5
@@ -68,8 +69,8 @@ def test_half_is_half_of_full() -> None:
     assert _as_set(mirrored) == _as_set(full.nodes)
     for name in set(half.facets) - {"symmetry"}:
         assert surface_area(full, name) == pytest.approx(2 * surface_area(half, name), rel=1e-12)
-    height = BASELINE.outer_height
-    ring = height - BASELINE.radius
+    height = BASELINE.outer_top - BASELINE.outer_bottom
+    ring = height - BASELINE.profile.half_width
     symmetry = ring * BASELINE.length + height * 2 * BASELINE.cap
     assert surface_area(half, "symmetry") == pytest.approx(symmetry, rel=1e-12)
     assert np.all(half.nodes[half.facet_nodes("symmetry"), 0] == 0)

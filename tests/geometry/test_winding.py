@@ -131,9 +131,9 @@ def test_a_line_along_a_border_of_tetrahedra_counts_once() -> None:
     # the measure-zero case: a helix that runs exactly along the diagonals of the facets
     hexes = swept_body(BODY, MeshSize(axial=4, section=1, half=False))
     tets = to_tetrahedra(hexes)
-    side = (BODY.floor - BODY.outline_bottom) / 2
+    side = (BODY.profile.bottom - BODY.outline_bottom) / 2
     nodes = tets.nodes[tets.facet_nodes("winding")]
-    on_floor_side = np.isclose(nodes[..., 0], BODY.outline_radius).all(axis=1)
+    on_floor_side = np.isclose(nodes[..., 0], BODY.outline_half_width).all(axis=1)
     assert on_floor_side.any()
     slopes = np.diff(nodes[on_floor_side], axis=1)[..., 1:]
     ratios = np.abs(slopes[..., 1] / np.where(slopes[..., 0] == 0, np.nan, slopes[..., 0]))

@@ -101,7 +101,7 @@ def test_fibers_lie_on_the_bent_outline(element: str, half: bool, tmp_path: Path
     along = np.arctan2(z, y - center) * radius
     assert along.min() == pytest.approx(0, abs=0.02)
     assert along.max() == pytest.approx(SHORT.length, abs=0.02)
-    r, top = SHORT.outline_radius, SHORT.floor
+    r, top = SHORT.outline_half_width, SHORT.profile.bottom
     arc = np.abs(np.hypot(x, height - top) - r) + 10 * (height < top - 0.01)
     flat = np.minimum(np.abs(height), np.abs(np.abs(x) - r)) + 10 * (height > top + 0.01)
     assert np.minimum(arc, flat).max() < 0.02
