@@ -28,22 +28,27 @@ else:
 class Actuator(Model):
     """Dimensions of the actuator."""
 
-    section: Literal["hemicircle"] = "hemicircle"
+    section: Literal["hemicircle", "rectangle", "circle"] = "hemicircle"
     """Shape of the cross-section."""
-    radius: Length
-    """Radius of the chamber."""
+    radius: Length | None = None
+    """Radius of the chamber; hemicircle and circle."""
+    width: Length | None = None
+    """Width of the chamber; rectangle."""
+    height: Length | None = None
+    """Height of the chamber; rectangle."""
     length: Length
     """Length of the chamber, without the caps."""
     wall: Length
     """Thickness of the wall around the chamber."""
-    floor: Length
-    """Thickness of the floor under the chamber."""
+    floor: Length | None = None
+    """Thickness of the floor under the chamber; of a circle the outer part of the wall's thickness
+    over the lowest quarter, none unless said."""
     sheath: Length | None = None
     """Thickness of the sheath around everything; none unless said."""
     cap: Length = 15.0
     """Length of each of the two solid end caps."""
     layer: Length | None = None
-    """Thickness of a separate strain-limiting layer under the floor; none unless said."""
+    """Thickness of a separate strain-limiting layer under a flat floor; none unless said."""
 
 
 class Material(Model):
@@ -96,8 +101,8 @@ class Materials(Model):
 
     wall: Material
     """Wall and end caps."""
-    floor: Material
-    """Floor under the chamber."""
+    floor: Material | None = None
+    """Floor under the chamber, where the actuator has one."""
     sheath: Material | None = None
     """Sheath, where the actuator has one."""
     layer: Material | None = None

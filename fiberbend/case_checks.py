@@ -60,6 +60,7 @@ def check(parts: Parts) -> Iterator[Problem]:
     Args:
         parts: what is valid by itself.
     """
+    yield from _section(parts)
     yield from _effects(parts)
     yield from _pressure(parts)
     yield from _winding(parts)
@@ -68,6 +69,14 @@ def check(parts: Parts) -> Iterator[Problem]:
     yield from _mesh(parts)
     yield from _solver(parts)
     yield from _output(parts)
+
+
+def _section(parts: Parts) -> Iterator[Problem]:
+    from geometry.profiles import misfits
+
+    if parts.actuator is not None:
+        for name, text in misfits(dict(parts.actuator)):
+            yield Problem(f"actuator.{name}", text)
 
 
 def _effects(parts: Parts) -> Iterator[Problem]:
@@ -195,7 +204,7 @@ def _mesh(parts: Parts) -> Iterator[Problem]:
     if parts.mesh.symmetry == "half":
         for reason in mirror_breakers(parts.effects.values()):
             yield Problem("mesh.symmetry", f'"half", expected auto or full: {reason}')
-    if parts.actuator is not None:
+    if parts.actuator is not None and not any(_section(parts)):
         if parts.mesh.axial > parts.actuator.length:
             yield Problem(
                 "mesh.axial",
@@ -209,22 +218,15 @@ def _mesh(parts: Parts) -> Iterator[Problem]:
 def _too_thin(
     actuator: Actuator, mesh: Mesh, path: str, tip: BlockedTipEffect | None
 ) -> Iterator[Problem]:
-    from geometry.size import check_size
+    from geometry.size import check_size, too_thin
 
-    fineness = bridge.mesh_size(mesh, half=True)
-    parts = [part for part in ("wall", "floor", "sheath", "layer") if getattr(actuator, part)]
-    thick = actuator.model_copy(update=dict.fromkeys(parts, mesh.axial * mesh.section))
-    fits = True
-    for part in parts:
-        alone = thick.model_copy(update={part: getattr(actuator, part)})
+    dimensions, fineness = bridge.dimensions(actuator), bridge.mesh_size(mesh, half=True)
+    thin = list(too_thin(dimensions, fineness))
+    for part, text in thin:
+        yield Problem(f"actuator.{part}", text)
+    if tip is not None and not thin:
         try:
-            check_size(bridge.dimensions(alone), fineness)
-        except ValueError as error:
-            fits = False
-            yield Problem(f"actuator.{part}", str(error).removeprefix(f"{part} "))
-    if tip is not None and fits:
-        try:
-            check_size(bridge.dimensions(actuator), fineness, bridge.strips(tip))
+            check_size(dimensions, fineness, bridge.strips(tip))
         except ValueError as error:
             yield Problem(path, str(error))
 

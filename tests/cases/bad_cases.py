@@ -54,7 +54,34 @@ BAD_SETTINGS = [
     ("effects.1.winding.pattern=braid", 'effects.1.winding.pattern: "braid", expected '),
     ("support=hinge", 'support: "hinge", expected clamped-root'),
     ("model=section", 'model: "section", expected body or auto'),
-    ("actuator.section=circle", 'actuator.section: "circle", expected hemicircle'),
+    (
+        "actuator.section=square",
+        'actuator.section: "square", expected hemicircle, rectangle or circle',
+    ),
+    # dimensions that a section misses or has no use for
+    ("actuator.section=rectangle", "actuator.width: missing, expected the width of a rectangle"),
+    ("actuator.section=rectangle", "actuator.height: missing, expected the height of a rectangle"),
+    ("actuator.section=rectangle", "actuator.radius: no effect on a rectangle, expected no value"),
+    ("actuator.width=16 mm", "actuator.width: no effect on a hemicircle, expected no value"),
+    ("actuator.radius=", "actuator.radius: missing, expected the radius of a hemicircle"),
+    ("actuator.floor=", "actuator.floor: missing, expected the floor of a hemicircle"),
+    (
+        "actuator={section: circle, radius: 8 mm, length: 160 mm, wall: 2 mm, floor: 3 mm}",
+        "actuator.floor: 3 mm, expected at most the wall, 2 mm",
+    ),
+    (
+        "actuator={section: circle, radius: 8 mm, length: 160 mm, wall: 2 mm, floor: 1.99 mm}",
+        "actuator.floor: 1.99 mm leaves 0.01 mm of the wall, too thin for elements 1.5 mm long: "
+        "expected at most 1.94 mm or all of the wall, 2 mm",
+    ),
+    (
+        "actuator={section: circle, radius: 8 mm, length: 160 mm, wall: 2 mm, layer: 1 mm}",
+        "actuator.layer: no effect on a circle, expected no value",
+    ),
+    (
+        "actuator={section: circle, radius: 8 mm, length: 160 mm, wall: 2 mm}",
+        "materials.floor: no effect without actuator.floor, expected no value",
+    ),
     # shape of the case
     (
         "effects.2.pressure.to=8 kPa",
