@@ -34,10 +34,10 @@ class Archive:
 
     Args:
         scene: the compiled scene.
-        frames: rod frames, to describe a state that was read back.
+        frames: rod frames, to describe a state that was read back; None: not needed.
     """
 
-    def __init__(self, scene: Scene, frames: Frames) -> None:
+    def __init__(self, scene: Scene, frames: Frames | None) -> None:
         self._scene = scene
         self._frames = frames
         self._comm = scene.domain.comm
@@ -87,7 +87,7 @@ class Archive:
             w=w,
             scalars={name: float(value) for name, value in scalars.items()},
             measures={k: float(v) for k, v in _part(arrays, "measure/").items()},
-            shape=self._frames.fit(body.displacement()),
+            shape=self._frames.fit(body.displacement()) if self._frames else None,
             discrete=discrete,
         )
 

@@ -8,7 +8,6 @@ import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
 
-from fem.domain import Domain
 from fem.frames import Frames, Shape
 from fem.kinematics import Kinematics
 from fem.scene import Scene
@@ -148,11 +147,6 @@ class Resultant:
 
     def __add__(self, other: Resultant) -> Resultant:
         return Resultant(self.force + other.force, self.moment + other.moment)
-
-
-def mirror_factor(domain: Domain) -> int:
-    """2 when half a body stands for the whole."""
-    return 2 if domain.data.half else 1
 
 
 def resultant(scene: Scene, vector: Floats, held: npt.NDArray[np.int32] | None) -> Resultant:

@@ -136,6 +136,8 @@ class Newton:
         self._b = problem.matrix.createVecRight()
         self._x = problem.matrix.createVecRight()
         self._owned = self._b.getLocalSize()
+        self.schur: Floats = np.zeros((0, 0))
+        """Schur complement of the unknown scalars at the last tangent, in the order given."""
 
     @property
     def seconds(self) -> dict[str, float]:
@@ -161,6 +163,17 @@ class Newton:
         if len(unknown) != len(closures):
             raise ValueError("every unknown scalar needs one closing equation")
         return _Solve(self, list(unknown), list(closures)).run(w)
+
+    def negative_pivots(self, natural: Sequence[str] = ()) -> int:
+        """Number of negative eigenvalues of the last tangent (Sylvester's inertia).
+
+        Args:
+            natural: names of the scalars, the first of the unknown ones, that count as fields.
+        """
+        block = self.schur[: len(natural), : len(natural)]
+        # scaled rows are similar to a symmetric matrix, so that the eigenvalues are real
+        bad = int(np.sum(np.linalg.eigvals(block).real < 0)) if len(natural) else 0
+        return self.factor.negative_pivots + bad
 
     def response(
         self, scalar: str, unknown: Sequence[str] = (), closures: Sequence[Closure] = ()
@@ -294,6 +307,7 @@ class _Solve:
         self.newton._assembly["tangent"] += time.perf_counter() - start
         self.newton.factor.renew()
         self.border = _Border(self.newton, self.unknown, self.closures)
+        self.newton.schur = self.border.schur
 
     def fast(self) -> bool:
         """Whether the last factor is likely to reduce the residual tenfold once more."""

@@ -130,6 +130,8 @@ class Solver(Model):
     only."""
     max_step: Pressure | None = None
     """Greatest step of the pressure; without limit unless said; under pressure control only."""
+    max_turn: Angle | None = None
+    """Greatest change of the bending angle in a step; by the model unless said."""
     max_cutbacks: int = Field(default=8, ge=0, le=100)
     """How often in a row a step is cut before the run gives up."""
     tolerance: float = Field(default=1e-8, gt=0, le=1e-2)
@@ -168,7 +170,7 @@ class Case(Model):
     """What acts on the body; loads are applied in this order, earlier ones held."""
     support: Literal["clamped-root"] = "clamped-root"
     """How the body is held."""
-    model: Literal["body", "auto"] = "auto"
+    model: Literal["analytic", "section", "cell", "body", "auto"] = "auto"
     """Model to solve; auto takes the cheapest that holds every effect."""
     mesh: Mesh = Mesh()
     """Elements."""

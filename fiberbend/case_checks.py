@@ -14,6 +14,7 @@ from fiberbend.case_effects import (
     Fiber,
     GravityEffect,
     PressureEffect,
+    StraightEffect,
     WindingEffect,
 )
 from fiberbend.choice import mirror_breakers
@@ -96,10 +97,11 @@ def _pressure(parts: Parts) -> Iterator[Problem]:
     path, pressure = parts.find(PressureEffect)
     if pressure is None:
         return
-    if pressure.to is None and pressure.volume is None:
-        yield Problem(path, 'nothing to reach, expected to, such as "200 kPa", or volume')
-    if pressure.to is not None and pressure.volume is not None:
-        yield Problem(f"{path}.volume", "to is given too, expected one of the two")
+    given = [key for key in ("to", "volume", "angle") if getattr(pressure, key) is not None]
+    if not given:
+        yield Problem(path, 'nothing to reach, expected to, such as "200 kPa", volume or angle')
+    for key in given[1:]:
+        yield Problem(f"{path}.{key}", f"{given[0]} is given too, expected one of them")
 
 
 def _winding(parts: Parts) -> Iterator[Problem]:
@@ -265,11 +267,13 @@ def _output(parts: Parts) -> Iterator[Problem]:
     _, pressure = parts.find(PressureEffect)
     if parts.broken_effects:
         return
+    if pressure is not None and pressure.angle is not None:
+        yield from _up_to(pressure.angle, output)
     if output.measured is not None:
         if pressure is None:
             wrong: str | None = "no effect without pressure, expected no value"
         else:
-            blocked = parts.find(BlockedTipEffect)[1] is not None
+            blocked = any(parts.find(kind)[1] for kind in (BlockedTipEffect, StraightEffect))
             wrong = what_is_wrong(output.measured, blocked)
         if wrong is not None:
             yield Problem("output.measured", wrong)
@@ -277,11 +281,28 @@ def _output(parts: Parts) -> Iterator[Problem]:
         path = f"output.at_pressures.{index}"
         if pressure is None:
             yield Problem(path, "no effect without pressure, expected no value")
-        elif pressure.to is not None and not 0 < value / pressure.to <= 1:
+        elif pressure.to is None:
+            yield Problem(path, "no effect where the pressure is found, expected no value")
+        elif not 0 < value / pressure.to <= 1:
             yield Problem(
                 path,
                 f'"{show(value, "pressure")}", expected a pressure between zero and '
                 f'"{show(pressure.to, "pressure")}"',
+            )
+
+
+def _up_to(end: float, output: Output) -> Iterator[Problem]:
+    """Requests of a run that ends at a bending angle."""
+    if output.stop_at_angle is not None:
+        yield Problem(
+            "output.stop_at_angle", "no effect where the pressure has an angle, expected no value"
+        )
+    for index, angle in enumerate(output.at_angles):
+        if not 0 < angle / end <= 1:
+            yield Problem(
+                f"output.at_angles.{index}",
+                f'"{show(angle, "angle")}", expected an angle between zero and '
+                f'"{show(end, "angle")}"',
             )
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from fiberbend import bridge
-from fiberbend.case import Case
+from fiberbend.case import Case, Mesh
 from fiberbend.case_effects import WindingEffect
+from fiberbend.choice import UNIFORM, choose_model
 
 DEFAULT_LINES = 5
 
@@ -17,7 +18,20 @@ def complete(case: Case) -> Case:
         _complete_winding(effect) if isinstance(effect, WindingEffect) else effect
         for effect in case.effects
     )
-    return case.model_copy(update={"effects": effects})
+    case = case.model_copy(update={"effects": effects})
+    return case.model_copy(update={"mesh": _complete_mesh(case)})
+
+
+def _complete_mesh(case: Case) -> Mesh:
+    """Finer sections where they are cheap, and two layers in a cell."""
+    model, mesh = choose_model(case)[0], case.mesh
+    update: dict[str, Any] = {}
+    if model in UNIFORM and "section" not in mesh.model_fields_set:
+        update["section"] = 2
+    winding = case.find(WindingEffect)
+    if model == "cell" and "axial" not in mesh.model_fields_set and winding is not None:
+        update["axial"] = winding.pitch / 4
+    return mesh.model_copy(update=update)
 
 
 def _complete_winding(winding: WindingEffect) -> WindingEffect:

@@ -9,6 +9,7 @@ from pydantic_core import PydanticCustomError
 
 from fiberbend.fields import (
     Acceleration,
+    Angle,
     Length,
     Model,
     Modulus,
@@ -28,7 +29,7 @@ class Effect(Model):
 
 
 class PressureEffect(Effect):
-    """Pressure in the closed chamber, by its value or by the volume that it holds."""
+    """Pressure in the closed chamber: by its value, by the volume or by the bend that it holds."""
 
     name = "pressure"
     load = True
@@ -37,6 +38,8 @@ class PressureEffect(Effect):
     """Chamber pressure at the end; negative is a vacuum."""
     volume: Volume | None = None
     """Chamber volume at the end; the pressure is found."""
+    angle: Angle | None = None
+    """Bending angle at the end; the pressure is found. Never meets a pressure limit."""
 
 
 class Fiber(Model):
@@ -111,9 +114,24 @@ class BlockedTipEffect(Effect):
     """Length of the strip at the end of the tip cap's underside that rests on the post."""
 
 
+class StraightEffect(Effect):
+    """The body held straight, zero curvature: the blocked state of uniform bending."""
+
+    name = "straight"
+
+    stretch: Literal["free", "held"] = "free"
+    """Whether the axis may stretch, or is held in length as well."""
+
+
 EFFECTS: dict[str, type[Effect]] = {
     effect.name: effect
-    for effect in (PressureEffect, WindingEffect, GravityEffect, BlockedTipEffect)
+    for effect in (
+        PressureEffect,
+        WindingEffect,
+        GravityEffect,
+        BlockedTipEffect,
+        StraightEffect,
+    )
 }
 """Every effect that a case can name; each at most once in a case."""
 

@@ -2,71 +2,78 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
 
 from fem.embedded import FiberPotential
-from fem.frames import Frames
-from fem.linear import Factor
-from fem.measures import Tip, UniformAngle, balance, mirror_factor
-from fem.newton import Outcome
+from fem.newton import Newton, Outcome
 from fem.program import State
 from fem.scene import Scene
 
 
+class Gauge(Protocol):
+    """What a model reads off a state beside pressure, angle and energies."""
+
+    def tip(self, state: State) -> tuple[float, float]:
+        """y and z of the centroid of the tip cap's outer face, mm."""
+
+    def columns(self, state: State) -> dict[str, float]:
+        """Further columns, behind the chamber's volume."""
+
+    def last_columns(self, state: State) -> dict[str, float]:
+        """Columns at the end of the row; only at equilibria under load."""
+
+
 class Recorder:
-    """Makes the rows, for the whole body also where half of it is solved.
+    """Makes the rows, for the whole body also where a part of it is solved.
 
     Args:
         scene: the scene whose states are recorded.
-        frames: rod frames of the body.
-        blocked: the tip is blocked: reactions and balances are of interest.
+        gauge: what the model reads off a state.
         rest: the state before any load.
 
     Attributes:
         rows: the rows so far; a run that is resumed puts the earlier ones here.
     """
 
-    def __init__(self, scene: Scene, frames: Frames, blocked: bool, rest: State) -> None:
+    def __init__(self, scene: Scene, gauge: Gauge, rest: State) -> None:
         self._scene = scene
-        self._blocked = blocked
-        self._factor = mirror_factor(scene.domain)
-        self._tip = Tip(scene.body)
+        self._gauge = gauge
+        self._factor = scene.body.copies
         self._volumetric = int(scene.domain.comm.allreduce(int(np.count_nonzero(scene.volumetric))))
-        self._uniform = UniformAngle(scene.body, frames)
         self.rows = [self._row(0, rest, None, None)]
 
-    def add(self, state: State, outcome: Outcome, factor: Factor) -> dict[str, Any]:
+    def add(self, state: State, outcome: Outcome, newton: Newton) -> dict[str, Any]:
         """Append the row of a new state, at which the scene is; collective."""
-        row = self._row(len(self.rows), state, outcome, factor)
+        row = self._row(len(self.rows), state, outcome, newton)
         self.rows.append(row)
         row["work_mJ"] = self._work()
         return row
 
     def _row(
-        self, step: int, state: State, outcome: Outcome | None, factor: Factor | None
+        self, step: int, state: State, outcome: Outcome | None, newton: Newton | None
     ) -> dict[str, Any]:
         scene = self._scene
-        tip = self._tip.position()
+        tip = self._gauge.tip(state)
         row: dict[str, Any] = {
             "step": step,
             "pressure_kPa": 1e3 * state.scalars.get("pressure", 0.0),
             "angle_deg": float(np.rad2deg(state.measures["followed"])),
-            "tip_y_mm": float(tip[1]),
-            "tip_z_mm": float(tip[2]),
+            "tip_y_mm": tip[0],
+            "tip_z_mm": tip[1],
         }
         if "pressure" in state.scalars:
             row["chamber_mm3"] = self._factor * state.measures["conjugate pressure"]
-        row["uniform_angle_deg"] = float(np.rad2deg(self._uniform.value(state.shape)))
+        row |= self._gauge.columns(state)
         row["newton_iterations"] = outcome.iterations if outcome else 0
         row["min_det_F"] = outcome.least_det_f if outcome else 1.0
         for discrete in scene.discrete.values():
             if isinstance(discrete, FiberPotential):
                 row["fiber_min_N"], row["fiber_max_N"] = discrete.force_range()
         energies = scene.energies()
-        loads = {name: state.measures[f"conjugate {name}"] for name in state.scalars}
+        names = [name for name in state.scalars if name not in scene.body.natural]
+        loads = {name: state.measures[f"conjugate {name}"] for name in names}
         stored = sum(energies.values()) + sum(state.scalars[n] * v for n, v in loads.items())
         row["work_mJ"] = 0.0
         row["stored_mJ"] = self._factor * stored
@@ -75,27 +82,19 @@ class Recorder:
         for name, value in loads.items():
             row[f"load {name}"] = state.scalars[name]
             row[f"conjugate {name}"] = self._factor * value
-        if factor is not None:
-            row["unstable_modes"] = factor.negative_pivots - self._volumetric
-        if self._blocked:
-            row |= self._reactions()
+        if newton is not None:
+            row["unstable_modes"] = newton.negative_pivots(scene.natural) - self._volumetric
+            row |= self._gauge.last_columns(state)
         return row
-
-    def _reactions(self) -> dict[str, float]:
-        found = balance(self._scene)
-        return {
-            "tip_force_N": float(found.supports["post"].force[1]),
-            "roof_force_N": float(-found.supports["roof"].force[1]),
-            "clamp_force_y_N": float(found.supports["clamp"].force[1]),
-            "clamp_moment_x_Nmm": float(found.supports["clamp"].moment[0]),
-            "balance_force": found.force,
-            "balance_moment": found.moment,
-        }
 
     def _work(self) -> float:
         """Work of the loads since rest, Σ ∫ q d(conjugate of q), by a spline through all steps."""
+        from scipy.interpolate import make_interp_spline
+
         total = 0.0
         for name in self._scene.body.scalars:
+            if name in self._scene.body.natural:
+                continue
             value = np.array([row[f"load {name}"] for row in self.rows])
             conjugate = np.array([row[f"conjugate {name}"] for row in self.rows])
             # a load that is held does work at a constant value: no curve to fit

@@ -13,7 +13,7 @@ from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.elastic import Elastic
 from fem.effects.gravity import Gravity
 from fem.effects.incompressible import Incompressible
-from fem.effects.supports import BlockedTip, Clamp, Symmetry
+from fem.effects.supports import BlockedTip, Clamp, HeldStraight, Symmetry, TwofoldAxis
 from fem.effects.winding import SmearedWinding, Winding
 from fem.program import Ramp
 from fiberbend import bridge
@@ -23,6 +23,7 @@ from fiberbend.case_effects import (
     BlockedTipEffect,
     GravityEffect,
     PressureEffect,
+    StraightEffect,
     WindingEffect,
 )
 from geometry import winding as helices
@@ -39,17 +40,26 @@ class Parts:
 
     Attributes:
         effects: the summands of the potential.
-        ramps: the loads in the order of the case.
+        loads: the loads in the order of the case, those of the whole actuator.
         materials: material of each region.
         fibers: the winding on the mesh, if there is one.
         smeared: the winding is smeared.
     """
 
     effects: list[Effect]
-    ramps: list[Ramp]
+    loads: list[Ramp]
     materials: dict[str, Material]
     fibers: EmbeddedFibers | None
     smeared: bool
+
+    def ramps(self, copies: float) -> list[Ramp]:
+        """The loads for a model of which the whole actuator is so many copies."""
+        return [
+            dataclasses.replace(ramp, target=ramp.target / copies)
+            if ramp.drive == "conjugate"
+            else ramp
+            for ramp in self.loads
+        ]
 
 
 def helix(effect: WindingEffect) -> helices.Winding:
@@ -59,42 +69,67 @@ def helix(effect: WindingEffect) -> helices.Winding:
     return helices.Winding(effect.pattern, effect.pitch, width, lines if width > 0 else 1)
 
 
-def build(case: Case, mesh: MeshData) -> Parts:
-    """Effects and loads of a case on a mesh; what the case does not list does not exist."""
+def build(case: Case, mesh: MeshData, model: str) -> Parts:
+    """Effects and loads of a case on a mesh; what the case does not list does not exist.
+
+    Args:
+        case: the case.
+        mesh: what is modelled.
+        model: "section", "cell" or "body".
+    """
     specs = {
         region: spec for region, spec in dict(case.materials).items() if region in mesh.regions
     }
     materials = {region: bridge.material(spec) for region, spec in specs.items()}
-    parts = Parts([Clamp()], [], materials, None, False)
+    parts = Parts(_supports(case, mesh, model), [], materials, None, False)
     laws: dict[str, dict[str, dict[str, float]]] = {}
     for region, material in materials.items():
         laws.setdefault(material.law, {})[region] = dict(material.parameters)
     parts.effects.extend(Elastic(law, regions) for law, regions in laws.items())
     bulk = {region: m.bulk for region, m in materials.items() if m.bulk is not None}
     parts.effects.append(Incompressible(bulk or None))
-    if mesh.half:
-        parts.effects.append(Symmetry())
     for effect in case.effects:
         parts = _BUILDERS[type(effect)](effect, case, mesh, parts)
     return parts
 
 
+def twisting(case: Case) -> bool:
+    """Whether the winding may twist the body."""
+    winding = case.find(WindingEffect)
+    return winding is not None and winding.pattern != "double-helix"
+
+
+def _supports(case: Case, mesh: MeshData, model: str) -> list[Effect]:
+    """What holds the model by its nature: the clamp of a body, planes and axes of symmetry."""
+    if model == "body":
+        return [Clamp(), *([Symmetry()] if mesh.half else [])]
+    if model == "section":
+        return [TwofoldAxis() if twisting(case) else Symmetry()]
+    if mesh.half:
+        return [Symmetry(), Symmetry("section_root", 2), Symmetry("section_tip", 2)]
+    return []
+
+
 def _pressure(effect: Any, case: Case, mesh: MeshData, parts: Parts) -> Parts:
     parts.effects.append(ChamberPressure())
-    share = 2 if mesh.half else 1
-    by_volume = effect.volume is not None
     output, solver = case.output, case.solver
+    if effect.volume is not None:
+        drive, target = "conjugate", effect.volume
+    elif effect.angle is not None:
+        drive, target = "followed", effect.angle
+    else:
+        drive, target = "value", effect.to
     ramp = Ramp(
         ChamberPressure.scalar,
-        target=effect.volume / share if by_volume else effect.to,
-        drive="conjugate" if by_volume else "value",
-        first=None if by_volume else solver.first_step,
-        largest=None if by_volume else solver.max_step,
-        stops=() if by_volume else tuple(output.at_pressures),
+        target=target,
+        drive=drive,
+        first=solver.first_step if drive == "value" else None,
+        largest=solver.max_step if drive == "value" else None,
+        stops=tuple(output.at_pressures) if drive == "value" else (),
         at=tuple(output.at_angles),
         until=output.stop_at_angle,
     )
-    parts.ramps.append(ramp)
+    parts.loads.append(ramp)
     return parts
 
 
@@ -118,7 +153,7 @@ def _gravity(effect: Any, case: Case, mesh: MeshData, parts: Parts) -> Parts:
     }
     load = Gravity(density, tuple(effect.acceleration * direction))
     parts.effects.append(load)
-    parts.ramps.append(Ramp(Gravity.scalar, 1.0, first=1.0))
+    parts.loads.append(Ramp(Gravity.scalar, 1.0, first=1.0))
     return parts
 
 
@@ -127,10 +162,16 @@ def _blocked_tip(effect: Any, case: Case, mesh: MeshData, parts: Parts) -> Parts
     return parts
 
 
+def _straight(effect: Any, case: Case, mesh: MeshData, parts: Parts) -> Parts:
+    parts.effects.append(HeldStraight(effect.stretch == "held"))
+    return parts
+
+
 _BUILDERS: dict[type[Any], Callable[[Any, Case, MeshData, Parts], Parts]] = {
     PressureEffect: _pressure,
     WindingEffect: _winding,
     GravityEffect: _gravity,
     BlockedTipEffect: _blocked_tip,
+    StraightEffect: _straight,
 }
 """One line an effect."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import resource as usage
 from collections.abc import Callable
 from pathlib import Path
@@ -14,50 +13,25 @@ from mpi4py import MPI
 from fem.checkpoint import Archive
 from fem.domain import Domain
 from fem.embedded import FiberPotential
-from fem.frames import Frames
 from fem.march import March
-from fem.measures import BendingAngle
 from fem.newton import Newton, Outcome, Settings
 from fem.program import Ramp, Report, Rules, State
 from fem.scene import Scene
-from fiberbend import bridge, restart
+from fiberbend import models, restart
 from fiberbend.case import Case
-from fiberbend.case_effects import BlockedTipEffect, WindingEffect
-from fiberbend.choice import choose_half, choose_model
+from fiberbend.case_effects import BlockedTipEffect
+from fiberbend.choice import UNIFORM, choose_model
 from fiberbend.history import Recorder
 from fiberbend.plan import winding_remark
 from fiberbend.progress import Progress
-from fiberbend.registry import build, helix
+from fiberbend.registry import build
+from fiberbend.result import RunResult
 from fiberbend.runfolder import RunFolder
 from fiberbend.snapshot import Scenery, Snapshot
 from fiberbend.summary import blocked_tip, versions
-from geometry.gmsh_body import build_body
 from geometry.mesh import MeshData
 
 MESH = "mesh.npz"
-
-
-@dataclasses.dataclass(frozen=True)
-class RunResult:
-    """What a run has computed.
-
-    Attributes:
-        status: 'converged', 'stopped' (a requested output was not reached) or 'failed'.
-        reason: why not converged; empty otherwise.
-        rows: rows of history.csv, the first at rest.
-        run: content of run.json.
-        folder: where the results are, or None.
-    """
-
-    status: str
-    reason: str
-    rows: list[dict[str, Any]]
-    run: dict[str, Any]
-    folder: Path | None
-
-    def last(self, column: str) -> float:
-        """Value of a column at the end."""
-        return float(self.rows[-1][column])
 
 
 def run_case(
@@ -87,7 +61,17 @@ def run_case(
         folder = RunFolder.resume(out, case, comm)
     elif out is not None:
         folder = RunFolder.create(out, case, overwrite, comm)
-    return _Run(case, folder, progress, comm).go(resume)
+    model, _ = choose_model(case)
+    if model == "body":
+        return _Run(case, model, folder, progress, comm).go(resume)
+    if model == "analytic":
+        from fiberbend.analytic_run import run_analytic
+
+        return _on_rank_0(comm, lambda: run_analytic(case, folder, progress))  # type: ignore[no-any-return]
+    # a section or a cell is too small to share: one rank solves it
+    return _on_rank_0(  # type: ignore[no-any-return]
+        comm, lambda: _Run(case, model, folder, progress, MPI.COMM_SELF).go(False)
+    )
 
 
 def _on_rank_0(comm: MPI.Comm, action: Callable[[], Any]) -> Any:
@@ -108,9 +92,15 @@ class _Run:
     """The steps of one run and what they share."""
 
     def __init__(
-        self, case: Case, folder: RunFolder | None, progress: Progress, comm: MPI.Comm
+        self,
+        case: Case,
+        model: str,
+        folder: RunFolder | None,
+        progress: Progress,
+        comm: MPI.Comm,
     ) -> None:
         self.case, self.folder, self.progress, self.comm = case, folder, progress, comm
+        self.model = model
         self.blocked = case.find(BlockedTipEffect)
         self.snapshots: list[Snapshot] = []
 
@@ -119,31 +109,39 @@ class _Run:
         self.progress.phase("mesh")
         mesh = _on_rank_0(self.comm, lambda: self._mesh(again))
         self.progress.phase("compile")
-        self.parts = build(self.case, mesh)
-        self.scene = Scene(Domain(mesh, self.comm), self.parts.effects)
-        self.frames = Frames(self.scene.body)
-        self.archive = Archive(self.scene, self.frames)
-        solver = self.case.solver
+        case, model = self.case, self.model
+        domain = Domain(mesh, self.comm)
+        make = models.kinematics(case, model)
+        self.parts = build(case, mesh, model)
+        self.scene = Scene(domain, self.parts.effects, make)
+        reading = models.reading(case, self.scene)
+        self.archive = Archive(self.scene, reading.frames)
+        solver = case.solver
         self.newton = Newton(self.scene, self.comm, Settings(tolerance=solver.tolerance))
+        turn = solver.max_turn or models.TURN[model]
+        rules = Rules(
+            cutbacks=solver.max_cutbacks,
+            turn=turn,
+            first_turn=min(turn, models.FIRST_TURN[model]),
+        )
         self.march = March(
             self.scene,
             self.newton,
-            self.frames,
-            BendingAngle(self.scene.body, self.frames),
-            Rules(cutbacks=solver.max_cutbacks),
+            reading.frames,
+            reading.followed,
+            rules,
             self._on_step,
             self.progress.message,
         )
         self.march.start()
-        self.recorder = Recorder(
-            self.scene, self.frames, self.blocked is not None, self.march.states[0]
-        )
+        self.ramps = self.parts.ramps(self.scene.body.copies)
+        self.recorder = Recorder(self.scene, reading.gauge(), self.march.states[0])
         if again and self.folder is not None:
             self.snapshots = restart.load(self.folder, self.archive, self.march, self.recorder)
             self.progress.message(f"resumed after step {self.recorder.rows[-1]['step']}")
         self._remark()
         self.progress.phase("solve")
-        report = self.march.run(self.parts.ramps)
+        report = self.march.run(self.ramps)
         status, reason = self._status(report)
         self.progress.phase("output")
         self._snapshot("last")
@@ -163,21 +161,8 @@ class _Run:
         folder, case = self.folder, self.case
         if folder is not None and again:
             return MeshData.load(folder.path / MESH)
-        half, _ = choose_half(case)
-        actuator = bridge.dimensions(case.actuator)
-        winding = case.find(WindingEffect)
-        curves = None
-        if winding is not None:
-            helices = helix(winding)
-            turns = int(np.ceil(actuator.length / winding.pitch)) * 24
-            curves = [helices.points(actuator, curve, turns)[0] for curve in range(helices.curves)]
-        mesh = build_body(
-            actuator,
-            bridge.mesh_size(case.mesh, half),
-            bridge.strips(self.blocked) if self.blocked else None,
-            curves,
-            folder.path / "actuator.msh" if folder else None,
-        )
+        msh = folder.path / "actuator.msh" if folder else None
+        mesh = models.make_mesh(case, self.model, msh)
         if folder is not None:
             mesh.save(folder.path / MESH)
         return mesh
@@ -190,7 +175,7 @@ class _Run:
     # --- steps ---------------------------------------------------------------------------------
 
     def _on_step(self, state: State, outcome: Outcome) -> None:
-        row = self.recorder.add(state, outcome, self.newton.factor)
+        row = self.recorder.add(state, outcome, self.newton)
         self.progress.step(
             row["step"],
             self._fraction(state),
@@ -201,12 +186,12 @@ class _Run:
         label = self._requested(state)
         if label:
             self._snapshot(label)
-        if self.folder is not None:
+        if self.folder is not None and self.model not in UNIFORM:
             restart.save(self.folder, self.archive, self.march, self.recorder.rows)
 
     def _fraction(self, state: State) -> float:
         """Part of all ramps that is done."""
-        ramps = self.parts.ramps
+        ramps = self.ramps
         ramp = ramps[self.march.ramp]
         done = _share(ramp, state)
         return (self.march.ramp + done) / len(ramps)
@@ -248,6 +233,7 @@ class _Run:
             displacement=displacement,
             multiplier=multiplier,
             fiber_force=force,
+            **{name: self.scene.scalar(name) for name in self.scene.body.natural},
         )
         self.snapshots.append(shot)
         arrays = {k: v for k, v in vars(shot).items() if v is not None}
@@ -280,7 +266,7 @@ class _Run:
         run: dict[str, Any] = {
             "status": status,
             "reason": reason,
-            "model": choose_model(self.case)[0],
+            "model": self.model,
             "half": scene.domain.data.half,
             "unknowns": scene.body.size,
             "elements": len(scene.domain.data.cells),
@@ -320,6 +306,8 @@ class _Run:
         from fiberbend import report
 
         assert self.folder is not None
+        if self.model in UNIFORM:
+            return
         scenery = Scenery(
             mesh=self.scene.domain.data,
             materials=self.parts.materials,

@@ -64,6 +64,10 @@ class Snapshot:
         displacement: by input node number, (n, 3), mm.
         multiplier: p of W = ψ(Ī1, Ī2) + p (J − 1) at the nodes of each cell, (m, k), MPa.
         fiber_force: axial force of each segment, (segments,), N, or None without a winding.
+        curvature: k of a model of uniform bending, 1/mm; its displacement, (n, 2) or (n, 3), has
+            components in the frame that turns with the section.
+        stretch: λ0 of the axis there.
+        twist: τ there, rad/mm.
 
     Raises:
         ValueError: a label that no file can bear.
@@ -76,6 +80,9 @@ class Snapshot:
     displacement: Floats
     multiplier: Floats
     fiber_force: Floats | None
+    curvature: float = 0.0
+    stretch: float = 1.0
+    twist: float = 0.0
 
     def __post_init__(self) -> None:
         if not self.label or not all(c.isalnum() or c in ".-_" for c in self.label):

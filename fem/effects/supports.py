@@ -47,6 +47,39 @@ class Symmetry(Effect):
         return (Constraint("symmetry", self.surface, self.component),)
 
 
+class TwofoldAxis(Effect):
+    """Half a turn about the y axis maps the body onto itself: u = w = 0 on the plane x = 0.
+
+    A section with a smeared single helix has this symmetry instead of a mirror plane: (u, v, w) at
+    (−x, y) are (−u, v, −w) at (x, y).
+
+    Args:
+        surface: named surface in the plane.
+    """
+
+    def __init__(self, surface: str = "symmetry") -> None:
+        self.surface = surface
+
+    def constraints(self) -> tuple[Constraint, ...]:
+        """No displacement across the plane, and none along z in it."""
+        return tuple(Constraint("symmetry", self.surface, i) for i in (0, 2))
+
+
+class HeldStraight(Effect):
+    """Uniform bending with the curvature held at zero, and the stretch at one if wanted.
+
+    Args:
+        stretch: hold the stretch too.
+    """
+
+    def __init__(self, stretch: bool = False) -> None:
+        self.stretch = stretch
+
+    def held_scalars(self) -> dict[str, float]:
+        """k = 0, and λ0 = 1."""
+        return {"curvature": 0.0} | ({"stretch": 1.0} if self.stretch else {})
+
+
 class BlockedTip(Effect):
     """A straight roof over the body and a post under the tip (paper III-C, V-C, Fig. 11a).
 

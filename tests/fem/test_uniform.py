@@ -157,7 +157,7 @@ def test_tangent_is_the_derivative_of_the_residual(name: str, model: str, twiste
 @pytest.mark.parametrize("twisted", [False, True])
 @pytest.mark.parametrize("model", ["section", "cell"])
 def test_volume_of_an_undeformed_section_swept_along_an_arc(model: str, twisted: bool) -> None:
-    # u = 0: V = λ0 A + k ∫ y dA of the chamber, whatever the twist; half a disk of radius 8 on y = 2
+    # u = 0: V = λ0 A + k ∫ y dA of the chamber, whatever the twist; half a disk of radius 8, y = 2
     scene = _scene("pressure", model, twisted)
     k, stretch = 0.03, 1.2
     for key, value in {CURVATURE: k, STRETCH: stretch, TWIST: 0.04}.items():

@@ -50,7 +50,7 @@ def scene(mesh: MeshData, names: list[str], leave_out: str = "") -> Scene:
     """The scene of a case with these effects, without one class of them."""
     materials = DENSE if "gravity" in names else small()["materials"]
     case = as_case(small(effects=[{n: EFFECTS[n]} for n in names], materials=materials, output={}))
-    effects = build(case, mesh).effects
+    effects = build(case, mesh, "body").effects
     return Scene(Domain(mesh), [e for e in effects if type(e).__name__ != leave_out])
 
 

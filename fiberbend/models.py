@@ -1,0 +1,105 @@
+"""What makes each finite-element model: its mesh, kinematics, followed angle and gauges."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import numpy as np
+
+from fem.domain import Domain
+from fem.frames import Frames
+from fem.kinematics import Body, Kinematics
+from fem.measures import BendingAngle
+from fem.program import Functional
+from fem.scene import Scene
+from fem.uniform import Cell, CurvatureAngle, Section, Uniform
+from fiberbend import bridge
+from fiberbend.case import Case
+from fiberbend.case_effects import BlockedTipEffect, StraightEffect, WindingEffect
+from fiberbend.choice import choose_half
+from fiberbend.gauges import BodyGauge, UniformGauge
+from fiberbend.history import Gauge
+from fiberbend.registry import helix, twisting
+from geometry.mesh import MeshData
+from geometry.size import divisions
+
+TURN = {"section": np.deg2rad(10.0), "cell": np.deg2rad(45.0), "body": np.deg2rad(60.0)}
+"""Greatest change of the angle in a step: fine curves where steps are cheap."""
+FIRST_TURN = {"section": np.deg2rad(10.0), "cell": np.deg2rad(10.0), "body": np.deg2rad(20.0)}
+"""The same for the first step."""
+
+Make = Callable[[Domain, Iterable[str]], Kinematics]
+
+
+@dataclasses.dataclass(frozen=True)
+class Reading:
+    """What is read off the states of a scene.
+
+    Attributes:
+        frames: rod frames of a body; None where the kinematics turns by itself.
+        followed: the bending angle.
+        gauge: makes the columns of the history; call it when the scene is at rest.
+    """
+
+    frames: Frames | None
+    followed: Functional
+    gauge: Callable[[], Gauge]
+
+
+def kinematics(case: Case, model: str) -> Make:
+    """The kinematics of a model, to be made from a domain and the names of the fields."""
+    if model == "body":
+        return Body
+    kind = Section if model == "section" else Cell
+    return functools.partial(kind, length=case.actuator.length, twisted=twisting(case))
+
+
+def reading(case: Case, scene: Scene) -> Reading:
+    """What is read off the states of a scene."""
+    body = scene.body
+    if isinstance(body, Uniform):
+        actuator = bridge.dimensions(case.actuator)
+        straight = case.find(StraightEffect) is not None
+        return Reading(None, CurvatureAngle(body), lambda: UniformGauge(scene, actuator, straight))
+    frames = Frames(body)
+    blocked = case.find(BlockedTipEffect) is not None
+    return Reading(frames, BendingAngle(body, frames), lambda: BodyGauge(scene, frames, blocked))
+
+
+def make_mesh(case: Case, model: str, msh: Path | None = None) -> MeshData:
+    """The mesh of a model; only a body starts gmsh.
+
+    Args:
+        case: the case.
+        model: "section", "cell" or "body".
+        msh: where gmsh leaves the body and its fibers.
+
+    Raises:
+        MeshError: gmsh failed.
+    """
+    half, _ = choose_half(case)
+    actuator = bridge.dimensions(case.actuator)
+    size = bridge.mesh_size(case.mesh, half)
+    winding = case.find(WindingEffect)
+    if model == "section":
+        from geometry.sweep import swept_section
+
+        return swept_section(actuator, size)
+    if model == "cell":
+        from geometry.sweep import swept_slice
+
+        pitch = winding.pitch if winding is not None else 2 * case.mesh.axial
+        extent = pitch / 2 if half else pitch
+        return swept_slice(actuator, size, extent, divisions(extent, case.mesh.axial))
+    from geometry.gmsh_body import build_body
+
+    curves = None
+    if winding is not None:
+        helices = helix(winding)
+        turns = int(np.ceil(actuator.length / winding.pitch)) * 24
+        curves = [helices.points(actuator, curve, turns)[0] for curve in range(helices.curves)]
+    tip = case.find(BlockedTipEffect)
+    return build_body(actuator, size, bridge.strips(tip) if tip else None, curves, msh)

@@ -1,0 +1,30 @@
+"""What every run hands back, whichever model it has solved."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+
+@dataclasses.dataclass(frozen=True)
+class RunResult:
+    """What a run has computed.
+
+    Attributes:
+        status: 'converged', 'stopped' (a requested output was not reached) or 'failed'.
+        reason: why not converged; empty otherwise.
+        rows: rows of history.csv, the first at rest.
+        run: content of run.json.
+        folder: where the results are, or None.
+    """
+
+    status: str
+    reason: str
+    rows: list[dict[str, Any]]
+    run: dict[str, Any]
+    folder: Path | None
+
+    def last(self, column: str) -> float:
+        """Value of a column at the end."""
+        return float(self.rows[-1][column])
