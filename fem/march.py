@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from fem.frames import Frames
 from fem.newton import Closure, Newton, Outcome
-from fem.program import Functional, Ramp, Report, Rules, State
+from fem.program import Functional, Ramp, Report, Rules, State, measure
 from fem.scene import Scene
 
 Floats = npt.NDArray[np.float64]
@@ -192,7 +192,7 @@ class March:
 
     def _solve(self, ramp: Ramp, kind: str, target: float) -> Outcome:
         """Predict and solve one increment; kind is 'value', 'conjugate' or 'followed'."""
-        abscissa = _key(kind, ramp.scalar)
+        abscissa = measure(kind, ramp.scalar)
         start = self._predict(abscissa, target, self._history(abscissa))
         unknown: list[str] = list(self.scene.natural)
         closures: list[Closure] = list(self._natural())
@@ -230,7 +230,7 @@ class March:
         return self.report
 
     def _ramp(self, ramp: Ramp) -> bool:
-        drive = _key(ramp.drive, ramp.scalar)
+        drive = ramp.key
         now = self.states[-1].measures[drive]
         span = ramp.target - now
         if span == 0:
@@ -334,11 +334,6 @@ class March:
         if abs(turned) < 1e-14 or abs(driven) < 1e-300:
             return span / 20
         return float(abs(driven / turned) * self.rules.first_turn)
-
-
-def _key(kind: str, scalar: str) -> str:
-    """Name of the measure that a ramp or a step drives."""
-    return kind if kind == "followed" else f"{kind} {scalar}"
 
 
 def _interpolate(t: list[float], y: list[float]) -> Floats:

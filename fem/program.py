@@ -70,6 +70,16 @@ class Ramp:
     at: tuple[float, ...] = ()
     until: float | None = None
 
+    @property
+    def key(self) -> str:
+        """Name of the measure that it drives."""
+        return measure(self.drive, self.scalar)
+
+
+def measure(kind: str, scalar: str) -> str:
+    """Name of what is driven: 'followed', or the value or the conjugate of a scalar."""
+    return kind if kind == "followed" else f"{kind} {scalar}"
+
 
 @dataclasses.dataclass(frozen=True)
 class Rules:

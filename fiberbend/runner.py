@@ -328,7 +328,7 @@ class _Run:
 
 def _share(ramp: Ramp, state: State) -> float:
     """Part of a ramp that is done, by its load or by the angle at which it ends."""
-    done = state.measures[f"{ramp.drive} {ramp.scalar}"] / ramp.target
+    done = state.measures[ramp.key] / ramp.target
     if ramp.until:
         done = max(done, state.measures["followed"] / ramp.until)
     return float(np.clip(done, 0.0, 1.0))
