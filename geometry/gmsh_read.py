@@ -75,7 +75,11 @@ def find_facets(cell_type: str, cells: Ints, vertices: Ints) -> Ints:
 
 
 def read_mesh(
-    cell_type: str, regions: dict[str, list[int]], surfaces: dict[str, list[int]], half: bool
+    cell_type: str,
+    regions: dict[str, list[int]],
+    surfaces: dict[str, list[int]],
+    points: dict[str, int],
+    half: bool,
 ) -> MeshData:
     """Read the order-2 mesh of the current gmsh model.
 
@@ -83,6 +87,7 @@ def read_mesh(
         cell_type: "hexahedron" or "tetrahedron".
         regions: gmsh volumes of each region.
         surfaces: gmsh surfaces of each named surface.
+        points: gmsh point of each named point.
         half: only x ≥ 0 is meshed.
 
     Returns:
@@ -107,6 +112,7 @@ def read_mesh(
         for name, entities in surfaces.items()
     }
     used, numbering = np.unique(index[cells], return_inverse=True)
+    named = {name: index[gmsh.model.mesh.getNodes(0, tag)[0][0]] for name, tag in points.items()}
     return MeshData(
         cell_type=cell_type,
         nodes=nodes[used],
@@ -115,4 +121,5 @@ def read_mesh(
         cell_region=cell_region,
         facets=facets,
         half=half,
+        points={name: int(np.searchsorted(used, node)) for name, node in named.items()},
     )

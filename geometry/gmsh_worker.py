@@ -36,6 +36,7 @@ class BodyModel:
         volumes: gmsh volume of each (block, segment).
         groups: gmsh surfaces of each named surface.
         regions: gmsh volumes of each region.
+        points: gmsh point of each named point.
     """
 
     def __init__(self, layout: Layout, stations: Stations, size: MeshSize) -> None:
@@ -57,6 +58,8 @@ class BodyModel:
                 if segment.filled or not block.fill:
                     self._add_volume(number, i)
         self._name_surfaces()
+        origin = stations.origin
+        self.points = {name: self._corner(i, origin) for name, i in layout.named.items()}
 
     def _point(self, place: Point, plane: int) -> int:
         if (place, plane) not in self._points:
@@ -192,7 +195,7 @@ def mesh_body(spec: dict[str, Any], out: Path) -> None:
     gmsh.option.setNumber("Mesh.Algorithm3D", _HXT)
     gmsh.model.mesh.generate(3)
     gmsh.model.mesh.setOrder(2)
-    mesh = read_mesh(size.element, body.regions, body.groups, size.half)
+    mesh = read_mesh(size.element, body.regions, body.groups, body.points, size.half)
     mesh.save(out)
     if spec["winding"]:
         add_winding(spec["winding"])

@@ -22,7 +22,8 @@ LAYOUTS: dict[str, Callable[[Actuator, MeshSize, Strips | None], Layout]] = {
 def section_layout(actuator: Actuator, size: MeshSize, strips: Strips | None = None) -> Layout:
     """Lay out a section, with the blocks that fill the chamber in the caps.
 
-    The point "pin" is (0, 0), on the lowest line of wall and floor. Regions are "wall", "floor",
+    The point "pin" is (0, 0), on the lowest line of wall and floor, "crown" the highest point of
+    the winding. Regions are "wall", "floor",
     "layer", "sheath"; named sides "chamber", "winding", "outer", "symmetry" (half only), and with
     `strips` "roof" and "post". Every surface inside the body is listed once, from the region that
     comes first.
@@ -33,4 +34,5 @@ def section_layout(actuator: Actuator, size: MeshSize, strips: Strips | None = N
     check_size(actuator, size, strips)
     layout = LAYOUTS[actuator.section](actuator, size, strips)
     layout.name_point("pin", (0.0, 0.0))
+    layout.name_point("crown", (0.0, actuator.outline_top))
     return layout if size.half else layout.mirrored()

@@ -11,7 +11,7 @@ import pytest
 from geometry.dimensions import Actuator
 from geometry.embed import EmbeddedFibers, embed, smear
 from geometry.mesh import MeshData
-from geometry.outline import arc_length, position, tangent
+from geometry.outline import arc_length, position
 from geometry.reference import jacobians
 from geometry.size import MeshSize
 from geometry.sweep import swept_body, swept_slice
@@ -27,25 +27,6 @@ def _meshes(half: bool) -> list[MeshData]:
     hexes = swept_body(BODY, MeshSize(axial=4, section=1, half=half))
     fine = swept_body(BODY, MeshSize(axial=1.3, section=2, half=half))
     return [hexes, fine, to_tetrahedra(hexes)]
-
-
-def test_outline_runs_around_once() -> None:
-    s = np.linspace(0, BODY.winding_perimeter, 4001)
-    xy = position(BODY, s)
-    steps = np.linalg.norm(np.diff(xy, axis=0), axis=1)
-    assert steps.sum() == pytest.approx(BODY.winding_perimeter, rel=2e-5)
-    half = BODY.winding_perimeter / 2
-    assert position(BODY, np.array([0, half])) == pytest.approx(np.array([[0, 12], [0, -0.5]]))
-    assert xy[200, 0] > 0
-    difference = (position(BODY, s + 1e-6) - position(BODY, s - 1e-6)) / 2e-6
-    smooth = np.linalg.norm(difference, axis=1) > 0.999
-    assert tangent(BODY, s)[smooth] == pytest.approx(difference[smooth], abs=1e-7)
-
-
-def test_arc_length_inverts_the_outline() -> None:
-    s = np.linspace(0.01, BODY.winding_perimeter - 0.01, 333)
-    xy = position(BODY, s)
-    assert arc_length(BODY, xy, xy[:, 0] < 0) == pytest.approx(s, abs=1e-12)
 
 
 @pytest.mark.parametrize("winding", [DOUBLE, *SINGLES])
