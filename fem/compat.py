@@ -253,10 +253,17 @@ def assemble_vector(vector: PETSc.Vec, form: Any) -> None:
     dolfinx.fem.petsc.assemble_vector(vector, form)
 
 
-def create_matrix(form: Any) -> PETSc.Mat:
+def create_matrix(
+    form: Any, ties: tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]
+) -> PETSc.Mat:
     """An empty symmetric matrix with the form's sparsity, its upper triangle only.
 
     Inserting a triangle takes half the time. dolfinx does not preallocate this type itself.
+
+    Args:
+        form: a bilinear form.
+        ties: local dofs that follow others, and these: what is inserted for the first goes to the
+            second, which is the prolongation's TᵀKT. On one rank only.
     """
     pattern = dolfinx.fem.petsc.create_matrix(form)
     assemble_matrix(pattern, form, None)
@@ -264,6 +271,15 @@ def create_matrix(form: Any) -> PETSc.Mat:
     starts, columns, _ = pattern.getValuesCSR()
     first, end = pattern.getOwnershipRange()
     rows = np.repeat(np.arange(end - first), np.diff(starts))
+    maps = pattern.getLGMap()
+    if len(ties[0]):
+        target = np.arange(end, dtype=PETSc.IntType)
+        target[ties[0]] = target[ties[1]]
+        own = ties[0]
+        pairs = np.column_stack([np.r_[target[rows], own], np.r_[target[columns], own]])
+        rows, columns = np.unique(pairs, axis=0).T
+        tied = PETSc.LGMap().create(target, comm=pattern.getComm())
+        maps = (tied, tied)
     upper = columns >= rows + first
     here = upper & (columns < end)
     counts = [np.bincount(rows[part], minlength=end - first) for part in (here, upper & ~here)]
@@ -271,7 +287,7 @@ def create_matrix(form: Any) -> PETSc.Mat:
     matrix.setSizes(pattern.getSizes())
     matrix.setType(PETSc.Mat.Type.SBAIJ)
     matrix.setPreallocationNNZ(tuple(count.astype(PETSc.IntType) for count in counts))
-    matrix.setLGMap(*pattern.getLGMap())
+    matrix.setLGMap(*maps)
     matrix.setOption(PETSc.Mat.Option.IGNORE_LOWER_TRIANGULAR, True)
     matrix.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, True)
     matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)

@@ -70,6 +70,7 @@ class Kinematics:
         natural: those of them that are unknowns of the kinematics: at an equilibrium the
             potential is stationary in them.
         pins: (node, component) held so that no rigid motion is left.
+        ties: local dofs that follow others, and these; on one rank only.
         copies: how many of what is modelled the whole actuator is.
     """
 
@@ -78,6 +79,7 @@ class Kinematics:
         self.components = components
         self.natural: tuple[str, ...] = ()
         self.pins: tuple[tuple[int, int], ...] = ()
+        self.ties: tuple[Dofs, Dofs] = (np.zeros(0, dtype=np.int32), np.zeros(0, dtype=np.int32))
         self.copies = 2.0 if domain.data.half else 1.0
         cell = domain.data.cell_type
         wanted = set(fields)
@@ -189,11 +191,12 @@ class Kinematics:
     # --- what measures and predictors ask for ---------------------------------------------
 
     def with_ghosts(self, owned: Floats) -> Floats:
-        """Local coefficients, ghosts included, of owned ones; collective."""
+        """Local coefficients, ghosts and tied ones included, of owned ones; collective."""
         scratch = self._scratch.x
         scratch.array[: self.owned] = owned
         scratch.scatter_forward()
         values: Floats = scratch.array.copy()
+        values[self.ties[0]] = values[self.ties[1]]
         return values
 
     def dofs(self, field: str) -> Dofs:

@@ -111,7 +111,7 @@ class Scene:
         self._forms = {name: compat.compile_form(mesh, form) for name, form in forms.items()}
         self.signatures = {name: form.signature() for name, form in forms.items()}
         self.kernels = sum(len(form.integrals()) for form in forms.values())
-        self.matrix = compat.create_matrix(self._forms["tangent"])
+        self.matrix = compat.create_matrix(self._forms["tangent"], body.ties)
         self._vector = compat.create_vector(self._forms["residual"])
         self._det_f = body.det_f()
         self.volume_scale = 1.0
@@ -136,6 +136,8 @@ class Scene:
             dofs = np.array([body.node_dofs[pin] for pin in body.pins], dtype=np.int32)
             self.free[dofs] = False
             self._held["pin"] = dofs
+        follow, lead = body.ties
+        self.free[follow] = self.free[lead]
         self._dirichlet = compat.dirichlet(body.space, np.flatnonzero(~self.free))
         p = body.dofs("p").ravel() if "p" in body.names else np.zeros(0, dtype=np.int32)
         self.volumetric = np.zeros(body.owned, dtype=bool)
@@ -162,6 +164,8 @@ class Scene:
     def set(self, w: Floats) -> None:
         """Take the owned coefficients w as the state; held dofs take their values."""
         self.w[:] = np.where(self.free[: self.body.owned], w, self._held_values[: self.body.owned])
+        follow, lead = self.body.ties
+        self.w[follow] = self.w[lead]
         self.body.w.x.scatter_forward()
         for discrete in self.discrete.values():
             discrete.update(self.body.w.x.array)
@@ -223,7 +227,11 @@ class Scene:
             local.array_w[:] = part
         compat.assemble_vector(vector, form)
         vector.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
-        return vector.array_r.copy(), norm
+        values = vector.array_r.copy()
+        follow, lead = self.body.ties
+        np.add.at(values, lead, values[follow])
+        values[follow] = 0.0
+        return values, norm
 
     def residual(self) -> tuple[Floats, float]:
         """R = ∂Π/∂w at the present state.
@@ -256,6 +264,8 @@ class Scene:
         self.matrix.assemble(PETSc.Mat.AssemblyType.FLUSH)
         for discrete in self.discrete.values():
             discrete.add_tangent(self.matrix, self.free)
+        for dof in self.body.ties[0]:
+            self.matrix.setValue(dof, dof, 1.0, PETSc.InsertMode.ADD_VALUES)
         self.matrix.assemble()
         return self.matrix
 
