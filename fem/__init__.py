@@ -1,1 +1,3 @@
-"""Finite elements on dolfinx: kinematics, effects, scene, Newton, march and measures."""
+"""Finite elements: kinematics, effects, Newton, march, measures."""
+
+from fem import compat as compat  # before anything else loads dolfinx

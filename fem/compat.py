@@ -4,29 +4,50 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
+import functools
 import hashlib
 import logging
 import os
 import platform
+import sys
+import types
 from collections.abc import Callable, Iterator, Sequence
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-import basix
-import dolfinx
-import dolfinx.cpp
-import dolfinx.fem as dfem
-import dolfinx.fem.petsc
-import dolfinx.jit
-import dolfinx.mesh
-import ffcx
 import numpy as np
 import numpy.typing as npt
-import ufl
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from geometry.mesh import FACET_VERTICES, reference_nodes, vertex_positions
+
+class _Versions(types.ModuleType):
+    """Stands for pkg_resources, which ufl and ffcx load for their version alone; takes 0.3 s."""
+
+    @staticmethod
+    def get_distribution(name: str) -> Any:
+        """A thing with the version of a package."""
+        return types.SimpleNamespace(version=metadata.version(name))
+
+
+_stands_in = "pkg_resources" not in sys.modules
+if _stands_in:
+    sys.modules["pkg_resources"] = _Versions("pkg_resources")
+import basix  # noqa: E402
+import dolfinx  # noqa: E402
+import dolfinx.cpp  # noqa: E402
+import dolfinx.fem as dfem  # noqa: E402
+import dolfinx.fem.petsc  # noqa: E402
+import dolfinx.jit  # noqa: E402
+import dolfinx.mesh  # noqa: E402
+import ffcx  # noqa: E402
+import ufl  # noqa: E402
+
+if _stands_in:
+    del sys.modules["pkg_resources"]
+
+from geometry.mesh import FACET_VERTICES, reference_nodes, vertex_positions  # noqa: E402
 
 COMPILER_FLAGS = ["-O3", "-march=native", "-g0"]
 
@@ -137,31 +158,48 @@ def cell_field(mesh: Any, values: npt.NDArray[np.float64]) -> Any:
     return function
 
 
-def cache_folder() -> Path:
-    """Folder of compiled kernels, keyed by versions, compiler flags and processor."""
-    model = platform.processor()
+@functools.cache
+def _processor() -> str:
+    """What tells processors apart that cannot run each other's kernels."""
     with contextlib.suppress(OSError):
         lines = Path("/proc/cpuinfo").read_text().splitlines()
-        model = "".join(s for s in lines[:30] if s.startswith(("model name", "flags")))
+        return "".join(s for s in lines[:30] if s.startswith(("model name", "flags")))
+    return platform.processor()
+
+
+def cache_folder() -> Path:
+    """Folder of compiled kernels, keyed by versions, compiler flags and processor."""
     key = "|".join([dolfinx.__version__, ffcx.__version__, ufl.__version__, np.__version__])
-    digest = hashlib.sha1(f"{key}|{COMPILER_FLAGS}|{model}".encode()).hexdigest()[:12]
+    digest = hashlib.sha1(f"{key}|{COMPILER_FLAGS}|{_processor()}".encode()).hexdigest()[:12]
     root = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
     return root / "fiberbend" / digest
 
 
+_holding: list[Path] = []
+
+
 @contextlib.contextmanager
-def _compiler_lock(comm: MPI.Comm, folder: Path) -> Iterator[None]:
-    """Let one process group at a time compile, and clear what a killed compiler left."""
-    if comm.rank != 0:
+def compiling(comm: MPI.Comm) -> Iterator[None]:
+    """Let one process group at a time compile, and clear what a killed compiler left.
+
+    What compiles takes it by itself; around several compilations it saves time.
+    """
+    folder = cache_folder()
+    if comm.rank != 0 or folder in _holding:
         yield
         return
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        for source in folder.glob("*.c"):
-            if not source.with_suffix(".c.cached").exists():
-                source.unlink()
-        yield
+        names = {entry.name for entry in os.scandir(folder)}
+        for name in names:
+            if name.endswith(".c") and f"{name}.cached" not in names:
+                (folder / name).unlink()
+        _holding.append(folder)
+        try:
+            yield
+        finally:
+            _holding.remove(folder)
 
 
 def _jit(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
@@ -178,7 +216,7 @@ def _jit(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
     previous = logging.root.manager.disable
     logging.disable(logging.INFO)  # the C compiler's calls
     try:
-        with _compiler_lock(comm, folder):
+        with compiling(comm):
             return make(options)
     finally:
         logging.disable(previous)

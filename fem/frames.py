@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
-from scipy.interpolate import CubicSpline
-from scipy.spatial.transform import Rotation, Slerp
 
 from fem.kinematics import Kinematics
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
 
 Floats = npt.NDArray[np.float64]
 
@@ -67,6 +69,9 @@ class Frames:
         return self._body.domain.comm.allreduce(sums, MPI.SUM)  # type: ignore[no-any-return]
 
     def _at_nodes(self, rotation: Floats, centre: Floats) -> tuple[Floats, Floats]:
+        from scipy.interpolate import CubicSpline
+        from scipy.spatial.transform import Rotation, Slerp
+
         z = self._nodes[:, 2]
         spin = Slerp(self.z, Rotation.from_matrix(rotation))
         return spin(np.clip(z, self.z[0], self.z[-1])).as_matrix(), CubicSpline(self.z, centre)(z)
@@ -108,6 +113,8 @@ class Frames:
         The centre-line is summed by its steps from station to station in the turning frame, so
         that a bending arc stays an arc.
         """
+        from scipy.spatial.transform import Rotation
+
         base = Rotation.from_matrix(shapes[-1].rotation)
         turn = np.zeros((len(self.z), 3))
         step = np.zeros((len(self.z) - 1, 3))
@@ -125,11 +132,15 @@ class Frames:
     @staticmethod
     def _middle(rotation: Rotation) -> Rotation:
         """Rotation half-way between neighbouring stations."""
+        from scipy.spatial.transform import Rotation
+
         step = (rotation[1:] * rotation[:-1].inv()).as_rotvec()
         return Rotation.from_rotvec(step / 2) * rotation[:-1]
 
     def bending(self, shape: Shape) -> Floats:
         """Rotation about x of every station, unwrapped along the body from the root, rad, (k,)."""
+        from scipy.spatial.transform import Rotation
+
         rotation = Rotation.from_matrix(shape.rotation)
         first = rotation[0].as_rotvec()[0]
         steps = (rotation[1:] * rotation[:-1].inv()).as_rotvec()[:, 0]

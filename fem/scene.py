@@ -21,14 +21,12 @@ Floats = npt.NDArray[np.float64]
 
 
 def _differentiate(form: Any, variable: Any) -> Any:
-    """∂/∂q of a form for a global scalar q, integral by integral; None where q is absent."""
+    """∂/∂q of a lowered form for a global scalar q, by integrals; None where q is absent."""
     parts = [
         integral.reconstruct(ufl.diff(integral.integrand(), variable))
         for integral in form.integrals()
     ]
-    result = ufl.algorithms.apply_derivatives.apply_derivatives(
-        ufl.algorithms.apply_algebra_lowering.apply_algebra_lowering(ufl.Form(parts))
-    )
+    result = ufl.algorithms.apply_derivatives.apply_derivatives(ufl.Form(parts))
     return None if result.empty() else result
 
 
@@ -98,8 +96,9 @@ class Scene:
         forms: dict[str, Any] = {"residual": residual, "tangent": tangent}
         for key, form in potentials.items():
             forms[f"energy {key}"] = form
+        lowered = ufl.algorithms.apply_algebra_lowering.apply_algebra_lowering(total)
         for i, name in enumerate(body.scalars):
-            conjugate = _differentiate(total, body.scalar(name))
+            conjugate = _differentiate(lowered, body.scalar(name))
             forms[f"conjugate {name}"] = conjugate
             forms[f"load {name}"] = ufl.derivative(conjugate, body.w, test)
             for other in list(body.scalars)[i:] if body.natural else ():
@@ -108,7 +107,8 @@ class Scene:
                     forms[f"corner {name} {other}"] = corner
         if "p" in body.names:
             forms["volume"] = body.part(test, "p")[0] * body.dx()
-        self._forms = {name: compat.compile_form(mesh, form) for name, form in forms.items()}
+        with compat.compiling(mesh.comm):
+            self._forms = {name: compat.compile_form(mesh, form) for name, form in forms.items()}
         self.signatures = {name: form.signature() for name, form in forms.items()}
         self.kernels = sum(len(form.integrals()) for form in forms.values())
         self.matrix = compat.create_matrix(self._forms["tangent"], body.ties)

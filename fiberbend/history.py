@@ -5,11 +5,15 @@ from __future__ import annotations
 from typing import Any, Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from fem.embedded import FiberPotential
 from fem.newton import Newton, Outcome
 from fem.program import State
 from fem.scene import Scene
+
+
+Floats = npt.NDArray[np.float64]
 
 
 class Gauge(Protocol):
@@ -48,8 +52,12 @@ class Recorder:
         """Append the row of a new state, at which the scene is; collective."""
         row = self._row(len(self.rows), state, outcome, newton)
         self.rows.append(row)
-        row["work_mJ"] = self._work()
         return row
+
+    def integrate(self) -> None:
+        """Fill in the work of the loads since rest, by a spline through all steps."""
+        for row, work in zip(self.rows, self._work(), strict=True):
+            row["work_mJ"] = float(work)
 
     def _row(
         self, step: int, state: State, outcome: Outcome | None, newton: Newton | None
@@ -87,13 +95,13 @@ class Recorder:
             row |= self._gauge.last_columns(state)
         return row
 
-    def _work(self) -> float:
-        """Work of the loads since rest, Σ ∫ q d(conjugate of q), by a spline through all steps."""
+    def _work(self) -> Floats:
+        """Σ ∫ q d(conjugate of q) over the loads up to every row, N mm."""
         from scipy.interpolate import make_interp_spline
 
-        total = 0.0
+        total = np.zeros(len(self.rows))
         for name in self._scene.body.scalars:
-            if name in self._scene.body.natural:
+            if name in self._scene.body.natural or len(self.rows) < 2:
                 continue
             value = np.array([row[f"load {name}"] for row in self.rows])
             conjugate = np.array([row[f"conjugate {name}"] for row in self.rows])
@@ -107,5 +115,6 @@ class Recorder:
             points, weights = np.polynomial.legendre.leggauss(6)
             low, high = parameter[:-1, None], parameter[1:, None]
             t = (low + high) / 2 + (high - low) / 2 * points
-            total += float(np.sum((high - low) / 2 * weights * q(t) * v(t, 1)))
+            parts = np.sum((high - low) / 2 * weights * q(t) * v(t, 1), axis=1)
+            total[1:] += np.cumsum(parts)
         return total

@@ -144,6 +144,7 @@ class _Run:
         report = self.march.run(self.ramps)
         status, reason = self._status(report)
         self.progress.phase("output")
+        self.recorder.integrate()
         self._snapshot("last")
         run = self._write(status, reason, report)
         if self.folder is not None and self.comm.rank == 0:
@@ -187,6 +188,7 @@ class _Run:
         if label:
             self._snapshot(label)
         if self.folder is not None and self.model not in UNIFORM:
+            self.recorder.integrate()
             restart.save(self.folder, self.archive, self.march, self.recorder.rows)
 
     def _fraction(self, state: State) -> float:
