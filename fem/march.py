@@ -7,8 +7,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from fem.border import Closure
 from fem.frames import Frames
-from fem.newton import Closure, Newton, Outcome
+from fem.newton import Newton, Outcome
 from fem.program import Functional, Ramp, Report, Rules, State, measure
 from fem.scene import Scene
 

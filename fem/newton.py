@@ -12,6 +12,7 @@ import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from fem.border import Border, Closure
 from fem.linear import Factor
 
 Floats = npt.NDArray[np.float64]
@@ -57,19 +58,6 @@ class Problem(Protocol):
 
     def norm(self, values: Floats) -> float:
         """Euclidean norm over all ranks."""
-
-
-class Closure(Protocol):
-    """One more equation g(w, q) = 0, in exchange for one global scalar that is found."""
-
-    def value(self) -> float:
-        """g at the present state, scaled so that 1 is a large error."""
-
-    def row(self) -> Floats:
-        """∂g/∂w on the owned dofs."""
-
-    def slope(self, scalar: str) -> float:
-        """∂g/∂q of a global scalar."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -175,6 +163,12 @@ class Newton:
         bad = int(np.sum(np.linalg.eigvals(block).real < 0)) if len(natural) else 0
         return self.factor.negative_pivots + bad
 
+    def border(self, unknown: Sequence[str], closures: Sequence[Closure]) -> Border:
+        """Rows and columns of scalars at the present state and factor."""
+        columns = [self.problem.load(name) for name in unknown]
+        free = self.problem.free[: self._owned]
+        return Border(columns, unknown, closures, free, self.solve_linear, self.comm)
+
     def response(
         self, scalar: str, unknown: Sequence[str] = (), closures: Sequence[Closure] = ()
     ) -> tuple[Floats, dict[str, float]]:
@@ -184,7 +178,7 @@ class Newton:
         """
         self.problem.assemble_tangent()
         self.factor.renew()
-        border = _Border(self, unknown, closures)
+        border = self.border(unknown, closures)
         a = self.solve_linear(self.problem.load(scalar))
         sides = np.array([closure.slope(scalar) for closure in closures])
         a, q = border.eliminate(a, sides)
@@ -195,36 +189,6 @@ class Newton:
         self._b.array_w[:] = r
         self.factor.solve(self._b, self._x)
         return self._x.array_r.copy()
-
-
-class _Border:
-    """Rows and columns of the scalars at the present tangent, and their Schur complement."""
-
-    def __init__(self, newton: Newton, unknown: Sequence[str], closures: Sequence[Closure]) -> None:
-        problem, self._comm = newton.problem, newton.comm
-        free = problem.free[: newton._owned]
-        columns = [problem.load(name) for name in unknown]
-        self.rows = [np.where(free, closure.row(), 0.0) for closure in closures]
-        self.spread = [newton.solve_linear(column) for column in columns]
-        slopes = [[closure.slope(name) for name in unknown] for closure in closures]
-        self.schur = np.array(slopes).reshape(len(closures), len(unknown))
-        for spread, column in zip(self.spread, self.schur.T, strict=True):
-            column -= self._dots(spread)
-
-    def _dots(self, a: Floats) -> Floats:
-        """Inner products of the rows with a vector, over all ranks."""
-        mine = np.array([float(row @ a) for row in self.rows])
-        total: Floats = self._comm.allreduce(mine, MPI.SUM)
-        return total
-
-    def eliminate(self, a: Floats, r_q: Floats) -> tuple[Floats, Floats]:
-        """Solution (w, q) of the bordered system from a = K⁻¹ r and the scalars' right side."""
-        if not self.rows:
-            return a, np.zeros(0)
-        q = np.linalg.solve(self.schur, r_q - self._dots(a))
-        for value, spread in zip(q, self.spread, strict=True):
-            a = a - value * spread
-        return a, q
 
 
 class _Solve:
@@ -306,7 +270,7 @@ class _Solve:
         problem.assemble_tangent()
         self.newton._assembly["tangent"] += time.perf_counter() - start
         self.newton.factor.renew()
-        self.border = _Border(self.newton, self.unknown, self.closures)
+        self.border = self.newton.border(self.unknown, self.closures)
         self.newton.schur = self.border.schur
 
     def fast(self) -> bool:
