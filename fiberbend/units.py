@@ -64,8 +64,17 @@ KINDS = {
         "9.81 m/s^2",
         {"mm/s^2": "1", "m/s^2": "1e3"},
     ),
+    "time": Kind("a time", "s", "ms", "5 ms", {"s": "1", "ms": "1e-3"}),
+    "frequency": Kind("a frequency", "Hz", "Hz", "100 Hz", {"Hz": "1", "kHz": "1e3"}),
+    "conductance": Kind(
+        "a sonic conductance",
+        "dm^3/(s*bar)",
+        "dm^3/(s*bar)",
+        "0.03 dm^3/(s*bar)",
+        {"dm^3/(s*bar)": "1", "L/(s*bar)": "1"},
+    ),
 }
-"""The kinds of quantity that a case can hold."""
+"""The kinds of quantity that a case or an option can hold."""
 
 
 def parse(text: Any, kind: str) -> float:
