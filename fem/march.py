@@ -280,7 +280,7 @@ class March:
                 new = self.capture()
                 if goal is not None and kind != "followed":
                     overshot = insist = new.measures["followed"] > goal + 1e-9
-                if kind == "followed" and sign * (new.measures[drive] - ramp.target) > 0:
+                if kind != ramp.drive and sign * (new.measures[drive] - ramp.target) > 0:
                     # the angle lies beyond the load's end: go there by the load instead
                     pending = [a for a in pending if a < goal - 1e-12] if goal else []
                     overshot = True
