@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 
 from analytic.table import read_columns
 from fiberbend.case import Case
-from fiberbend.case_effects import BlockedTipEffect
+from fiberbend.case_effects import BlockedTipEffect, StraightEffect
 
 if TYPE_CHECKING:
     from geometry.mesh import Floats
@@ -55,7 +55,7 @@ def what_is_wrong(file: str, blocked: bool) -> str | None:
 
     Args:
         file: its path.
-        blocked: the run holds the tip, so that forces were measured and not angles.
+        blocked: the tip is held, so that forces were measured and not angles.
 
     Returns:
         What was found and what was expected, or None.
@@ -85,7 +85,8 @@ def read_measured(case: Case) -> Measured | None:
     file = case.output.measured
     if file is None:
         return None
-    quantity = expected_quantity(case.find(BlockedTipEffect) is not None)
+    held = case.find(BlockedTipEffect) is not None or case.find(StraightEffect) is not None
+    quantity = expected_quantity(held)
     pressure, value = np.array(read_columns(Path(file), ("pressure_kPa", quantity))).T
     if quantity == "angle_deg":
         value = value * (math.pi / 180)

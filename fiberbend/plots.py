@@ -12,7 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from fiberbend.overlay import MODELS, Line, Overlay, Points
 from fiberbend.page import figure, save
+from fiberbend.plots_labels import Labels
 from fiberbend.snapshot import Target, Write
 from geometry.mesh import Floats
 
@@ -21,7 +23,17 @@ Row = Mapping[str, float | None]
 SIZE = (1000, 700)
 """Width and height of a plot in pixels."""
 _BLUE, _RED = "#1f5a99", "#c0392b"
+_MEASURED = "#111111"
+_STYLES = dict(
+    zip(
+        MODELS,
+        [("#2e7d32", "-"), ("#7b4fa3", "--"), ("#a8641a", "-."), ("#6b6b6b", ":")],
+        strict=True,
+    )
+)
 _SAME_ANGLE = 0.05
+_ROOM = 2.0
+_TINY = 1e-6
 _ANGLE = ("pressure_kPa", "angle_deg")
 _PATH = ("tip_z_mm", "tip_y_mm", "pressure_kPa")
 _FORCE = ("pressure_kPa", "tip_force_N")
@@ -33,6 +45,8 @@ def plot_pressure_angle(
     angles: Sequence[float] = (),
     title: str = "",
     reason: str | None = None,
+    overlay: Overlay | None = None,
+    name: str = "",
 ) -> None:
     """Bending angle against pressure, with a mark at every requested angle that was reached.
 
@@ -42,21 +56,27 @@ def plot_pressure_angle(
         angles: requested angles in degrees.
         title: title of the case.
         reason: why the run ended early, or None.
+        overlay: other models and measured points.
+        name: of the run's own curve.
 
     Raises:
         ValueError: no row holds both values.
     """
     data = _columns(rows, _ANGLE)
     page, axes = _axes(title, reason, "pressure P (kPa)", "bending angle θ (°)")
-    axes.plot(*data, "o-", color=_BLUE, markersize=4, linewidth=1.8, clip_on=False)
+    labels = _curves(axes, data, overlay, name)
+    reached = []
     for angle in angles:
         nearest = int(np.abs(data[1] - angle).argmin())
-        if abs(data[1][nearest] - angle) > _SAME_ANGLE:
-            continue
-        pressure = data[0][nearest]
-        axes.plot(pressure, angle, "o", color=_RED, markersize=9, zorder=3)
-        _label(axes, f"{angle:g}° at {pressure:.1f} kPa", (pressure, angle), (-12, 4), "right")
-    _range(axes, data)
+        if abs(data[1][nearest] - angle) <= _SAME_ANGLE:
+            reached.append((data[0][nearest], angle))
+    for point in reached:
+        axes.plot(*point, "o", color=_RED, markersize=9, zorder=4)
+    labels.avoid_points(*np.array(reached).reshape(-1, 2).T)
+    for pressure, angle in reached:
+        text = f"{angle:g}° at {pressure:.1f} kPa"
+        labels.beside(text, np.array([pressure]), np.array([angle]))
+    _name_curves(labels, data, overlay, name)
     save(page, target)
 
 
@@ -93,7 +113,12 @@ def plot_tip_path(
 
 
 def plot_tip_force(
-    rows: Sequence[Row], target: Target, title: str = "", reason: str | None = None
+    rows: Sequence[Row],
+    target: Target,
+    title: str = "",
+    reason: str | None = None,
+    overlay: Overlay | None = None,
+    name: str = "",
 ) -> None:
     """Tip force of the whole body against pressure.
 
@@ -102,16 +127,18 @@ def plot_tip_force(
         target: a path, or a file open for writing bytes.
         title: title of the case.
         reason: why the run ended early, or None.
+        overlay: other models and measured points.
+        name: of the run's own curve.
 
     Raises:
         ValueError: no row holds both values.
     """
     data = _columns(rows, _FORCE)
     page, axes = _axes(title, reason, "pressure P (kPa)", "tip force (N)")
-    axes.plot(*data, "o-", color=_BLUE, markersize=4, linewidth=1.8, clip_on=False)
-    end = (data[0][-1], data[1][-1])
-    _label(axes, f"{end[1]:.3g} N at {end[0]:.1f} kPa", end, (-12, 4), "right")
-    _range(axes, data)
+    labels = _curves(axes, data, overlay, name)
+    end = data[0][-1:], data[1][-1:]
+    labels.beside(f"{end[1][0]:.3g} N at {end[0][0]:.1f} kPa", *end)
+    _name_curves(labels, data, overlay, name)
     save(page, target)
 
 
@@ -121,6 +148,9 @@ def draw_plots(
     angles: Sequence[float] = (),
     title: str = "",
     reason: str | None = None,
+    beside_angles: Overlay | None = None,
+    beside_forces: Overlay | None = None,
+    name: str = "",
 ) -> list[str]:
     """Draw pressure_angle.png, tip_path.png and, with a tip force, tip_force.png.
 
@@ -130,14 +160,19 @@ def draw_plots(
         angles: requested angles in degrees.
         title: title of the case.
         reason: why the run ended early, or None.
+        beside_angles: what is drawn beside the angle over the pressure.
+        beside_forces: what is drawn beside the tip force over the pressure.
+        name: of the run's own curve where others are beside it, such as "body model".
 
     Returns:
         The names written.
     """
+    angle = functools.partial(plot_pressure_angle, angles=angles, overlay=beside_angles, name=name)
+    force = functools.partial(plot_tip_force, overlay=beside_forces, name=name)
     plots: dict[str, tuple[Callable[..., None], tuple[str, ...]]] = {
-        "pressure_angle.png": (functools.partial(plot_pressure_angle, angles=angles), _ANGLE),
+        "pressure_angle.png": (angle, _ANGLE),
         "tip_path.png": (plot_tip_path, _PATH),
-        "tip_force.png": (plot_tip_force, _FORCE),
+        "tip_force.png": (force, _FORCE),
     }
     drawn = []
     for name, (plot, columns) in plots.items():
@@ -192,9 +227,68 @@ def _label(
     axes.annotate(text, point, shift, textcoords="offset points", ha=side, fontsize=12)
 
 
-def _range(axes: Any, data: Sequence[Floats]) -> None:
-    """Show the origin, and room for labels."""
-    for values, change in zip(data, (axes.set_xlim, axes.set_ylim), strict=True):
-        low, high = min(0.0, float(values.min())), max(0.0, float(values.max()))
+def _curves(axes: Any, data: Sequence[Floats], overlay: Overlay | None, name: str) -> Labels:
+    """Draw the run's curve and what is beside it; set the limits.
+
+    Returns:
+        Labels that keep off all of it.
+    """
+    overlay = overlay or Overlay()
+    _range(axes, data, overlay)
+    labels = Labels(axes)
+    for line in overlay.lines:
+        color, style = _STYLES[line.name]
+        axes.plot(line.across, line.up, style, color=color, linewidth=1.1, zorder=2)
+        labels.avoid(line.across, line.up)
+    axes.plot(*data, "o-", color=_BLUE, markersize=4, linewidth=1.8, clip_on=False, zorder=3)
+    labels.avoid(data[0], data[1], weight=3.0)
+    for points in overlay.points:
+        axes.plot(points.across, points.up, "x", color=_MEASURED, markersize=7, zorder=3.5)
+        labels.avoid_points(points.across, points.up)
+    return labels
+
+
+def _name_curves(
+    labels: Labels, data: Sequence[Floats], overlay: Overlay | None, name: str
+) -> None:
+    """Names of all curves, where there is more than one."""
+    if overlay is None or not (overlay.lines or overlay.points):
+        return
+    if name:
+        labels.along(name, data[0], data[1], _BLUE)
+    for line in overlay.lines:
+        labels.along(_shown(line.label), line.across, line.up, _STYLES[line.name][0])
+    for points in overlay.points:
+        text = textwrap.shorten(points.label, 40, placeholder="…")
+        order = np.argsort(-np.abs(points.up))
+        labels.beside(text, points.across[order], points.up[order], _MEASURED, 11)
+
+
+def _shown(label: str) -> str:
+    """Signs as matplotlib sets them."""
+    return label.replace("μ̄", r"$\bar{\mu}$").replace("L_f", "$L_f$")
+
+
+def _range(axes: Any, data: Sequence[Floats], overlay: Overlay) -> None:
+    """Show the origin, the run, all measured points, and room for labels.
+
+    Other models may go beyond: of the pressures they get as much room again as the run.
+    """
+    for axis, change in enumerate((axes.set_xlim, axes.set_ylim)):
+        own = np.concatenate([[0.0], data[axis], *(p[axis] for p in map(_pair, overlay.points))])
+        low, high = float(own.min()), float(own.max())
+        others = [_pair(line)[axis] for line in overlay.lines]
+        if others:
+            beside = np.concatenate(others)
+            low, high = (
+                min(low, max(float(beside.min()), _ROOM * low)),
+                max(high, min(float(beside.max()), _ROOM * high)),
+            )
+        if low > -_TINY * (high - low):
+            low = 0.0
         room = 0.12 * (high - low) or 1.0
         change(low - (room if low < 0 else 0), high + room)
+
+
+def _pair(curve: Line | Points) -> tuple[Floats, Floats]:
+    return curve.across, curve.up

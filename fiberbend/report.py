@@ -8,6 +8,7 @@ from typing import IO, Any
 import numpy as np
 
 from fiberbend.case import Case
+from fiberbend.crosscheck import Check
 from fiberbend.recovery import NodalFields, recover
 from fiberbend.runfolder import RunFolder
 from fiberbend.snapshot import Scenery, Snapshot
@@ -21,6 +22,8 @@ def draw(
     rows: Sequence[dict[str, Any]],
     reason: str | None,
     say: Callable[[str], None],
+    check: Check | None = None,
+    model: str = "body",
 ) -> None:
     """Write fields/*.vtu, pictures/*.png and the plots of a run folder; on rank 0.
 
@@ -32,6 +35,8 @@ def draw(
         rows: the history.
         reason: why the run ended early, for the plots' titles, or None.
         say: takes a line for the user where nothing can be drawn.
+        check: other models and measured points that are drawn beside the curves.
+        model: the run's own model.
     """
     output = case.output
 
@@ -47,10 +52,7 @@ def draw(
         write_fields(scenery, snapshots, into("fields"), fields)
     if not output.pictures:
         return
-    from fiberbend.plots import draw_plots
-
-    angles = [float(np.rad2deg(angle)) for angle in output.at_angles]
-    draw_plots(rows, into("pictures"), angles, case.title, reason)
+    draw_curves(folder, case, rows, reason, check, model)
     if snapshots:
         from fiberbend.pictures import draw_pictures
         from fiberbend.stage import PictureError
@@ -59,3 +61,35 @@ def draw(
             draw_pictures(scenery, snapshots, into("pictures"), fields)
         except PictureError as error:
             say(f"no pictures: {error}")
+
+
+def draw_curves(
+    folder: RunFolder,
+    case: Case,
+    rows: Sequence[dict[str, Any]],
+    reason: str | None,
+    check: Check | None = None,
+    model: str = "body",
+) -> None:
+    """Write the plots of a run of any model into pictures/; on rank 0.
+
+    Args:
+        folder: where to write.
+        case: names the title and the requested angles.
+        rows: the history.
+        reason: why the run ended early, or None.
+        check: other models and measured points that are drawn beside the curves.
+        model: the run's own model.
+    """
+    from fiberbend.plots import draw_plots
+
+    draw_plots(
+        rows,
+        lambda name, fill: folder.write(f"pictures/{name}", fill),
+        [float(np.rad2deg(angle)) for angle in case.output.at_angles],
+        case.title,
+        reason,
+        None if check is None else check.angles,
+        None if check is None else check.forces,
+        f"{model} model",
+    )

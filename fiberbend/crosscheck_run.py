@@ -1,0 +1,84 @@
+"""What a run is compared with is computed here: the section model, and the user's file."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from fiberbend.analytic_curves import held
+from fiberbend.case import Case
+from fiberbend.case_effects import PressureEffect, StraightEffect
+from fiberbend.crosscheck import Check, crosscheck
+from fiberbend.crosscheck_models import Straight
+from fiberbend.measured import read_measured
+from fiberbend.result import RunResult
+
+LEAST_ANGLE = 1.0
+"""Degrees that a run has to bend for a curve of the section model beside it."""
+_PARTS = (0.25, 0.5, 0.75)
+
+
+def check_run(
+    case: Case,
+    model: str,
+    rows: Sequence[dict[str, Any]],
+    solve: Callable[[Case], RunResult] | None = None,
+) -> Check:
+    """Put a run beside the section model, the closed forms and the measured points; no collective.
+
+    Args:
+        case: the case of the run.
+        model: its model.
+        rows: its history.
+        solve: solves a section on this rank alone; without it there is none beside the run.
+    """
+    measured = read_measured(case)
+    pressure = case.find(PressureEffect)
+    if pressure is None or model == "section" or solve is None:
+        return crosscheck(case, model, rows, measured=measured)
+    angles = [row["angle_deg"] for row in rows]
+    furthest = max(angles, key=abs)
+    if held(case):
+        reached = 1e-3 * max((row["pressure_kPa"] for row in rows), key=abs)
+        if reached == 0:
+            return crosscheck(case, model, rows, measured=measured)
+        straight, reason = _straight(case, reached, solve)
+        return crosscheck(
+            case, model, rows, measured=measured, straight=straight, no_section=reason
+        )
+    if abs(furthest) < LEAST_ANGLE:
+        return crosscheck(case, model, rows, measured=measured)
+    from fiberbend import curves
+
+    section = curves.as_section(case, curves.load(angle=math.radians(furthest)))
+    result = solve(section)
+    if len(result.rows) < 2:
+        return crosscheck(case, model, rows, measured=measured, no_section=result.reason)
+    columns = ("pressure_kPa", "angle_deg", "chamber_mm3")
+    kpa, degrees, volume = (np.array([row[name] for row in result.rows]) for name in columns)
+    curve = curves.Curve(1e-3 * kpa, np.radians(degrees), volume, result.reason)
+    return crosscheck(case, model, rows, curve, measured, no_section=result.reason)
+
+
+def _straight(
+    case: Case, pressure: float, solve: Callable[[Case], RunResult]
+) -> tuple[Straight | None, str]:
+    """The section held straight up to a pressure in MPa, and why it ends early."""
+    from fiberbend import curves
+
+    section = curves.as_section(case, curves.load(to=pressure))
+    output = section.output.model_copy(
+        update={"at_pressures": tuple(part * pressure for part in _PARTS)}
+    )
+    effects = (*section.effects, case.find(StraightEffect) or StraightEffect())
+    result = solve(section.model_copy(update={"effects": effects, "output": output}))
+    states = [(row["pressure_kPa"], row.get("blocked_moment_Nmm")) for row in result.rows]
+    known = [(0.0, 0.0), *((1e-3 * p, m) for p, m in states if m is not None and p != 0)]
+    if len(known) < 2:
+        return None, result.reason
+    pressures, moments = np.array(known).T
+    order = np.argsort(pressures)
+    return Straight(pressures[order], moments[order]), result.reason
