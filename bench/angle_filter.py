@@ -1,6 +1,6 @@
 """Time of the analytical model: P(θ) at 100 points, θ(P) sample by sample.
 
-Prints; nothing else depends on it. Run it on an idle machine: `.venv/bin/python bench/angle_filter.py`.
+Prints only. On an idle machine: `.venv/bin/python bench/angle_filter.py`.
 """
 
 from __future__ import annotations

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from fiberbend import __version__, launch
+from fiberbend.control_options import add_options
 
 WRONG_INPUT = 1
 FAILED = 2
@@ -91,6 +92,13 @@ def _parser() -> argparse.ArgumentParser:
     existing.add_argument("--resume", action="store_true", help="go on with an interrupted run")
     run.add_argument("--quiet", action="store_true", help="no progress")
     run.set_defaults(action=_run)
+    control = commands.add_parser(
+        "control", parents=[case], help="bend under feedback control: step response and sine"
+    )
+    control.add_argument("--out", metavar="DIR", type=Path, help="folder; runs/CASE_control")
+    control.add_argument("--overwrite", action="store_true", help="replace an earlier one")
+    add_options(control)
+    control.set_defaults(action=_control)
     schema = commands.add_parser("schema", help="print the JSON schema of a case")
     schema.set_defaults(action=_schema)
     commands.add_parser("version", help="print the version")
@@ -145,6 +153,27 @@ def _run(options: argparse.Namespace) -> int:
         _say(f"{result.status}: {result.reason}", sys.stderr)
     _say(f"results in {out}")
     return FAILED if result.status == "failed" else 0
+
+
+def _control(options: argparse.Namespace) -> int:
+    from fiberbend.control_options import read_settings
+    from fiberbend.problems import CaseError
+    from fiberbend.reader import read_case
+
+    case, settings = read_case(options.case, options.settings), read_settings(options)
+    out = options.out or Path("runs") / f"{Path(options.case).stem}_control"
+    try:
+        from fiberbend.control import run_control
+
+        result = run_control(case, settings, out, options.overwrite)
+    except CaseError:
+        raise
+    except BaseException as error:
+        return _crash(error, out)
+    for line in result.lines():
+        _say(line)
+    _say(f"results in {out}")
+    return 0
 
 
 def _crash(error: BaseException, out: Path) -> int:
