@@ -18,6 +18,8 @@ from fiberbend.sweep_trends import Group, described, groups
 _COLORS = ("#1f5a99", "#c0392b", "#2e8b57", "#8e5ea2", "#b8860b", "#444444")
 _MARKS = "osD^vP"
 _STROKES = ("-", "--", ":", "-.")
+_NAMED = 8
+"""So many groups at most are named in a panel, the largest."""
 
 
 def draw(
@@ -108,14 +110,38 @@ def _curves(
     step = (width - 60) / len(shown)
     for i, (column, found) in enumerate(shown):
         axis = page.add_axes(
-            ((78 + i * step) / width, 84 / height, (step - 58) / width, (height - 84 - 82) / height)
+            (
+                (78 + i * step) / width,
+                112 / height,
+                (step - 58) / width,
+                (height - 112 - 72) / height,
+            )
         )
         _panel(axis, found, quantity, several=len(columns) > 1)
         axis.set_ylim(*spread(known))
         axis.set_xlabel(axis_label(column), fontsize=13)
         if i == 0:
             axis.set_ylabel(quantity.axis, fontsize=13)
+    _legend(page, quantity, height)
     save(page, target)
+
+
+def _legend(page: Any, quantity: Quantity, height: int) -> None:
+    """What full and broken lines are, below the panels."""
+    from matplotlib.lines import Line2D
+
+    handles = [
+        Line2D([], [], color="0.25", linestyle=_STROKES[n % len(_STROKES)], label=caption)
+        for n, caption in enumerate(quantity.lines)
+    ]
+    page.legend(
+        handles=handles,
+        loc="lower center",
+        bbox_to_anchor=(0.5, 8 / height),
+        ncols=len(handles),
+        fontsize=12,
+        frameon=False,
+    )
 
 
 def _panel(axis: Any, found: Sequence[Group], quantity: Quantity, several: bool) -> None:
@@ -133,17 +159,20 @@ def _panel(axis: Any, found: Sequence[Group], quantity: Quantity, several: bool)
                 linewidth=1.8,
                 markersize=7,
             )
-    handles = [
-        Line2D([], [], color="0.25", linestyle=_STROKES[n % len(_STROKES)], label=caption)
-        for n, caption in enumerate(quantity.lines)
-    ]
     if several:
-        handles += [
-            Line2D([], [], color=_COLORS[g % len(_COLORS)], marker=_MARKS[g % len(_MARKS)],
-                   linestyle="", markersize=7, label=group.shared)
-            for g, group in enumerate(found[: len(_COLORS)])
-        ]  # fmt: skip
-    axis.legend(handles=handles, fontsize=10.5, frameon=False)
+        handles = [
+            Line2D(
+                [],
+                [],
+                color=_COLORS[g % len(_COLORS)],
+                marker=_MARKS[g % len(_MARKS)],
+                linestyle="",
+                markersize=7,
+                label=group.shared,
+            )
+            for g, group in enumerate(found[:_NAMED])
+        ]
+        axis.legend(handles=handles, fontsize=11, frameon=False, handletextpad=0.2)
     marks = np.unique(np.concatenate([group.x for group in found]))
     if len(marks) <= 8:
         axis.set_xticks(marks, [f"{mark:g}" for mark in marks])

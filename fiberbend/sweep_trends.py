@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
@@ -71,59 +72,58 @@ def spoken(column: Column) -> str:
 
 
 def sign(found: Sequence[Group], name: str) -> str:
-    """Whether a column rises (↑), falls (↓), stays (—) or does neither (mixed) along a field.
+    """How a column changes along a field, over all groups that have values of it.
 
     Returns:
-        The sign, with the relative changes from the least to the greatest value of the field over
-        all groups; empty where nothing is known.
+        ↑ or ↓ where it rises or falls all the way, ∪ or ∩ where it turns once, ~ oftener, — where
+        it stays, each with the number of groups where they differ, and the relative changes from
+        the least to the greatest value of the field; empty where nothing is known.
     """
-    changes, signs = [], set()
-    for group in found:
-        y = group.values(name)
-        y = y[~np.isnan(y)]
-        if len(y) < 2:
-            continue
-        change = y[-1] / y[0] - 1
-        changes.append(100 * change)
-        steps = np.diff(y)
-        if np.ptp(y) < INSENSITIVE * abs(y[0]):
-            signs.add("—")
-        elif np.all(steps > 0) or np.all(steps < 0):
-            signs.add("↑" if steps[0] > 0 else "↓")
-        else:
-            signs.add("mixed")
-    if not changes:
+    known = [group.values(name) for group in found]
+    known = [y[~np.isnan(y)] for y in known]
+    known = [y for y in known if len(y) > 1]
+    if not known:
         return ""
-    low, high = (f"{bound:+.1f} %" for bound in (min(changes), max(changes)))
-    span = low if low == high else f"{low} to {high}"
-    only = signs.pop() if len(signs) == 1 else "mixed"
-    return f"{only} ({span.replace('-', '−')})"
+    counts = Counter(_shape(y) for y in known)
+    shapes = ", ".join(f"{shape} {n}" if len(counts) > 1 else shape for shape, n in counts.items())
+    changes = [100 * (y[-1] / y[0] - 1) for y in known]
+    ends = dict.fromkeys(f"{bound:+.1f} %" for bound in (min(changes), max(changes)))
+    return f"{shapes} ({' … '.join(ends)})".replace("-", "−")
+
+
+def _shape(y: Floats) -> str:
+    if np.ptp(y) < INSENSITIVE * abs(y[0]):
+        return "—"
+    rises = np.diff(y) > 0
+    turns = int(np.count_nonzero(np.diff(rises)))
+    if turns > 1:
+        return "~"
+    return ("↑" if rises[0] else "↓") if turns == 0 else ("∩" if rises[0] else "∪")
 
 
 def as_markdown(
     columns: Sequence[Column], rows: Sequence[Row], quantities: Sequence[Quantity]
 ) -> str:
-    """Table of the signs.
+    """A table of the signs for each quantity.
 
     Args:
         columns: the varied fields; those that are no numbers are left out.
         rows: the table of the sweep.
         quantities: what to tell of each field.
     """
-    shown = {
-        f"{quantity.label}, {caption}": name
-        for quantity in quantities
-        for caption, name in quantity.lines.items()
-    }
-    lines = [
-        "| increase in | groups | " + " | ".join(shown) + " |",
-        "|" + "---|" * (len(shown) + 2),
-    ]
-    for column in columns:
-        found = groups(columns, rows, column) if column.numeric else []
-        if found:
-            values = ", ".join(f"{x:g}" for x in sorted({x for g in found for x in g.x}))
-            label = described(column, values)
-            cells = [sign(found, name) for name in shown.values()]
-            lines.append(f"| {label} | {len(found)} | " + " | ".join(cells) + " |")
-    return "\n".join(lines) + "\n"
+    along = [(column, groups(columns, rows, column)) for column in columns if column.numeric]
+    blocks = []
+    for quantity in quantities:
+        lines = [
+            f"| {quantity.axis}; increase in | groups | " + " | ".join(quantity.lines) + " |",
+            "|" + "---|" * (len(quantity.lines) + 2),
+        ]
+        for column, found in along:
+            if found:
+                values = ", ".join(f"{x:g}" for x in sorted({x for g in found for x in g.x}))
+                cells = [sign(found, name) for name in quantity.lines.values()]
+                lines.append(
+                    f"| {described(column, values)} | {len(found)} | " + " | ".join(cells) + " |"
+                )
+        blocks.append("\n".join(lines) + "\n")
+    return "\n".join(blocks)
