@@ -287,7 +287,8 @@ def _refuse_rate(
         )
     raise ValueError(
         f"rate: {rate:.4g} Hz, but {crossing}, {1e3 * dead:.3g} ms of it dead time: the valves "
-        f"may never rest; more than {1 / (longest - dead):.4g} Hz expected"
+        f"may never rest; more than {1 / (longest - dead):.4g} Hz or smaller "
+        "conductances expected"
     )
 
 
