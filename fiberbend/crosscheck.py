@@ -314,13 +314,13 @@ def _drawn(other: Other, at: Floats, blocked: bool) -> list[Line]:
 
 def _worst(run: Floats, other: Floats, counts: NDArray[np.bool_]) -> tuple[int, float] | None:
     """Where the run differs most from the other one, and by how many per cent of it."""
-    valid = counts & np.isfinite(run) & np.isfinite(other) & (other != 0)
+    valid = counts & np.isfinite(run) & np.isfinite(other) & (run != 0) & (other != 0)
     if not valid.any():
         return None
-    percent = np.zeros(len(run))
-    percent[valid] = 100 * (run[valid] / other[valid] - 1)
-    index = int(np.argmax(np.abs(percent)))
-    return index, float(percent[index])
+    where = np.flatnonzero(valid)
+    percent = 100 * (run[where] / other[where] - 1)
+    most = int(np.argmax(np.abs(percent)))
+    return int(where[most]), float(percent[most])
 
 
 def _rounded(value: float | None) -> float | None:

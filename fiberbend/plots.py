@@ -32,6 +32,7 @@ _STYLES = dict(
     )
 )
 _SAME_ANGLE = 0.05
+_LONG = 40
 _ROOM = 2.0
 _TINY = 1e-6
 _ANGLE = ("pressure_kPa", "angle_deg")
@@ -259,7 +260,7 @@ def _name_curves(
     for line in overlay.lines:
         labels.along(_shown(line.label), line.across, line.up, _STYLES[line.name][0])
     for points in overlay.points:
-        text = textwrap.shorten(points.label, 40, placeholder="…")
+        text = points.label if len(points.label) <= _LONG else f"{points.label[:_LONG]}…"
         order = np.argsort(-np.abs(points.up))
         labels.beside(text, points.across[order], points.up[order], _MEASURED, 11)
 
