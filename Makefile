@@ -10,7 +10,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test verify tables check format schema clean
+.PHONY: help setup demo sweep test verify tables check format schema clean
 
 help: ## list the commands
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -20,6 +20,10 @@ setup: ## install what is needed; under a second when nothing is to do
 
 demo: setup ## bend the baseline actuator: curves, pictures and fields in runs/free_bending
 	$(MPIRUN) $(BIN)/fiberbend run cases/free_bending.yaml --out runs/free_bending --overwrite
+
+SWEEP ?= cases/sweeps/radius_length_wall.yaml
+sweep: setup ## solve SWEEP=cases/sweeps/….yaml, resumable; make -j2 sweep or JOBS=2: in parallel
+	$(BIN)/fiberbend sweep $(SWEEP) -j $(or $(JOBS),$(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
 test: setup ## run the tests, on one rank and on two
 	$(BIN)/python -m pytest

@@ -92,6 +92,21 @@ def _parser() -> argparse.ArgumentParser:
     existing.add_argument("--resume", action="store_true", help="go on with an interrupted run")
     run.add_argument("--quiet", action="store_true", help="no progress")
     run.set_defaults(action=_run)
+    sweep = commands.add_parser("sweep", help="solve a case at many points")
+    sweep.add_argument("sweep", metavar="SWEEP", type=Path, help="sweep file, YAML")
+    sweep.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="PATH=VALUE",
+        dest="settings",
+        help="change the base case of all points; repeatable",
+    )
+    sweep.add_argument("--out", metavar="DIR", type=Path, help="folder; runs/SWEEP unless given")
+    sweep.add_argument("-j", "--jobs", type=_count, default=1, help="processes that solve at once")
+    sweep.add_argument("--retry", action="store_true", help="run failed points again")
+    sweep.add_argument("--worker", action="store_true", help=argparse.SUPPRESS)
+    sweep.set_defaults(action=_sweep)
     control = commands.add_parser(
         "control", parents=[case], help="bend under feedback control: step response and sine"
     )
@@ -155,6 +170,25 @@ def _run(options: argparse.Namespace) -> int:
     return FAILED if result.status == "failed" else 0
 
 
+def _sweep(options: argparse.Namespace) -> int:
+    from fiberbend.problems import CaseError
+    from fiberbend.sweep import INTERRUPTED, run_sweep, run_worker
+
+    out = options.out or Path("runs") / options.sweep.stem
+    try:
+        if options.worker:
+            return run_worker(options.sweep, out, options.settings)
+        return run_sweep(
+            options.sweep, out, options.settings, options.jobs, options.retry, say=_say
+        )
+    except CaseError:
+        raise
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except Exception as error:
+        return _crash(error, out)
+
+
 def _control(options: argparse.Namespace) -> int:
     from fiberbend.control_options import read_settings
     from fiberbend.problems import CaseError
@@ -192,6 +226,13 @@ def _crash(error: BaseException, out: Path) -> int:
 
         MPI.COMM_WORLD.Abort(FAILED)
     return FAILED
+
+
+def _count(text: str) -> int:
+    """A whole number from 1 on."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text}, expected a whole number from 1 on")
+    return int(text)
 
 
 def _say(text: str, stream: Any = None) -> None:
