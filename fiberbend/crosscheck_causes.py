@@ -126,8 +126,8 @@ def _ends(model: str, row: Row, other: Other) -> list[Cause]:
     percent = 100 * float(other.value(np.array(middle)) / other.value(np.array(whole)) - 1)
     if not math.isfinite(percent):
         return []
-    further = f"{100 * (whole / middle - 1):+.1f} % further than its middle half"
-    return [Cause("end caps", percent, f"the whole body bends {further}: {percent:+.1f} %")]
+    text = f"whole body {100 * (whole / middle - 1):+.1f} % in angle beside its middle half"
+    return [Cause("end caps", percent, f"{text}: {percent:+.1f} %")]
 
 
 def _fibers(case: Case, model: str, row: Row) -> list[Cause]:

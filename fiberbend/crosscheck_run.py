@@ -39,8 +39,8 @@ def check_run(
     pressure = case.find(PressureEffect)
     if pressure is None or model == "section" or solve is None:
         return crosscheck(case, model, rows, measured=measured)
-    angles = [row["angle_deg"] for row in rows]
-    furthest = max(angles, key=abs)
+    keys = ("angle_deg", "uniform_angle_deg")
+    furthest = max((row[key] for row in rows for key in keys if row.get(key) is not None), key=abs)
     if held(case):
         reached = 1e-3 * max((row["pressure_kPa"] for row in rows), key=abs)
         if reached == 0:

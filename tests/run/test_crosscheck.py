@@ -149,7 +149,7 @@ def test_end_caps_are_seen_by_the_middle_of_the_body() -> None:
     assert section.beyond
     assert section.percent == pytest.approx(-5, abs=0.5)
     assert likely(check, "section") == ["end caps"]
-    assert "further than its middle half" in section.likely[0].text
+    assert "beside its middle half" in section.likely[0].text
     # the middle bends as far as the whole: not the ends
     check = crosscheck(case_of(), "body", rows_of(factor=0.95), SECTION)
     assert compared(check, "section").beyond
@@ -368,6 +368,10 @@ def test_section_is_asked_for_what_the_run_covers() -> None:
     (section,) = asked
     assert section.model == "section"
     assert section.resolved()["effects"][0] == {"pressure": {"angle": "360 deg"}}
+    # a middle that bends further than the whole is covered too: it shows what the ends do
+    further = [*rows_of(), row_at(360.0, 181.5, uniform_angle_deg=366.0)]
+    check_run(discrete(), "body", further, solve)
+    assert asked.pop().resolved()["effects"][0] == {"pressure": {"angle": "366 deg"}}
     # a run of the section model itself, and one that never moved, ask for nothing
     check_run(case_of(), "section", rows_of(), solve)
     check_run(case_of(), "body", rows_of()[:1], solve)
