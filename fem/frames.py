@@ -90,6 +90,10 @@ class Frames:
         weight = sums[:, :1]
         mean_ref, mean_x = sums[:, 1:4] / weight, sums[:, 4:7] / weight
         moment = (sums[:, 7:] / weight).reshape(-1, 3, 3)
+        if self._body.domain.data.half:
+            # with the mirror image: a half section alone would seem to turn about y and z
+            mean_ref[:, 0] = mean_x[:, 0] = 0.0
+            moment[:, 0, 1:] = moment[:, 1:, 0] = 0.0
         moment -= mean_ref[:, :, None] * mean_x[:, None, :]
         left, _, right = np.linalg.svd(moment)
         sign = np.ones((len(weight), 3))
@@ -107,27 +111,47 @@ class Frames:
         x: Floats = middle + np.einsum("nab,nb->na", spin, self._section + shape.warp)
         return x - self._nodes
 
-    def extrapolate(self, shapes: list[Shape], weights: Floats) -> Shape:
+    def extrapolate(
+        self, shapes: list[Shape], weights: Floats, guides: list[Shape] | None = None
+    ) -> Shape:
         """Weighted sum of shapes (weights add to 1), rotations on the group.
 
         The centre-line is summed by its steps from station to station in the turning frame, so
         that a bending arc stays an arc.
+
+        Args:
+            shapes: the states to extrapolate from.
+            weights: one for each.
+            guides: shapes of another model at the same loads, and last at the load to reach; what
+                is extrapolated is the difference from them. Without: the last shape for all.
         """
         from scipy.spatial.transform import Rotation
 
-        base = Rotation.from_matrix(shapes[-1].rotation)
+        guides = guides or [shapes[-1]] * (len(shapes) + 1)
+        goal = guides[-1]
+        end = Rotation.from_matrix(goal.rotation)
         turn = np.zeros((len(self.z), 3))
-        step = np.zeros((len(self.z) - 1, 3))
-        for shape, weight in zip(shapes, weights, strict=True):
-            rotation = Rotation.from_matrix(shape.rotation)
-            turn += weight * (rotation * base.inv()).as_rotvec()
-            step += weight * self._middle(rotation).inv().apply(np.diff(shape.centre, axis=0))
-        rotation = Rotation.from_rotvec(turn) * base
-        start = sum(w * shape.centre[0] for shape, w in zip(shapes, weights, strict=True))
+        step, warp, start = self._steps(goal), goal.warp, goal.centre[0]
+        for shape, guide, weight in zip(shapes, guides, weights, strict=False):
+            relative = Rotation.from_matrix(shape.rotation) * Rotation.from_matrix(
+                guide.rotation
+            ).inv()
+            turn += weight * relative.as_rotvec()
+            step = step + weight * (self._steps(shape) - self._steps(guide))
+            warp = warp + weight * (shape.warp - guide.warp)
+            start = start + weight * (shape.centre[0] - guide.centre[0])
+        rotation = Rotation.from_rotvec(turn) * end
         steps = self._middle(rotation).apply(step)
         centre = np.vstack([start, start + np.cumsum(steps, axis=0)])
-        warp = sum(w * shape.warp for shape, w in zip(shapes, weights, strict=True))
-        return Shape(rotation.as_matrix(), centre, np.asarray(warp))
+        return Shape(rotation.as_matrix(), centre, warp)
+
+    def _steps(self, shape: Shape) -> Floats:
+        """Steps of the centre-line from station to station in the turning frame, mm, (k − 1, 3)."""
+        from scipy.spatial.transform import Rotation
+
+        middle = self._middle(Rotation.from_matrix(shape.rotation))
+        steps: Floats = middle.inv().apply(np.diff(shape.centre, axis=0))
+        return steps
 
     @staticmethod
     def _middle(rotation: Rotation) -> Rotation:

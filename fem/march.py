@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fem.border import Closure
-from fem.frames import Frames
+from fem.frames import Frames, Shape
+from fem.guide import Guide
 from fem.newton import Newton, Outcome
 from fem.program import Functional, Ramp, Report, Rules, State, measure
 from fem.scene import Scene
@@ -100,6 +101,8 @@ class March:
         self.rules = rules
         self.on_step = on_step
         self.warn = warn
+        self.guide: Guide | None = None
+        """A cheaper model's shapes, from which the difference is extrapolated."""
         self.states: list[State] = []
         self.report = Report()
         self.ramp = 0
@@ -170,12 +173,18 @@ class March:
         self.scene.set(np.tensordot(weights, [state.w for state in history], axes=1))
         if self.frames is not None:
             shapes = [state.shape for state in history if state.shape is not None]
-            shape = self.frames.extrapolate(shapes, weights)
+            shape = self.frames.extrapolate(shapes, weights, self._guides(abscissa, [*t, target]))
             body.set_displacement(self.frames.rebuild(shape))
             self.scene.set(self.scene.w.copy())
         for key, discrete in self.scene.discrete.items():
             discrete.extrapolate([state.discrete[key] for state in history], weights)
         return self.scene.w.copy()
+
+    def _guides(self, abscissa: str, values: Sequence[float]) -> list[Shape] | None:
+        """Shapes of the guide at the given values of what is driven; None where it has none."""
+        if self.guide is None or not all(self.guide.covers(abscissa, v) for v in values):
+            return None
+        return [self.guide.shape(abscissa, v) for v in values]
 
     def _history(self, abscissa: str) -> list[State]:
         """The last states with distinct abscissae, at most three, oldest first."""
