@@ -103,6 +103,8 @@ class March:
         self.warn = warn
         self.guide: Guide | None = None
         """A cheaper model's shapes, from which the difference is extrapolated."""
+        self._astray = False
+        """The last increment failed: the next one does without the guide."""
         self.states: list[State] = []
         self.report = Report()
         self.ramp = 0
@@ -182,7 +184,7 @@ class March:
 
     def _guides(self, abscissa: str, values: Sequence[float]) -> list[Shape] | None:
         """Shapes of the guide at the given values of what is driven; None where it has none."""
-        if self.guide is None or not all(self.guide.covers(abscissa, v) for v in values):
+        if self.guide is None or self._astray or not all(self.guide.covers(abscissa, v) for v in values):
             return None
         return [self.guide.shape(abscissa, v) for v in values]
 
@@ -293,6 +295,7 @@ class March:
                     # the angle lies beyond the load's end: go there by the load instead
                     pending = [a for a in pending if a < goal - 1e-12] if goal else []
                     overshot = True
+            self._astray = not accepted
             if not accepted or overshot:
                 self.restore(state)
                 if overshot:

@@ -1,7 +1,9 @@
-"""What a case leaves to the program: the model, and half or full body."""
+"""What a case leaves to the program: the model, half or full body, the pace of its steps."""
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Iterable, Iterator
 
 from fiberbend.case import Case
@@ -9,6 +11,7 @@ from fiberbend.case_effects import (
     BlockedTipEffect,
     Effect,
     GravityEffect,
+    HoopsEffect,
     PressureEffect,
     StraightEffect,
     WindingEffect,
@@ -18,29 +21,54 @@ MODELS = ("analytic", "section", "cell", "body")
 """From the cheapest to the dearest."""
 UNIFORM = ("section", "cell")
 """Models of uniform bending between the caps."""
+TURN = {"section": math.radians(10), "cell": math.radians(45), "body": math.radians(90)}
+"""Greatest change of the angle in a step: fine curves where steps are cheap."""
+FIRST_TURN = {"section": math.radians(10), "cell": math.radians(10), "body": math.radians(30)}
+"""The same for the first step."""
+
+Objection = tuple[str, str]
+"""A path within a case, and what a model has against it."""
 
 
 def choose_model(case: Case) -> tuple[str, str]:
-    """The model that solves a case.
-
-    `auto` never takes the analytic model: it holds neither the winding's pitch and stiffness nor
-    the stress across the section, and its answers are off by tens of per cent.
+    """The model that solves a case; `body` where none can.
 
     Returns:
         Its name and the reason.
     """
     if case.model != "auto":
         return case.model, "as the case says"
-    missing: list[str] = []
-    for model in MODELS[1:]:
-        reasons = [reason for _, reason in refusals(case, model)]
-        if not reasons:
-            return model, "; ".join(["the cheapest that holds everything", *missing])
-        missing.append(f"{model} does not: {reasons[0]}")
-    return "body", "; ".join(["the most that there is", *missing])
+    for model in MODELS:
+        if objection(case, model) is None:
+            return model, "the cheapest that holds everything"
+    return "body", "no model holds everything"
 
 
-def refusals(case: Case, model: str) -> Iterator[tuple[str, str]]:
+def problems(case: Case) -> Iterator[Objection]:
+    """What the model of a case, said or chosen, has against the case.
+
+    Yields:
+        Paths and messages.
+    """
+    if case.model != "auto":
+        for path, reason in refusals(case, case.model):
+            yield path, f"model {case.model} cannot hold it: {reason}"
+        return
+    reasons = []
+    for model in MODELS:
+        found = objection(case, model)
+        if found is None:
+            return
+        reasons.append(f"{model} not {found[0]} ({found[1]})")
+    yield "model", f'"auto", expected effects that one model holds: {"; ".join(reasons)}'
+
+
+def objection(case: Case, model: str) -> Objection | None:
+    """The first reason why a model does not hold a case in full, or None where it does."""
+    return next(itertools.chain(omissions(case, model), refusals(case, model)), None)
+
+
+def refusals(case: Case, model: str) -> Iterator[Objection]:
     """What of a case a model cannot hold.
 
     Args:
@@ -56,38 +84,72 @@ def refusals(case: Case, model: str) -> Iterator[tuple[str, str]]:
             yield f"effects.{index}.{effect.name}", reason
     if model == "body":
         return
-    if not any(isinstance(effect, PressureEffect) for effect in case.effects):
-        yield "effects", "uniform bending needs a pressure"
+    if case.find(PressureEffect) is None:
+        yield "effects", "nothing bends it uniformly but a pressure"
     if case.mesh.element == "tetrahedron":
         yield "mesh.element", "tetrahedra are for a body"
+    if model == "analytic":
+        yield from _no_closed_form(case)
+
+
+def _refuses(model: str, effect: Effect) -> str:
+    """Why a model cannot hold an effect; empty when it can."""
+    if isinstance(effect, HoopsEffect) and model != "analytic":
+        return "hoops that cannot stretch are in closed forms only (winding: a real thread)"
+    if isinstance(effect, StraightEffect) and model == "body":
+        return "only a uniform bend is held straight all along (effect blocked-tip)"
+    if model == "body":
+        return ""
+    if isinstance(effect, GravityEffect):
+        return "weight bends no uniform arc"
+    if model in UNIFORM and isinstance(effect, BlockedTipEffect):
+        return "roof and post need the ends of a body (effect straight: the blocked uniform bend)"
+    if isinstance(effect, WindingEffect):
+        if effect.representation == "discrete" and model != "cell":
+            return "only cell and body have turns (as: smeared, or leave `as` to the model)"
+        if model == "analytic" and effect.pattern != "double-helix":
+            return "the closed form knows no twist"
+    if model == "analytic" and isinstance(effect, PressureEffect) and effect.volume is not None:
+        return "the closed form bends by pressure or angle, not by volume"
+    return ""
+
+
+def _no_closed_form(case: Case) -> Iterator[Objection]:
+    """What the closed form needs; asked last, because it loads numpy."""
     if case.output.fields and "fields" in case.output.model_fields_set:
-        yield "output.fields", "three-dimensional fields are those of a body"
-    if model == "analytic" and case.actuator.section != "hemicircle":
-        yield "actuator.section", f"the formulas are for a hemicircle, not a {_shape(case)}"
+        yield "output.fields", "closed forms have no fields"
+    if case.actuator.section != "hemicircle":
+        yield "actuator.section", f"the closed form is for a hemicircle, not a {_shape(case)}"
+        return
+    from fiberbend.analytic_curves import no_analytic
+
+    reason = no_analytic(case)
+    if reason:
+        wound = any(isinstance(effect, WindingEffect | HoopsEffect) for effect in case.effects)
+        yield "materials.floor" if wound else "effects", reason
 
 
 def _shape(case: Case) -> str:
     return str(case.actuator.section)
 
 
-def _refuses(model: str, effect: Effect) -> str:
-    """Why a model cannot hold an effect; empty when it can."""
-    if model == "body":
-        return (
-            "only a uniform bend can be held straight" if isinstance(effect, StraightEffect) else ""
-        )
-    if isinstance(effect, GravityEffect):
-        return "weight bends no uniform arc"
-    if isinstance(effect, BlockedTipEffect):
-        return "roof and post need the ends of the body (effect straight: the blocked uniform bend)"
-    if isinstance(effect, WindingEffect):
-        if effect.representation == "discrete" and model != "cell":
-            return "a discrete winding has no uniform section (as: smeared has)"
-        if model == "analytic" and effect.pattern != "double-helix":
-            return "the formulas know no twist"
-    if model == "analytic" and isinstance(effect, PressureEffect) and effect.volume is not None:
-        return "the formulas know no chamber volume"
-    return ""
+def omissions(case: Case, model: str) -> Iterator[Objection]:
+    """What a model leaves out of what it can hold: no reason to refuse, but not to choose it.
+
+    Yields:
+        The path within the case and what becomes of it.
+    """
+    if model != "analytic":
+        return
+    for index, effect in enumerate(case.effects):
+        path = f"effects.{index}.{effect.name}"
+        if isinstance(effect, WindingEffect):
+            yield path, "in closed forms a winding has neither pitch nor stretch (effect hoops)"
+        if isinstance(effect, BlockedTipEffect):
+            yield path, "in closed forms the tip is held rigidly, without roof, post and sheath"
+    for part, material in dict(case.materials).items():
+        if material is not None and material.bulk is not None:
+            yield f"materials.{part}.bulk", "in closed forms every material is incompressible"
 
 
 def choose_half(case: Case) -> tuple[bool, str]:
@@ -105,6 +167,19 @@ def choose_half(case: Case) -> tuple[bool, str]:
     if breakers:
         return False, "; ".join(breakers)
     return True, "section, winding and loads are mirror-symmetric about x = 0"
+
+
+def cell_slice(case: Case, half: bool) -> tuple[float, int]:
+    """Length in mm of the slice that repeats, and its number of layers.
+
+    Half a pitch between mirror planes, a whole one without; without a winding any length does.
+    """
+    from geometry.size import divisions
+
+    winding = case.find(WindingEffect)
+    pitch = winding.pitch if winding is not None else 2 * case.mesh.axial
+    extent = pitch / 2 if half else pitch
+    return extent, divisions(extent, case.mesh.axial)
 
 
 def mirror_breakers(effects: Iterable[Effect]) -> Iterator[str]:

@@ -225,7 +225,8 @@ def plant_curve(case: Case, settings: Settings) -> tuple[ActuatorCurve, str]:
     end = max(2 * math.pi, 4 / 3 * highest)
     if settings.plant == "analytic":
         return ArcCurve.of(_closed_form(case), np.linspace(0.0, end, 73)), ""
-    from fiberbend.curves import load, section_curve
+    from fiberbend.curves import section_curve
+    from fiberbend.derived import load
 
     curve = section_curve(case, load(angle=end))
     return curve, curve.reason

@@ -51,15 +51,16 @@ def check_run(
         )
     if abs(furthest) < LEAST_ANGLE:
         return crosscheck(case, model, rows, measured=measured)
-    from fiberbend import curves
+    from fiberbend.curves import Curve
+    from fiberbend.derived import as_section, load
 
-    section = curves.as_section(case, curves.load(angle=math.radians(furthest)))
+    section = as_section(case, load(angle=math.radians(furthest)))
     result = solve(section)
     if len(result.rows) < 2:
         return crosscheck(case, model, rows, measured=measured, no_section=result.reason)
     columns = ("pressure_kPa", "angle_deg", "chamber_mm3")
     kpa, degrees, volume = (np.array([row[name] for row in result.rows]) for name in columns)
-    curve = curves.Curve(1e-3 * kpa, np.radians(degrees), volume, result.reason)
+    curve = Curve(1e-3 * kpa, np.radians(degrees), volume, result.reason)
     return crosscheck(case, model, rows, curve, measured, no_section=result.reason)
 
 
@@ -67,9 +68,9 @@ def _straight(
     case: Case, pressure: float, solve: Callable[[Case], RunResult]
 ) -> tuple[Straight | None, str]:
     """The section held straight up to a pressure in MPa, and why it ends early."""
-    from fiberbend import curves
+    from fiberbend.derived import as_section, load
 
-    section = curves.as_section(case, curves.load(to=pressure))
+    section = as_section(case, load(to=pressure))
     output = section.output.model_copy(
         update={"at_pressures": tuple(part * pressure for part in _PARTS)}
     )

@@ -7,14 +7,9 @@ import dataclasses
 import numpy as np
 import numpy.typing as npt
 
-from fiberbend.case import Case, Output, Solver
-from fiberbend.case_effects import (
-    BlockedTipEffect,
-    GravityEffect,
-    PressureEffect,
-    StraightEffect,
-    WindingEffect,
-)
+from fiberbend.case import Case
+from fiberbend.case_effects import PressureEffect, StraightEffect
+from fiberbend.derived import as_section, load
 from fiberbend.runner import run_case
 
 Floats = npt.NDArray[np.float64]
@@ -35,39 +30,6 @@ class Curve:
     angle: Floats
     volume: Floats
     reason: str = ""
-
-
-def load(*, to: float | None = None, angle: float | None = None) -> PressureEffect:
-    """A pressure by its value in MPa or by the bending angle in rad that it holds."""
-    return PressureEffect.model_construct(to=to, angle=angle)
-
-
-def as_section(case: Case, pressure: PressureEffect) -> Case:
-    """The same actuator as a section, its winding smeared, under a pressure alone.
-
-    Args:
-        case: any case with a winding or without.
-        pressure: the load.
-    """
-    effects = []
-    for effect in case.effects:
-        if isinstance(effect, PressureEffect | GravityEffect | BlockedTipEffect | StraightEffect):
-            continue
-        if isinstance(effect, WindingEffect):
-            effect = effect.model_copy(
-                update={"representation": "smeared", "width": None, "lines": None}
-            )
-        effects.append(effect)
-    mesh = case.mesh.model_copy(update={"section": 2, "element": "hexahedron"})
-    return case.model_copy(
-        update={
-            "model": "section",
-            "effects": (pressure, *effects),
-            "mesh": mesh,
-            "solver": Solver(),
-            "output": Output(pictures=False, fields=False),
-        }
-    )
 
 
 def section_curve(case: Case, pressure: PressureEffect | None = None) -> Curve:

@@ -19,17 +19,13 @@ from fem.uniform import Cell, CurvatureAngle, Section, Uniform
 from fiberbend import bridge
 from fiberbend.case import Case
 from fiberbend.case_effects import BlockedTipEffect, StraightEffect, WindingEffect
-from fiberbend.choice import choose_half
+from fiberbend.choice import FIRST_TURN as FIRST_TURN
+from fiberbend.choice import TURN as TURN
+from fiberbend.choice import cell_slice, choose_half
 from fiberbend.gauges import BodyGauge, UniformGauge
 from fiberbend.history import Gauge
 from fiberbend.registry import helix, twisting
 from geometry.mesh import MeshData
-from geometry.size import divisions
-
-TURN = {"section": np.deg2rad(10.0), "cell": np.deg2rad(45.0), "body": np.deg2rad(60.0)}
-"""Greatest change of the angle in a step: fine curves where steps are cheap."""
-FIRST_TURN = {"section": np.deg2rad(10.0), "cell": np.deg2rad(10.0), "body": np.deg2rad(20.0)}
-"""The same for the first step."""
 
 Make = Callable[[Domain, Iterable[str]], Kinematics]
 
@@ -91,9 +87,7 @@ def make_mesh(case: Case, model: str, msh: Path | None = None) -> MeshData:
     if model == "cell":
         from geometry.sweep import swept_slice
 
-        pitch = winding.pitch if winding is not None else 2 * case.mesh.axial
-        extent = pitch / 2 if half else pitch
-        return swept_slice(actuator, size, extent, divisions(extent, case.mesh.axial))
+        return swept_slice(actuator, size, *cell_slice(case, half))
     from geometry.gmsh_body import build_body
 
     curves = None

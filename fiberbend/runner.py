@@ -5,31 +5,32 @@ from __future__ import annotations
 import resource as usage
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from mpi4py import MPI
 
 from fem.checkpoint import Archive
-from fem.domain import Domain
 from fem.embedded import FiberPotential
-from fem.march import March
-from fem.newton import Newton, Outcome, Settings
-from fem.program import Ramp, Report, Rules, State
-from fem.scene import Scene
+from fem.newton import Outcome
+from fem.program import Ramp, Report, State
 from fiberbend import models, restart
+from fiberbend.assembly import assemble
 from fiberbend.case import Case
 from fiberbend.case_effects import BlockedTipEffect
 from fiberbend.choice import UNIFORM, choose_model
 from fiberbend.history import Recorder
 from fiberbend.plan import winding_remark
 from fiberbend.progress import Progress
-from fiberbend.registry import build
 from fiberbend.result import RunResult
 from fiberbend.runfolder import RunFolder
 from fiberbend.snapshot import Scenery, Snapshot
 from fiberbend.summary import blocked_tip, versions
+from fiberbend.warm import guides, section_states
 from geometry.mesh import MeshData
+
+if TYPE_CHECKING:
+    from fiberbend.crosscheck import Check
 
 MESH = "mesh.npz"
 
@@ -110,51 +111,39 @@ class _Run:
         mesh = _on_rank_0(self.comm, lambda: self._mesh(again))
         self.progress.phase("compile")
         case, model = self.case, self.model
-        domain = Domain(mesh, self.comm)
-        make = models.kinematics(case, model)
-        self.parts = build(case, mesh, model)
-        self.scene = Scene(domain, self.parts.effects, make)
-        reading = models.reading(case, self.scene)
+        built = assemble(case, model, mesh, self.comm, self._on_step, self.progress.message)
+        self.parts, self.scene, self.ramps = built.parts, built.scene, built.ramps
+        self.newton, self.march = built.newton, built.march
+        reading = built.reading
         self.archive = Archive(self.scene, reading.frames)
-        solver = case.solver
-        self.newton = Newton(self.scene, self.comm, Settings(tolerance=solver.tolerance))
-        turn = solver.max_turn or models.TURN[model]
-        rules = Rules(
-            cutbacks=solver.max_cutbacks,
-            turn=turn,
-            first_turn=min(turn, models.FIRST_TURN[model]),
-        )
-        self.march = March(
-            self.scene,
-            self.newton,
-            reading.frames,
-            reading.followed,
-            rules,
-            self._on_step,
-            self.progress.message,
-        )
-        self.march.start()
-        self.ramps = self.parts.ramps(self.scene.body.copies)
         self.recorder = Recorder(self.scene, reading.gauge(), self.march.states[0])
         if again and self.folder is not None:
             self.snapshots = restart.load(self.folder, self.archive, self.march, self.recorder)
             self.progress.message(f"resumed after step {self.recorder.rows[-1]['step']}")
         self._remark()
+        if reading.frames is not None and guides(case):
+            self.progress.phase("section")
+            states = _on_rank_0(self.comm, lambda: section_states(case))
+            if states is not None:
+                length = case.actuator.length
+                self.march.guide = states.guide(self.scene, reading.frames, length)
         self.progress.phase("solve")
         report = self.march.run(self.ramps)
         status, reason = self._status(report)
-        self.progress.phase("output")
         self.recorder.integrate()
+        self.check = self._cross_check()
+        self.progress.phase("output")
         self._snapshot("last")
-        run = self._write(status, reason, report)
+        rows = self.check.beside(self.recorder.rows) if self.check else self.recorder.rows
+        run = self._write(status, reason, report, rows)
         if self.folder is not None and self.comm.rank == 0:
-            self._draw(status, reason)
+            self._draw(status, reason, rows)
             run["wall_s"] = self._wall()
             self.folder.write_run(**run)
         self.comm.barrier()
         self._tell(run)
         path = self.folder.path if self.folder else None
-        return RunResult(status, reason, self.recorder.rows, run, path)
+        return RunResult(status, reason, rows, run, path)
 
     # --- mesh ----------------------------------------------------------------------------------
 
@@ -241,6 +230,21 @@ class _Run:
         arrays = {k: v for k, v in vars(shot).items() if v is not None}
         self.folder.write_arrays(f"snapshots/{label}.npz", **arrays)
 
+    def _cross_check(self) -> Check | None:
+        """The run beside the section model and the closed forms; only for a run with a folder."""
+        if self.folder is None:
+            return None
+        from fiberbend.crosscheck_run import check_run
+
+        self.progress.phase("crosscheck")
+
+        def solve(case: Case) -> RunResult:
+            return _Run(case, "section", None, Progress(quiet=True), MPI.COMM_SELF).go(False)
+
+        rows = self.recorder.rows
+        check: Check = _on_rank_0(self.comm, lambda: check_run(self.case, self.model, rows, solve))
+        return check
+
     # --- results -------------------------------------------------------------------------------
 
     def _status(self, report: Report) -> tuple[str, str]:
@@ -262,7 +266,9 @@ class _Run:
         seconds = {name: round(value, 3) for name, value in self.progress.wall_s.items()}
         return seconds | {f"solve/{k}": round(v, 3) for k, v in self.newton.seconds.items()}
 
-    def _write(self, status: str, reason: str, report: Report) -> dict[str, Any]:
+    def _write(
+        self, status: str, reason: str, report: Report, rows: list[dict[str, Any]]
+    ) -> dict[str, Any]:
         memory = self.comm.allreduce(usage.getrusage(usage.RUSAGE_SELF).ru_maxrss / 1024)
         scene = self.scene
         run: dict[str, Any] = {
@@ -288,14 +294,18 @@ class _Run:
             run["blocked_tip"] = blocked_tip(
                 self.case.actuator, self.blocked, self.recorder.rows[-1]
             )
+        if self.check is not None:
+            run["crosscheck"] = self.check.entry()
         if self.folder is not None:
-            self.folder.write_history(self.recorder.rows)
+            self.folder.write_history(rows)
             self.folder.write_run(**run)
         return run
 
     def _tell(self, run: dict[str, Any]) -> None:
-        """Say what the run took."""
+        """Say what the run took, and what stands beside it."""
         say = self.progress.message
+        for line in self.check.lines() if self.check is not None else ():
+            say(line)
         say(
             f"{run['unknowns']} unknowns: {run['load_steps']} steps, {run['newton_iterations']} "
             f"iterations, {run['factorisations']} factorisations, {run['cutbacks']} cut-backs"
@@ -303,28 +313,29 @@ class _Run:
         phases = ", ".join(f"{name} {value:.1f} s" for name, value in self._wall().items())
         say(f"{phases}; peak memory {run['peak_memory_MB']:.0f} MB on {run['ranks']} ranks")
 
-    def _draw(self, status: str, reason: str) -> None:
+    def _draw(self, status: str, reason: str, rows: list[dict[str, Any]]) -> None:
         """Fields, pictures and plots, on rank 0."""
         from fiberbend import report
 
         assert self.folder is not None
-        if self.model in UNIFORM:
-            return
         scenery = Scenery(
             mesh=self.scene.domain.data,
             materials=self.parts.materials,
             fibers=self.parts.fibers,
             smeared=self.parts.smeared,
             title=self.case.title,
+            uniform=self.model in UNIFORM,
         )
         report.draw(
             self.folder,
             self.case,
             scenery,
             self.snapshots,
-            self.recorder.rows,
+            rows,
             None if status == "converged" else f"{status}: {reason}",
             self.progress.message,
+            check=self.check,
+            model=self.model,
         )
 
 

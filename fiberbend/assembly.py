@@ -1,0 +1,73 @@
+"""A case on a mesh, ready to march."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+
+from mpi4py import MPI
+
+from fem.domain import Domain
+from fem.march import March
+from fem.newton import Newton, Outcome, Settings
+from fem.program import Ramp, Rules, State
+from fem.scene import Scene
+from fiberbend import models
+from fiberbend.case import Case
+from fiberbend.choice import FIRST_TURN, TURN
+from fiberbend.registry import Parts, build
+from geometry.mesh import MeshData
+
+
+@dataclasses.dataclass(frozen=True)
+class Assembly:
+    """What a march needs, at rest.
+
+    Attributes:
+        parts: effects and loads.
+        scene: the compiled scene.
+        reading: what is read off its states.
+        newton: the solver.
+        march: the load stepping.
+        ramps: the loads of what is modelled.
+    """
+
+    parts: Parts
+    scene: Scene
+    reading: models.Reading
+    newton: Newton
+    march: March
+    ramps: list[Ramp]
+
+
+def assemble(
+    case: Case,
+    model: str,
+    mesh: MeshData,
+    comm: MPI.Comm,
+    on_step: Callable[[State, Outcome], None],
+    warn: Callable[[str], None],
+) -> Assembly:
+    """Compile a case and put it at rest; collective.
+
+    Args:
+        case: the case.
+        model: "section", "cell" or "body".
+        mesh: its mesh.
+        comm: communicator.
+        on_step: called after every converged step.
+        warn: called with a line where a step fails.
+    """
+    parts = build(case, mesh, model)
+    scene = Scene(Domain(mesh, comm), parts.effects, models.kinematics(case, model))
+    reading = models.reading(case, scene)
+    newton = Newton(scene, comm, Settings(tolerance=case.solver.tolerance))
+    turn = case.solver.max_turn
+    rules = Rules(
+        cutbacks=case.solver.max_cutbacks,
+        turn=turn or TURN[model],
+        first_turn=min(turn or TURN[model], FIRST_TURN[model]),
+    )
+    march = March(scene, newton, reading.frames, reading.followed, rules, on_step, warn)
+    march.start()
+    return Assembly(parts, scene, reading, newton, march, parts.ramps(scene.body.copies))
