@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from analytic.stress import Floats
 
@@ -31,6 +30,9 @@ class MonotoneInverse:
         Raises:
             ValueError: P does not rise with θ all the way.
         """
+        # a fifth of a second to import, and many a curve is never inverted
+        from scipy.interpolate import CubicSpline
+
         angles = np.linspace(low, high, _INTERVALS + 1)
         values = pressure(angles)
         rising = np.diff(values) > 0

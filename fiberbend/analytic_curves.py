@@ -11,7 +11,7 @@ from analytic.stress import Floats, Stress, wound
 from fiberbend import bridge
 from fiberbend.case import Case
 from fiberbend.case import Material as MaterialSpec
-from fiberbend.case_effects import BlockedTipEffect, StraightEffect, WindingEffect
+from fiberbend.case_effects import BlockedTipEffect, HoopsEffect, StraightEffect, WindingEffect
 from materials.laws import energy_slopes
 
 LIMITING = 10.0
@@ -24,7 +24,7 @@ def no_analytic(case: Case) -> str | None:
     actuator = case.actuator
     if actuator.section != "hemicircle":
         return f"the closed form of bending is for a hemicircle, not for a {actuator.section}"
-    if case.find(WindingEffect) is None:
+    if case.find(WindingEffect) is None and case.find(HoopsEffect) is None:
         return "no winding holds the circumference, which the closed form keeps fixed"
     stiffness = _stiffness(case)
     share = (stiffness["floor"] + stiffness.get("layer", 0.0)) / stiffness["wall"]

@@ -13,6 +13,7 @@ from fiberbend.case_effects import (
     Effect,
     Fiber,
     GravityEffect,
+    HoopsEffect,
     PressureEffect,
     StraightEffect,
     WindingEffect,
@@ -108,6 +109,9 @@ def _winding(parts: Parts) -> Iterator[Problem]:
     path, winding = parts.find(WindingEffect)
     if winding is None:
         return
+    hoops, both = parts.find(HoopsEffect)
+    if both is not None:
+        yield Problem(hoops, f"{path} holds the circumference already, expected one of them")
     if parts.actuator is not None and winding.pitch > parts.actuator.length:
         yield Problem(
             f"{path}.pitch",

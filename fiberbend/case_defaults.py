@@ -5,26 +5,34 @@ from __future__ import annotations
 from typing import Any
 
 from fiberbend import bridge
-from fiberbend.case import Case, Mesh
+from fiberbend.case import Case, Mesh, Output
 from fiberbend.case_effects import WindingEffect
 from fiberbend.choice import UNIFORM, choose_model
 
 DEFAULT_LINES = 5
+WITHOUT_TURNS = ("analytic", "section")
+"""Models that spread a winding unless the case says otherwise."""
 
 
 def complete(case: Case) -> Case:
-    """Fill in the defaults that depend on other values of a checked case."""
+    """Fill in the defaults that depend on other values of a checked case.
+
+    The winding comes first: the model is chosen by it, and the mesh by the model.
+    """
     effects = tuple(
-        _complete_winding(effect) if isinstance(effect, WindingEffect) else effect
+        _complete_winding(effect, case.model) if isinstance(effect, WindingEffect) else effect
         for effect in case.effects
     )
     case = case.model_copy(update={"effects": effects})
-    return case.model_copy(update={"mesh": _complete_mesh(case)})
+    model, _ = choose_model(case)
+    return case.model_copy(
+        update={"mesh": _complete_mesh(case, model), "output": _complete_output(case, model)}
+    )
 
 
-def _complete_mesh(case: Case) -> Mesh:
+def _complete_mesh(case: Case, model: str) -> Mesh:
     """Finer sections where they are cheap, and two layers in a cell."""
-    model, mesh = choose_model(case)[0], case.mesh
+    mesh = case.mesh
     update: dict[str, Any] = {}
     if model in UNIFORM and "section" not in mesh.model_fields_set:
         update["section"] = 2
@@ -34,12 +42,25 @@ def _complete_mesh(case: Case) -> Mesh:
     return mesh.model_copy(update=update)
 
 
-def _complete_winding(winding: WindingEffect) -> WindingEffect:
+def _complete_output(case: Case, model: str) -> Output:
+    """A closed form has no fields to write."""
+    output = case.output
+    if model != "analytic" or "fields" in output.model_fields_set:
+        return output
+    return output.model_copy(update={"fields": False})
+
+
+def _complete_winding(winding: WindingEffect, model: str) -> WindingEffect:
+    """The winding as the model of the case, which may be auto, has it."""
     fiber = winding.fiber
     if fiber.name is None and fiber.radius_factor is None:
         fiber = fiber.model_copy(update={"radius_factor": 1.0})
-    update: dict[str, Any] = {"fiber": fiber}
-    if winding.representation == "discrete":
+    kind = winding.representation
+    if kind is None:
+        ribbon = winding.width is not None or winding.lines is not None
+        kind = "smeared" if model in WITHOUT_TURNS and not ribbon else "discrete"
+    update: dict[str, Any] = {"fiber": fiber, "representation": kind}
+    if kind == "discrete":
         width = winding.width
         if width is None:
             width = bridge.fiber(fiber).diameter

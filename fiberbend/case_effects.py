@@ -80,8 +80,9 @@ class WindingEffect(Effect):
     """Length along the axis of one turn."""
     fiber: Fiber
     """A named fiber or its modulus and diameter."""
-    representation: Literal["discrete", "smeared"] = Field(default="discrete", alias="as")
-    """Every turn by itself, or the same thread spread over its surface."""
+    representation: Literal["discrete", "smeared"] | None = Field(default=None, alias="as")
+    """Every turn by itself, or the same thread spread over its surface. Unless said, every turn
+    where the model has turns, and spread in the models section and analytic."""
     width: Width | None = None
     """Width of the ribbon that stands for the thread, its diameter unless said; discrete only.
     "0 mm" makes it a line, under which the pressure drifts with the mesh."""
@@ -89,6 +90,12 @@ class WindingEffect(Effect):
     """Parallel curves across the ribbon, 5 unless said; discrete only."""
     tension_only: bool = False
     """The thread goes slack instead of carrying compression."""
+
+
+class HoopsEffect(Effect):
+    """Hoops that cannot stretch, without pitch or thread: the ideal winding of closed forms."""
+
+    name = "hoops"
 
 
 class GravityEffect(Effect):
@@ -128,6 +135,7 @@ EFFECTS: dict[str, type[Effect]] = {
     for effect in (
         PressureEffect,
         WindingEffect,
+        HoopsEffect,
         GravityEffect,
         BlockedTipEffect,
         StraightEffect,

@@ -19,6 +19,7 @@ from analytic.calibration import calibrate
 from analytic.stress import Floats
 from fiberbend import crosscheck_causes as why
 from fiberbend.analytic_curves import dimensions, held, no_analytic
+from fiberbend.bulging import BULGING_PITCH, bulging, resolved
 from fiberbend.case import Case
 from fiberbend.case_effects import GravityEffect, PressureEffect, WindingEffect
 from fiberbend.crosscheck_models import (
@@ -229,15 +230,15 @@ def band(case: Case, model: str) -> float:
     """Percent of pressure within which a run's model agrees with the section model.
 
     The ends of a body cost up to 1.1 %, a winding of 3 mm pitch up to 5.1 %, both on the baseline;
-    other pitches in proportion to `why.bulging`.
+    other pitches in proportion to `bulging`.
     """
     if model == "analytic":
         return PAPER_PRESSURE
     least = _ENDS if model == "body" else _SMEARED
     winding = case.find(WindingEffect)
-    if winding is None or why.resolved(case, model) == 0:
+    if winding is None or resolved(case, model) == 0:
         return least
-    scale = why.bulging(winding.pitch, 360.0) / why.bulging(why.BULGING_PITCH, 360.0)
+    scale = bulging(winding.pitch, 360.0) / bulging(BULGING_PITCH, 360.0)
     return round(max(least, _SMEARED + _BULGING * scale), 2)
 
 
@@ -253,7 +254,7 @@ def _unresolved(case: Case, model: str, rows: Sequence[Row], others: Sequence[st
     if winding is None or winding.representation == "smeared" or model != "body":
         return []
     greatest = max(abs(row["angle_deg"]) for row in rows)
-    lost = (1 - why.resolved(case, model)) * why.bulging(winding.pitch, greatest)
+    lost = (1 - resolved(case, model)) * bulging(winding.pitch, greatest)
     if "section" not in others or lost < _LEAST_LOSS:
         return []
     return [

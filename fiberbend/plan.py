@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
+import textwrap
+from collections.abc import Iterator
 
-from fiberbend import bridge
 from fiberbend.case import Case
-from fiberbend.case_effects import BlockedTipEffect, WindingEffect
-from fiberbend.choice import choose_half, choose_model
+from fiberbend.case_effects import WindingEffect
+from fiberbend.choice import MODELS, choose_half, choose_model, objection, omissions, refusals
 from fiberbend.units import show
+
+WIDTH = 100
+"""Columns of a plan."""
+_INDENT = 13
 
 
 @dataclasses.dataclass(frozen=True)
@@ -16,73 +21,113 @@ class Plan:
     """What a run would do.
 
     Attributes:
-        effects: names of the effects, in the order of the case.
-        model: the model and why.
-        body: half or full and why.
-        elements: number of elements.
-        unknowns: displacements and pressures, before any are held; volume control adds one.
-        winding: whether the elements resolve the winding, or None where there is nothing to say.
+        model: name of the model.
+        rows: what is said about it: a heading and one or more sentences each.
+        elements: number of elements; none in a closed form.
+        unknowns: displacements and pressures, before any are held.
+        steps: load steps, where they can be foreseen.
     """
 
-    effects: tuple[str, ...]
     model: str
-    body: str
-    elements: int
-    unknowns: int
-    winding: str | None
+    rows: tuple[tuple[str, tuple[str, ...]], ...]
+    elements: int = 0
+    unknowns: int = 0
+    steps: int | None = None
 
     def lines(self) -> list[str]:
-        """The plan as lines of text."""
-        rows = {
-            "effects": ", ".join(self.effects),
-            "model": self.model,
-            "body": self.body,
-            "elements": str(self.elements),
-            "unknowns": str(self.unknowns),
-            "winding": self.winding,
-        }
-        return [f"{key + ':':10}{value}" for key, value in rows.items() if value is not None]
+        """The plan as lines of text, none longer than `WIDTH`."""
+        lines: list[str] = []
+        for heading, sentences in self.rows:
+            for number, sentence in enumerate(sentences):
+                label = f"{heading + ':' if number == 0 else '':{_INDENT}}"
+                lines += textwrap.wrap(
+                    label + sentence,
+                    WIDTH,
+                    subsequent_indent=" " * (_INDENT + 2),
+                    break_on_hyphens=False,
+                )
+        return lines
 
 
 def make_plan(case: Case) -> Plan:
     """Say what a run of a case would do; takes the mesh from the block layout, without gmsh."""
-    model, why_model = choose_model(case)
+    from fiberbend.plan_error import errors_of
+
+    model, why = choose_model(case)
+    head = {
+        "effects": [effect.name for effect in case.effects],
+        "model": [f"{model} ({why})", *_cheaper(case, model)],
+    }
+    head["effects"] = [", ".join(head["effects"])]
+    tail = {
+        "error": list(errors_of(case, model)),
+        "left out": [f"{path}: {text}" for path, text in omissions(case, model)],
+        "not used": [", ".join(names)] if (names := list(unused(case, model))) else [],
+    }
+    remark = winding_remark(case)
+    if remark is not None:
+        tail["winding"] = [remark]
+    if model == "analytic":
+        return Plan(model, _rows(head | _closed_form() | tail))
+    return _finite_elements(case, model, head, tail)
+
+
+def _finite_elements(
+    case: Case, model: str, head: dict[str, list[str]], tail: dict[str, list[str]]
+) -> Plan:
+    from fiberbend.plan_cost import cost_of
+    from fiberbend.plan_size import size_of
+
     half, why_half = choose_half(case)
-    elements, unknowns = count(case, half)
-    return Plan(
-        effects=tuple(effect.name for effect in case.effects),
-        model=f"{model} ({why_model})",
-        body=f"{'half' if half else 'full'} ({why_half})",
-        elements=elements,
-        unknowns=unknowns,
-        winding=winding_remark(case),
-    )
+    size = size_of(case, model, half)
+    cost = cost_of(case, model, size)
+    beside = f", and {', '.join(size.scalars)}" if size.scalars else ""
+    body = {
+        "half": [f"{'half' if half else 'full'} ({why_half})"],
+        "elements": [f"{size.elements} {size.kind}"],
+        "unknowns": [f"{size.unknowns}{beside}"],
+        **cost.rows(case, model),
+    }
+    return Plan(model, _rows(head | body | tail), size.elements, size.unknowns, cost.steps)
 
 
-def count(case: Case, half: bool) -> tuple[int, int]:
-    """Elements and unknowns of the body.
+def _closed_form() -> dict[str, list[str]]:
+    from fiberbend.plan_cost import start_seconds
 
-    Quadratic displacement everywhere; on hexahedra four pressures each (linear, discontinuous),
-    on tetrahedra one at each vertex.
+    return {
+        "unknowns": ["none, a closed form"],
+        "time": [f"about {start_seconds('analytic'):g} s to start, a millisecond to compute"],
+    }
+
+
+def _rows(rows: dict[str, list[str]]) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    return tuple((heading, tuple(sentences)) for heading, sentences in rows.items() if sentences)
+
+
+def _cheaper(case: Case, model: str) -> Iterator[str]:
+    """What each cheaper model has against the case."""
+    for other in MODELS[: MODELS.index(model)]:
+        against = objection(case, other)
+        if against is None:
+            yield f"{other} holds everything too: auto would take it"
+            break
+        refusal = next(refusals(case, other), None)
+        path, text = refusal or against
+        yield f"{other} {'cannot hold' if refusal else 'leaves out'} {path}: {text}"
+
+
+def unused(case: Case, model: str) -> Iterator[str]:
+    """Settings that are said and that the model has no use for.
+
+    One case file is for several models: what another model needs is no error.
     """
-    import numpy as np
-
-    from geometry.mesh import vertex_positions
-    from geometry.sweep import swept_body
-    from geometry.tets import to_tetrahedra
-
-    tip = case.find(BlockedTipEffect)
-    mesh = swept_body(
-        bridge.dimensions(case.actuator),
-        bridge.mesh_size(case.mesh, half),
-        bridge.strips(tip) if tip else None,
-    )
-    if case.mesh.element == "tetrahedron":
-        mesh = to_tetrahedra(mesh)
-        pressures = len(np.unique(mesh.cells[:, vertex_positions(mesh.cell_type)]))
-    else:
-        pressures = 4 * len(mesh.cells)
-    return len(mesh.cells), 3 * len(mesh.nodes) + pressures
+    parts = {"mesh": case.mesh.model_fields_set, "solver": case.solver.model_fields_set}
+    if model == "section":
+        parts = {"mesh": parts["mesh"] & {"axial", "symmetry"}}
+    elif model != "analytic":
+        parts = {}
+    for part, names in parts.items():
+        yield from (f"{part}.{name}" for name in sorted(names))
 
 
 def winding_remark(case: Case) -> str | None:

@@ -10,11 +10,11 @@ import yaml
 from pydantic import BaseModel, ValidationError
 from pydantic.json_schema import GenerateJsonSchema
 
+from fiberbend import choice
 from fiberbend.case import Actuator, Case, Materials, Mesh, Output, Solver
 from fiberbend.case_checks import Parts, check
 from fiberbend.case_defaults import complete
 from fiberbend.case_effects import EffectEntry, unwrap
-from fiberbend.choice import choose_model, refusals
 from fiberbend.problems import CaseError, Problem, from_pydantic
 
 _SECTIONS: dict[str, type[BaseModel]] = {
@@ -80,15 +80,13 @@ def parse_case(data: Mapping[str, Any]) -> Case:
         problems += from_pydantic(error)
         parts = _valid_parts(data) if isinstance(data, Mapping) else Parts()
     problems += check(parts)
-    if case is not None and not problems:
-        model, _ = choose_model(case)
-        problems += [
-            Problem(path, f"model {model} cannot hold it: {reason}")
-            for path, reason in refusals(case, model)
-        ]
     if problems or case is None:
         raise CaseError(problems)
-    return complete(case)
+    case = complete(case)
+    problems += [Problem(path, text) for path, text in choice.problems(case)]
+    if problems:
+        raise CaseError(problems)
+    return case
 
 
 def _valid_parts(data: Mapping[str, Any]) -> Parts:

@@ -53,7 +53,7 @@ BAD_SETTINGS = [
     ("effects.2.friction.mu=0.3", "effects.2.friction: unknown key, expected one of pressure"),
     ("effects.1.winding.pattern=braid", 'effects.1.winding.pattern: "braid", expected '),
     ("support=hinge", 'support: "hinge", expected clamped-root'),
-    ("model=section", 'model: "section", expected body or auto'),
+    ("model=beam", 'model: "beam", expected analytic, section, cell, body or auto'),
     (
         "actuator.section=square",
         'actuator.section: "square", expected hemicircle, rectangle or circle',
@@ -149,6 +149,94 @@ BAD_SETTINGS = [
     ("actuator.wall=[", "actuator.wall: '[' is not a YAML value"),
 ]
 """A setting, and how a line of the complaint begins."""
+
+SMEARED = "effects.1.winding.as=smeared"
+HOOPS = "effects.1={hoops: {}}"
+BLOCKED = "effects.2.blocked-tip={}"
+WEIGHT = [
+    "effects.2.gravity.direction=-y",
+    "materials.floor={law: neo-hooke, mu: 16 MPa, density: 1100 kg/m^3}",
+]
+
+UNFIT_MODELS = [
+    # turns, twist and ends
+    (
+        ["model=section", "effects.1.winding.as=discrete"],
+        "effects.1.winding: model section cannot hold it: only cell and body have turns",
+    ),
+    (
+        ["model=analytic", "effects.1.winding.width=0.38 mm"],
+        "effects.1.winding: model analytic cannot hold it: only cell and body have turns",
+    ),
+    (
+        ["model=analytic", SMEARED, "effects.1.winding.pattern=single-helix-left"],
+        "effects.1.winding: model analytic cannot hold it: the closed form knows no twist",
+    ),
+    (
+        ["model=cell", BLOCKED],
+        "effects.2.blocked-tip: model cell cannot hold it: roof and post need the ends of a body",
+    ),
+    (["model=section", BLOCKED], "effects.2.blocked-tip: model section cannot hold it: "),
+    *[
+        ([f"model={model}", *WEIGHT], f"effects.2.gravity: model {model} cannot hold it: weight")
+        for model in ("analytic", "section", "cell")
+    ],
+    # what only a uniform bend, or only a closed form, can hold
+    (
+        ["model=body", "effects.2.straight={}", "output={}"],
+        "effects.2.straight: model body cannot hold it: only a uniform bend is held straight",
+    ),
+    *[
+        ([f"model={model}", HOOPS], f"effects.1.hoops: model {model} cannot hold it: hoops that")
+        for model in ("section", "cell", "body")
+    ],
+    (
+        ["effects.2={hoops: {}}"],
+        "effects.2.hoops: effects.1.winding holds the circumference already, expected one of them",
+    ),
+    # what the closed form needs
+    (
+        ["model=analytic", "effects.0={pressure: {volume: 45 mL}}"],
+        "effects.0.pressure: model analytic cannot hold it: the closed form bends by pressure or",
+    ),
+    (
+        ["model=analytic", "materials.floor=elastosil-m4601"],
+        "materials.floor: model analytic cannot hold it: floor and layer together stretch only",
+    ),
+    (
+        ["model=analytic", "effects=[{pressure: {to: 1 kPa}}]"],
+        "effects: model analytic cannot hold it: no winding holds the circumference",
+    ),
+    (
+        ["model=analytic", "output.fields=true"],
+        "output.fields: model analytic cannot hold it: closed forms have no fields",
+    ),
+    (
+        [
+            "model=analytic",
+            "actuator={section: circle, radius: 8 mm, length: 160 mm, wall: 2 mm, floor: 1 mm, "
+            "sheath: 1 mm}",
+        ],
+        "actuator.section: model analytic cannot hold it: the closed form is for a hemicircle, not",
+    ),
+    # uniform bending
+    (
+        ["model=cell", "mesh.element=tetrahedron"],
+        "mesh.element: model cell cannot hold it: tetrahedra are for a body",
+    ),
+    (
+        ["model=section", "effects=[{gravity: {direction: -y}}]", WEIGHT[1], "output={}"],
+        "effects: model section cannot hold it: nothing bends it uniformly but a pressure",
+    ),
+    # no model at all
+    (
+        ["model=auto", HOOPS, BLOCKED],
+        'model: "auto", expected effects that one model holds: analytic not effects.2.blocked-tip '
+        "(in closed forms the tip is held rigidly, without roof, post and sheath); section not "
+        "effects.1.hoops (",
+    ),
+]
+"""Settings that leave a case right by itself and ask for a model that cannot hold it."""
 
 BAD_FILES = {
     "malformed": ("actuator: [1, 2\n", "line 2: malformed YAML"),

@@ -59,13 +59,20 @@ def test_defaults_appear_in_the_resolved_case(data: dict[str, Any]) -> None:
     del data["mesh"], data["output"], data["actuator"]["cap"], data["model"]
     resolved = parse_case(data).resolved()
     assert resolved["actuator"]["cap"] == "15 mm"
+    # auto takes a cell here: a quarter of the pitch and a refined section are its defaults
     assert resolved["mesh"] == {
+        "element": "hexahedron",
+        "axial": "0.75 mm",
+        "section": 2,
+        "symmetry": "auto",
+    }
+    assert resolved["model"] == "auto"
+    assert parse_case(data | {"model": "body"}).resolved()["mesh"] == {
         "element": "hexahedron",
         "axial": "1.5 mm",
         "section": 1,
         "symmetry": "auto",
     }
-    assert resolved["model"] == "auto"
     winding = resolved["effects"][1]["winding"]
     assert (winding["width"], winding["lines"], winding["fiber"]) == ("0.38 mm", 5, "kevlar")
 
@@ -88,6 +95,11 @@ def test_defaults_appear_in_the_resolved_case(data: dict[str, Any]) -> None:
          "materials.floor={name: combined-base, density: 1.2 g/cm^3}"],
         ["output.stop_at_angle=360 deg", "output.at_pressures=[100 kPa]"],
         ["model=auto", "mesh.element=tetrahedron", "mesh.section=2"],
+        ["effects.0={pressure: {angle: 360 deg}}", "output={}", "solver.max_turn=20 deg"],
+        ["model=auto", "effects.1={hoops: {}}"],
+        ["model=analytic"],
+        ["model=section", "effects.1.winding.tension_only=true"],
+        ["model=cell", "effects.2.straight={stretch: held}", "output={}"],
     ],
     ids=lambda settings: settings[0],
 )  # fmt: skip
@@ -99,6 +111,12 @@ def test_valid_variants_round_trip(settings: list[str]) -> None:
 @pytest.mark.parametrize(("setting", "line"), bad_cases.BAD_SETTINGS)
 def test_wrong_input_is_named(setting: str, line: str) -> None:
     lines = complaint([setting])
+    assert any(text.startswith(line) for text in lines), lines
+
+
+@pytest.mark.parametrize(("settings", "line"), bad_cases.UNFIT_MODELS)
+def test_model_that_cannot_hold_the_case_is_refused(settings: list[str], line: str) -> None:
+    lines = complaint(settings)
     assert any(text.startswith(line) for text in lines), lines
 
 

@@ -1,0 +1,76 @@
+"""How far the answer of a model is expected to be off, and where that is known from.
+
+Everything was measured on the baseline of Polygerinos et al. 2015; docs/ has the tables.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from fiberbend.analytic_curves import held
+from fiberbend.bulging import BULGING_PITCH, bulging, resolved
+from fiberbend.case import Case
+from fiberbend.case_effects import BlockedTipEffect, GravityEffect, PressureEffect, WindingEffect
+
+_CLOSED_FORM = "pressure for an angle 33 % (90°) to 13 % (360°) above the section model"
+_ENDS = "the whole body bends 0.6 to 1.4 % further than its middle (accuracy_free.md)"
+
+
+def errors_of(case: Case, model: str) -> Iterator[str]:
+    """Expected errors of a run, each with its source.
+
+    Yields:
+        One line of text each.
+    """
+    if case.find(PressureEffect) is None:
+        return
+    if model == "analytic":
+        yield from _closed_form(case)
+        return
+    if held(case):
+        yield from _held(case, model)
+    elif model == "body":
+        yield "mesh: section and length of the elements move P by 0.1 to 0.3 % (accuracy_free.md)"
+        if case.find(GravityEffect) is None:
+            yield f"ends: {_ENDS}: see uniform_angle_deg"
+    else:
+        mesh = "0.1 %" if model == "section" else "0.5 %"
+        yield f"mesh: moves P by about {mesh} (accuracy_uniform.md)"
+        yield f"ends: left out; {_ENDS}"
+    if case.mesh.element == "tetrahedron":
+        yield "tetrahedra: too stiff beside hexahedra of the same length; refine once to see it"
+    yield from _winding(case, model)
+
+
+def _closed_form(case: Case) -> Iterator[str]:
+    if held(case):
+        yield "κP/L_f: 42 % below the section held straight on the baseline (54 to 94 N mm)"
+        return
+    yield f"closed form: {_CLOSED_FORM} on the baseline (crosscheck.md)"
+    yield "fitted to an experiment: up to 11 % in pressure (Polygerinos et al. 2015)"
+
+
+def _held(case: Case, model: str) -> Iterator[str]:
+    if case.find(BlockedTipEffect) is not None:
+        yield "mesh: moves the tip force by 1 to 3 % (accuracy_blocked.md)"
+        yield "strips: roof and post of other sizes move it by up to 12 % (accuracy_blocked.md)"
+        return
+    yield f"mesh: moves the moment by about {'0.1' if model == 'section' else '0.5'} %"
+    yield "tip: a real one turns and its sheath yields, about half the force (accuracy_causes.md)"
+
+
+def _winding(case: Case, model: str) -> Iterator[str]:
+    """The part of the bulging between the fibers that the model does not see."""
+    winding, pressure = case.find(WindingEffect), case.find(PressureEffect)
+    if winding is None or pressure is None or held(case):
+        return
+    missing = 1 - resolved(case, model)
+    low, high = (missing * bulging(winding.pitch, angle) for angle in (90.0, 360.0))
+    if high >= 0.05:
+        scaled = "" if winding.pitch == BULGING_PITCH else f", scaled from {BULGING_PITCH:g} mm"
+        yield (
+            f"winding: P too low by about {low:.1f} % at 90° to {high:.1f} % at 360°, for rubber "
+            f"bulges between turns {winding.pitch:g} mm apart (crosscheck.md{scaled})"
+        )
+    elif model == "body":
+        yield "winding: resolved; against a cell within 1.5 % (accuracy_winding.md)"

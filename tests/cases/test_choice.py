@@ -1,0 +1,106 @@
+"""The cheapest model that a case allows, and what a case leaves to the model.
+
+A user who says `auto` wants the fastest answer that holds everything that the case says: a model
+too cheap answers another question, one too dear costs minutes.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from fiberbend.case import Case
+from fiberbend.case_effects import WindingEffect
+from fiberbend.choice import MODELS, choose_half, choose_model, objection, omissions
+from fiberbend.reader import parse_case, read_case
+from tests.cases.bad_cases import BLOCKED, HOOPS, SMEARED, WEIGHT
+
+ROOT = Path(__file__).resolve().parents[2]
+BASELINE = ROOT / "cases" / "free_bending.yaml"
+SINGLE = "effects.1.winding.pattern=single-helix-left"
+BULK = "materials.wall={name: elastosil-m4601, bulk: 200 MPa}"
+
+
+def case(*settings: str) -> Case:
+    return read_case(BASELINE, settings)
+
+
+def winding(case: Case) -> WindingEffect:
+    found = case.find(WindingEffect)
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize(
+    ("settings", "model"),
+    [
+        ([HOOPS], "analytic"),
+        ([HOOPS, "effects.2.straight={}", "output={}"], "analytic"),
+        ([SMEARED], "section"),
+        ([SMEARED, SINGLE], "section"),
+        ([SMEARED, BULK], "section"),
+        ([SMEARED, "effects.0={pressure: {volume: 40 mL}}"], "section"),
+        ([SMEARED, "effects.2.straight={}", "output={}"], "section"),
+        (["effects=[{pressure: {to: 10 kPa}}]"], "section"),
+        ([SMEARED, "materials.floor=elastosil-m4601"], "section"),
+        ([], "cell"),
+        ([SINGLE], "cell"),
+        (["effects.2.straight={}", "output={}"], "cell"),
+        ([SMEARED, BLOCKED], "body"),
+        ([BLOCKED], "body"),
+        ([SMEARED, *WEIGHT], "body"),
+        ([SMEARED, "mesh.element=tetrahedron"], "body"),
+    ],
+    ids=str,
+)
+def test_auto_takes_the_cheapest_that_holds_everything(settings: list[str], model: str) -> None:
+    automatic = case("model=auto", *settings)
+    assert choose_model(automatic)[0] == model
+    assert all(objection(automatic, other) for other in MODELS[: MODELS.index(model)])
+    # what was chosen can be asked for by name, and is then the same case
+    said = case(f"model={model}", *settings)
+    assert said.model_copy(update={"model": "auto"}) == automatic
+    assert parse_case(automatic.resolved()) == automatic
+
+
+@pytest.mark.parametrize(
+    ("model", "kind"),
+    [
+        ("analytic", "smeared"),
+        ("section", "smeared"),
+        ("cell", "discrete"),
+        ("body", "discrete"),
+        ("auto", "discrete"),
+    ],
+)
+def test_one_case_file_for_all_models(model: str, kind: str) -> None:
+    """Where the file leaves `as` out, each model has the winding as finely as it can."""
+    resolved = case(f"model={model}")
+    assert winding(resolved).representation == kind
+    assert parse_case(resolved.resolved()) == resolved
+    assert winding(case(f"model={model}", SMEARED)).representation == "smeared"
+
+
+def test_a_ribbon_means_a_discrete_winding() -> None:
+    assert winding(case("model=auto", "effects.1.winding.lines=3")).lines == 3
+    assert choose_model(case("model=auto", "effects.1.winding.width=0 mm"))[0] == "cell"
+
+
+def test_what_a_closed_form_leaves_out_is_said_but_not_refused() -> None:
+    paths = [path for path, _ in omissions(case("model=analytic", BLOCKED, BULK), "analytic")]
+    assert paths == ["effects.1.winding", "effects.2.blocked-tip", "materials.wall.bulk"]
+    assert list(omissions(case("model=auto", HOOPS), "analytic")) == []
+
+
+def test_half_or_full() -> None:
+    assert choose_half(case()) == (
+        True,
+        "section, winding and loads are mirror-symmetric about x = 0",
+    )
+    assert choose_half(case(SINGLE)) == (False, "a single helix is not its own mirror image")
+    assert choose_half(case("model=cell", SINGLE))[0] is False
+    # half a turn about y maps a section onto itself, whatever its winding
+    assert choose_half(case("model=section", SMEARED, SINGLE))[0] is True
+    assert choose_half(case("mesh.symmetry=full")) == (False, "as the case says")
+    assert choose_half(case(*WEIGHT, "effects.2.gravity.direction=+x"))[0] is False
