@@ -343,6 +343,15 @@ def assemble_scalar(form: Any) -> float:
     return float(dfem.assemble_scalar(form))
 
 
+def may_free(item: PETSc.Object) -> bool:
+    """Whether a PETSc object that Python drops can be destroyed at once; bridges petsc4py 3.18.
+
+    It keeps what Python drops, for several ranks drop at different times; a process that runs case
+    after case would fill up with matrices and factors.
+    """
+    return not PETSc.Sys.isFinalized() and item.getComm().getSize() == 1
+
+
 def versions() -> dict[str, str]:
     """Versions of what computes."""
     major, minor, micro = PETSc.Sys.getVersion()

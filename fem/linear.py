@@ -6,6 +6,8 @@ import time
 
 from petsc4py import PETSc
 
+from fem import compat
+
 ORDERING_PORD = 4
 SMALL = 10_000
 """Unknowns below which MUMPS takes an ordering of its own, and may."""
@@ -80,6 +82,10 @@ class Factor:
         start = time.perf_counter()
         self._ksp.solve(b, x)
         self.seconds["solve"] += time.perf_counter() - start
+
+    def __del__(self) -> None:
+        if self._ksp is not None and compat.may_free(self._ksp):
+            self.destroy()
 
     def destroy(self) -> None:
         """Free the factor."""

@@ -266,7 +266,7 @@ class March:
             state = self.states[-1]
             now = state.measures[drive]
             left = abs(ramp.target - now)
-            if left <= 1e-12 * abs(span):
+            if left <= 1e-9 * abs(span):
                 return True
             stops = [s for s in (*halts, ramp.target) if sign * (s - now) > 1e-9 * abs(span)]
             nearest = min(stops, key=lambda s: abs(s - now))

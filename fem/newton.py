@@ -360,7 +360,8 @@ class _Solve:
             self.reason = f"the linear solve failed ({error})"
             converged = False
         finally:
-            for item in (snes, shell, x, f):
+            # left to Python, PETSc keeps them, and pc holds this and with it the whole problem
+            for item in (pc, ksp, snes, shell, x, f):
                 item.destroy()
         return Outcome(
             converged,

@@ -85,6 +85,10 @@ class Scene:
         self._compile(potentials)
         self._constrain(constraints)
 
+    def __del__(self) -> None:
+        if hasattr(self, "matrix") and compat.may_free(self.matrix):
+            self.matrix.destroy()
+
     # --- compilation ---------------------------------------------------------------------------
 
     def _compile(self, potentials: dict[str, Any]) -> None:

@@ -92,6 +92,8 @@ def _box(
 def _map(
     axis: Any, axes: Sequence[Column], rows: Sequence[Row], name: str, limits: tuple[float, float]
 ) -> None:
+    from matplotlib.ticker import MaxNLocator
+
     x, y = (np.unique(np.array(column.values, dtype=float)) for column in axes)
     values = np.full((len(y), len(x)), np.nan)
     labelled = max(len(x), len(y)) <= _MOST_LABELS
@@ -127,7 +129,8 @@ def _map(
     )
     if not labelled and np.isfinite(values).all():
         middle = (np.arange(len(x)) + 0.5, np.arange(len(y)) + 0.5)
-        curves = axis.contour(*middle, values, levels=7, colors="black", linewidths=0.8)
+        levels = MaxNLocator(8).tick_values(*limits)
+        curves = axis.contour(*middle, values, levels=levels, colors="black", linewidths=0.8)
         axis.clabel(curves, fontsize=10)
     for marks, ticks in ((x, axis.set_xticks), (y, axis.set_yticks)):
         every = 1 + (len(marks) - 1) // _MOST_LABELS
