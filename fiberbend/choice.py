@@ -21,9 +21,9 @@ MODELS = ("analytic", "section", "cell", "body")
 """From the cheapest to the dearest."""
 UNIFORM = ("section", "cell")
 """Models of uniform bending between the caps."""
-TURN = {"section": math.radians(10), "cell": math.radians(45), "body": math.radians(90)}
+TURN = {"section": math.radians(10), "cell": math.radians(45), "body": math.radians(60)}
 """Greatest change of the angle in a step: fine curves where steps are cheap."""
-FIRST_TURN = {"section": math.radians(10), "cell": math.radians(10), "body": math.radians(30)}
+FIRST_TURN = {"section": math.radians(10), "cell": math.radians(10), "body": math.radians(20)}
 """The same for the first step."""
 
 Objection = tuple[str, str]

@@ -26,7 +26,7 @@ from fiberbend.result import RunResult
 from fiberbend.runfolder import RunFolder
 from fiberbend.snapshot import Scenery, Snapshot
 from fiberbend.summary import blocked_tip, versions
-from fiberbend.warm import guides, section_states
+from fiberbend.warm import guides, section_states, steered
 from geometry.mesh import MeshData
 
 if TYPE_CHECKING:
@@ -127,6 +127,7 @@ class _Run:
             if states is not None:
                 length = case.actuator.length
                 self.march.guide = states.guide(self.scene, reading.frames, length)
+                self.march.rules = steered(self.march.rules, case)
         self.progress.phase("solve")
         report = self.march.run(self.ramps)
         status, reason = self._status(report)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +12,7 @@ from mpi4py import MPI
 from fem.frames import Frames
 from fem.guide import Guide
 from fem.newton import Outcome
-from fem.program import State, measure
+from fem.program import Rules, State, measure
 from fem.scene import Scene
 from fem.uniform import CURVATURE, STRETCH
 from fiberbend.assembly import assemble
@@ -23,6 +24,10 @@ from fiberbend.models import make_mesh
 Floats = npt.NDArray[np.float64]
 
 PRESSURE = "pressure"
+STEERED_TURN = math.radians(90)
+"""Greatest change of the angle in a step that leans on the section, unless the case says."""
+STEERED_FIRST = math.radians(15)
+STEERED_GROWTH = 3.0
 BEYOND = 1.15
 """The section goes so much further than the angle that ends a run: a body differs a little."""
 
@@ -61,6 +66,17 @@ class SectionStates:
             self.stretch,
             self.displacement,
         )
+
+
+def steered(rules: Rules, case: Case) -> Rules:
+    """Rules of a march with a guide: a short first step, from which the ends are learnt."""
+    turn = case.solver.max_turn
+    return dataclasses.replace(
+        rules,
+        turn=turn or STEERED_TURN,
+        first_turn=turn or STEERED_FIRST,
+        grow=STEERED_GROWTH,
+    )
 
 
 def guides(case: Case) -> bool:
