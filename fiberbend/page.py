@@ -26,7 +26,8 @@ COLORS = {
 }
 """Colour of each region and of the fibers."""
 
-_NAMES = {"layer": "strain-limiting layer", "fiber": "fibers"}
+NAMES = {"layer": "strain-limiting layer", "fiber": "fibers"}
+"""Names in a legend that are not those of the regions."""
 _DPI = 100
 
 
@@ -71,9 +72,9 @@ class Page:
     def of_panels(
         cls, width: int, title: str, images: Sequence[Image], captions: Sequence[str]
     ) -> Page:
-        """Images of one view in up to three columns, cropped alike, each with its caption."""
+        """Images of one view in up to four columns, cropped alike, each with its caption."""
         filled = np.any([_filled(image) for image in images], axis=0)
-        columns = min(3, len(images))
+        columns = columns_of(len(images))
         rows = math.ceil(len(images) / columns)
         cropped = [_crop(image, filled) for image in images]
         across = width / columns
@@ -96,15 +97,22 @@ class Page:
         axes.imshow(_crop(image, _filled(image)) if crop else image)
         axes.set_axis_off()
 
-    def color_bar(self, limits: tuple[float, float], label: str) -> None:
-        """A colour bar below the images."""
+    def color_bar(self, limits: tuple[float, float], label: str, colors: Any = None) -> None:
+        """A colour bar below the images.
+
+        Args:
+            limits: values at its ends.
+            label: what it shows.
+            colors: another matplotlib colour map than `colormap`, or its name.
+        """
         from matplotlib.cm import ScalarMappable
         from matplotlib.colors import Normalize
 
         height = self._size[1]
         axes = self._figure.add_axes((0.27, 62 / height, 0.46, 16 / height))
-        colors = ScalarMappable(Normalize(*limits), colormap())
-        bar = self._figure.colorbar(colors, cax=axes, orientation="horizontal", extend="max")
+        shown = ScalarMappable(Normalize(*limits), colors or colormap())
+        extend = "both" if limits[0] < 0 else "max"
+        bar = self._figure.colorbar(shown, cax=axes, orientation="horizontal", extend=extend)
         bar.ax.tick_params(labelsize=12)
         bar.set_label(label, fontsize=13)
 
@@ -114,7 +122,7 @@ class Page:
 
         patches = [
             Patch(
-                facecolor=COLORS.get(name, "#999999"), edgecolor="0.4", label=_NAMES.get(name, name)
+                facecolor=COLORS.get(name, "#999999"), edgecolor="0.4", label=NAMES.get(name, name)
             )
             for name in names
         ]
@@ -152,6 +160,11 @@ class Page:
     def save(self, target: Target) -> None:
         """Write the page as PNG to a path or to a file open for writing bytes."""
         save(self._figure, target)
+
+
+def columns_of(panels: int) -> int:
+    """Columns of so many panels: up to four, with as little left empty as looks well."""
+    return 4 if panels == 4 else min(3, panels)
 
 
 def nice_above(value: float) -> float:

@@ -6,10 +6,14 @@ import dataclasses
 
 import numpy as np
 
+from fiberbend.bend import Bend, in_frame
 from fiberbend.snapshot import Scenery, Snapshot
 from geometry.mesh import Floats, Ints, MeshData, reference_nodes
-from geometry.reference import shape_functions
+from geometry.reference import gauss, shape_functions
 from materials.laws import Material, energy_slopes
+
+_LEAST_STRETCH = 1e-3
+"""What extrapolation may leave in a cell that is crushed."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -80,27 +84,65 @@ class NodalFields:
         return np.sqrt(1.5) * np.linalg.norm(_deviator(self.cauchy), axis=(1, 2))
 
 
-def deformation_gradients(mesh: MeshData, displacement: Floats) -> Floats:
-    """F at the nodes of every cell.
+def sampling(cell_type: str) -> tuple[Floats, Floats]:
+    """Where strains are evaluated, and how they are carried on to the nodes of a cell.
 
-    Args:
-        mesh: hexahedra or tetrahedra, m cells with k nodes.
-        displacement: by node number, (n, 3), mm.
+    At the points of the reduced Gauss rule the strains of an order-2 cell are one order better
+    than elsewhere, and not yet distorted where a corner or a fiber pulls at a node.
 
     Returns:
-        Array (m, k, 3, 3).
+        Reference coordinates (q, d), and the matrix (k, q) of (multi-)linear extrapolation.
     """
-    gradients = shape_functions(mesh.cell_type, reference_nodes(mesh.cell_type))[1]
-    operator = gradients.transpose(1, 0, 2).reshape(len(gradients), -1)
+    nodes = reference_nodes(cell_type)
+    d = nodes.shape[1]
+    if cell_type == "tetrahedron":
+        near, far = 0.25 - 0.05 * 5**0.5, 0.25 + 0.15 * 5**0.5
+        points = np.full((4, 3), near)
+        points[1:] += (far - near) * np.eye(3)
+        powers = np.concatenate([np.zeros((1, 3)), np.eye(3)])
+    else:
+        line = gauss(2)[0]
+        points = np.stack(np.meshgrid(*[line] * d, indexing="ij"), axis=-1).reshape(-1, d)
+        powers = np.stack(np.meshgrid(*[[0.0, 1.0]] * d, indexing="ij"), axis=-1).reshape(-1, d)
 
-    def slopes(values: Floats) -> Floats:
-        """Reference gradients of a field given at the nodes of every cell, (m, k, 3, 3)."""
-        flat = values.swapaxes(1, 2) @ operator
-        return flat.reshape(len(values), 3, len(gradients), 3).swapaxes(1, 2)
+    def basis(x: Floats) -> Floats:
+        values: Floats = np.prod(x[:, None, :] ** powers, axis=2)
+        return values
+
+    return points, basis(nodes) @ np.linalg.inv(basis(points))
+
+
+def deformation_gradients(mesh: MeshData, state: Snapshot, points: Floats) -> Floats:
+    """F at the same points of every cell.
+
+    In uniform bending F = ∇x' + (λ0 e_z + ω × x') ⊗ e_z, its rows in the turning frame; a body in
+    space is the case λ0 = 1, ω = 0 of it.
+
+    Args:
+        mesh: hexahedra, tetrahedra or quadrilaterals, m cells with k nodes.
+        state: displacement, and curvature, stretch and twist.
+        points: reference coordinates, (q, d).
+
+    Returns:
+        Array (m, q, 3, 3).
+    """
+    values, gradients = shape_functions(mesh.cell_type, points)
+    operator = gradients.transpose(1, 0, 2).reshape(gradients.shape[1], -1)
+
+    def slopes(field: Floats) -> Floats:
+        """Reference gradients of a field given at the nodes of every cell, (m, q, c, d)."""
+        flat = field.swapaxes(1, 2) @ operator
+        return flat.reshape(*flat.shape[:2], *gradients.shape[::2]).swapaxes(1, 2)
 
     to_reference = _inverse(slopes(mesh.nodes[mesh.cells]))
-    result: Floats = np.eye(3) + slopes(displacement[mesh.cells]) @ to_reference
-    return result
+    slope = slopes(state.displacement[mesh.cells]) @ to_reference
+    f = np.tile(np.eye(3), (len(mesh.cells), len(points), 1, 1))
+    f[..., : slope.shape[2], : slope.shape[3]] += slope
+    bend = Bend.of(state)
+    if not bend.is_rest:
+        position = values @ in_frame(mesh.nodes, state.displacement)[mesh.cells]
+        f[..., 2] += bend.advance(position) - [0.0, 0.0, 1.0]
+    return f
 
 
 def cauchy_stress(material: Material, f: Floats, multiplier: Floats) -> Floats:
@@ -129,8 +171,8 @@ def cauchy_stress(material: Material, f: Floats, multiplier: Floats) -> Floats:
 def recover(scenery: Scenery, snapshot: Snapshot, nodes: SplitNodes | None = None) -> NodalFields:
     """Strains and stresses of a state.
 
-    Det F, stretches, stress and p are evaluated at the nodes of every cell and averaged; what
-    `NodalFields` derives from them belongs to the averages.
+    FᵀF, det F and stress are evaluated at the points of `sampling` and carried on to the nodes
+    of every cell, where they are averaged; what `NodalFields` derives belongs to the averages.
 
     Args:
         scenery: mesh and materials.
@@ -144,27 +186,39 @@ def recover(scenery: Scenery, snapshot: Snapshot, nodes: SplitNodes | None = Non
         ValueError: arrays that do not fit the mesh.
     """
     mesh = scenery.mesh
-    if snapshot.displacement.shape != mesh.nodes.shape:
+    # a section has two components, and three where it warps
+    shapes = {mesh.nodes.shape, (len(mesh.nodes), 3)}
+    if snapshot.displacement.shape not in shapes:
         raise ValueError(f"displacement {snapshot.displacement.shape}: expected {mesh.nodes.shape}")
     if snapshot.multiplier.shape != mesh.cells.shape:
         raise ValueError(f"multiplier {snapshot.multiplier.shape}: expected {mesh.cells.shape}")
     nodes = nodes or split_nodes(mesh)
-    f = deformation_gradients(mesh, snapshot.displacement)
+    points, onward = sampling(mesh.cell_type)
+    f = deformation_gradients(mesh, snapshot, points)
+    multiplier = snapshot.multiplier @ shape_functions(mesh.cell_type, points)[0].T
     stress = np.empty_like(f)
     for name, number in mesh.regions.items():
         here = mesh.cell_region == number
-        stress[here] = cauchy_stress(scenery.materials[name], f[here], snapshot.multiplier[here])
-    squares = np.linalg.eigvalsh(f.swapaxes(-1, -2) @ f)[..., ::-1]
+        stress[here] = cauchy_stress(scenery.materials[name], f[here], multiplier[here])
+
+    def at_nodes(values: Floats) -> Floats:
+        flat = onward @ values.reshape(*values.shape[:2], -1)
+        return flat.reshape(*flat.shape[:2], *values.shape[2:])
+
+    # FᵀF is smooth and does not turn with the body; its principal values change places
+    squares = np.linalg.eigvalsh(at_nodes(f.swapaxes(-1, -2) @ f))[..., ::-1]
     return NodalFields(
-        jacobian=nodes.average(np.linalg.det(f)),
-        stretches=nodes.average(np.sqrt(np.maximum(squares, 0.0))),
-        cauchy=nodes.average(stress),
+        jacobian=nodes.average(at_nodes(np.linalg.det(f))),
+        stretches=nodes.average(np.sqrt(np.maximum(squares, _LEAST_STRETCH**2))),
+        cauchy=nodes.average(at_nodes(stress)),
         multiplier=nodes.average(snapshot.multiplier),
     )
 
 
 def _inverse(matrices: Floats) -> Floats:
-    """Inverses of many 3×3 matrices by cofactors, several times faster than LAPACK's."""
+    """Inverses of many small matrices; 3×3 by cofactors, several times faster than LAPACK's."""
+    if matrices.shape[-1] != 3:
+        return np.linalg.inv(matrices)
     a, b, c = (matrices[..., i, :] for i in range(3))
     cofactors = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=-1)
     determinant = (a * cofactors[..., 0]).sum(axis=-1)

@@ -9,7 +9,7 @@ import numpy as np
 
 from fiberbend.case import Case
 from fiberbend.crosscheck import Check
-from fiberbend.recovery import NodalFields, recover
+from fiberbend.recovery import recover
 from fiberbend.runfolder import RunFolder
 from fiberbend.snapshot import Scenery, Snapshot
 
@@ -43,17 +43,21 @@ def draw(
     def into(sub: str) -> Callable[[str, Callable[[IO[bytes]], object]], None]:
         return lambda name, fill: folder.write(f"{sub}/{name}", fill)
 
-    fields: list[NodalFields] = []
-    if snapshots and (output.fields or output.pictures):
-        fields = [recover(scenery, snapshot) for snapshot in snapshots]
-    if output.fields and snapshots:
+    if output.pictures:
+        draw_curves(folder, case, rows, reason, check, model)
+    if not (snapshots and (output.fields or output.pictures)):
+        return
+    if scenery.uniform:
+        from fiberbend.uniform_report import draw_states
+
+        draw_states(folder, case, scenery, snapshots, say)
+        return
+    fields = [recover(scenery, snapshot) for snapshot in snapshots]
+    if output.fields:
         from fiberbend.vtu import write_fields
 
         write_fields(scenery, snapshots, into("fields"), fields)
-    if not output.pictures:
-        return
-    draw_curves(folder, case, rows, reason, check, model)
-    if snapshots:
+    if output.pictures:
         from fiberbend.pictures import draw_pictures
         from fiberbend.stage import PictureError
 

@@ -23,14 +23,16 @@ class Scenery:
     """What all states of a run share.
 
     Attributes:
-        mesh: hexahedra or tetrahedra of the body.
+        mesh: hexahedra or tetrahedra of the body; of a section quadrilaterals, of a cell a slice.
         materials: material of each region.
         fibers: segments of the winding, or None without one.
         smeared: True when the segments stand for a membrane and form no lines.
         title: title of the case.
+        uniform: the mesh is a section or a slice that goes on alike along the axis; its states are
+            given in the turning frame.
 
     Raises:
-        ValueError: a region without material, or a mesh that is not a solid.
+        ValueError: a region without material, or a section that is taken for a solid.
     """
 
     mesh: MeshData
@@ -38,10 +40,11 @@ class Scenery:
     fibers: EmbeddedFibers | None
     smeared: bool
     title: str
+    uniform: bool = False
 
     def __post_init__(self) -> None:
-        if self.mesh.nodes.shape[1] != 3:
-            raise ValueError("the mesh of a section has no fields in space: expected a solid")
+        if self.mesh.nodes.shape[1] != 3 and not self.uniform:
+            raise ValueError("the mesh of a section is no body in space: expected a solid")
         bare = sorted(set(self.mesh.regions) - set(self.materials))
         if bare:
             raise ValueError(f"region {bare[0]!r} has no material")

@@ -1,0 +1,418 @@
+"""Section and cell in space: the mapping, the recovered stress, the stacks and the pictures."""
+
+from __future__ import annotations
+
+import dataclasses
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from analytic.path import tip
+from fiberbend.bend import Bend
+from fiberbend.cell_pictures import Slices, plot_tension, tension_along
+from fiberbend.crosscut import Crosscut
+from fiberbend.reader import parse_case
+from fiberbend.recovery import cauchy_stress, recover
+from fiberbend.runfolder import RunFolder
+from fiberbend.section_pictures import Sections
+from fiberbend.snapshot import Scenery, Snapshot
+from fiberbend.stack import repeated, split_alike, swept
+from fiberbend.uniform_report import draw_states
+from geometry.checks import region_volumes
+from geometry.embed import embed, smear
+from geometry.mesh import Floats, MeshData
+from geometry.size import MeshSize
+from geometry.sweep import swept_section, swept_slice
+from geometry.winding import Winding
+from materials.laws import Material, uniaxial_stress
+from tests.output.bending import MATERIALS, SHORT
+from tests.output.test_pictures import is_drawn
+
+PITCH = 3.0
+DOUBLE = Winding("double-helix", PITCH, 0.38)
+
+
+def section(half: bool = True) -> Scenery:
+    mesh = swept_section(SHORT, MeshSize(axial=PITCH, half=half))
+    fibers = smear(mesh, SHORT, DOUBLE)
+    return Scenery(mesh, MATERIALS, fibers, smeared=True, title="Section", uniform=True)
+
+
+def cell(half: bool = True, fineness: int = 1) -> Scenery:
+    extent = PITCH / 2 if half else PITCH
+    mesh = swept_slice(SHORT, MeshSize(axial=PITCH, section=fineness, half=half), extent, 2)
+    fibers = embed(mesh, SHORT, DOUBLE)
+    return Scenery(mesh, MATERIALS, fibers, smeared=False, title="Cell", uniform=True)
+
+
+BOTH = pytest.mark.parametrize("make", [section, cell], ids=["section", "cell"])
+
+
+def state(
+    scene: Scenery,
+    degrees: float = 90.0,
+    stretch: float = 1.0,
+    move: Callable[[Floats], Floats] | None = None,
+    twist: float = 0.0,
+) -> Snapshot:
+    """A state of given kinematics, with a made-up fiber force of 2 N and more."""
+    mesh, fibers = scene.mesh, scene.fibers
+    assert fibers is not None
+    displacement = np.zeros_like(mesh.nodes) if move is None else move(mesh.nodes)
+    return Snapshot(
+        label=f"{degrees:.0f}deg",
+        step=1,
+        pressure_kpa=degrees / 2,
+        angle_deg=degrees,
+        displacement=displacement,
+        multiplier=np.zeros(mesh.cells.shape),
+        fiber_force=fibers.share * (2 + np.cos(fibers.s / 5)),
+        curvature=np.radians(degrees) / SHORT.length,
+        stretch=stretch,
+        twist=twist,
+    )
+
+
+# --- the mapping -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("degrees", [0.0, 1e-6, 90.0, 360.0, 500.0])
+def test_the_axis_is_the_arc_of_the_analytic_model(degrees: float) -> None:
+    stretch, height = 0.96, 4.5
+    bend = Bend(np.radians(degrees) / 160.0, stretch)
+    z = np.linspace(0.0, 160.0, 2001)
+    axis = bend.place(np.zeros((len(z), 3)), z)
+    length = np.linalg.norm(np.diff(axis, axis=0), axis=1).sum()
+    # a chord of an arc of 0.25° is shorter by 1e-6 of itself
+    assert length == pytest.approx(stretch * 160.0, rel=2e-6)
+    above = bend.place(np.array([[0.0, height, 0.0]]), z[-1:])[0]
+    for point, lift in ((axis[-1], 0.0), (above, height)):
+        expected = tip(np.radians(degrees), stretch * 160.0, height=lift)
+        assert [point[2], -point[1]] == pytest.approx(expected, abs=1e-9)
+    assert axis[:, 0] == pytest.approx(0.0)
+
+
+def test_the_frame_moves_as_the_kinematics_says() -> None:
+    # dx/dZ = R (λ0 e_z + ω × x'), by central differences, with a twist
+    bend, position, step = Bend(0.03, 1.1, -0.02), np.array([[3.0, -2.0, 0.5]]), 1e-4
+    z = np.array([17.0])
+    slope = (bend.place(position, z + step) - bend.place(position, z - step)) / (2 * step)
+    rotation = bend.frames(z)[0][0]
+    assert slope[0] == pytest.approx(rotation @ bend.advance(position)[0], abs=1e-8)
+    assert rotation @ rotation.T == pytest.approx(np.eye(3))
+
+
+# --- strain and stress -----------------------------------------------------------------------
+
+
+@BOTH
+def test_straight_stretch_is_uniaxial(make: Callable[[], Scenery]) -> None:
+    """No curvature, λ0 given, the section shrunk as incompressibility wants it."""
+    stretch, scene = 1.4, make()
+    rubber = Material("yeoh", {"c1": 0.11, "c2": 0.02})
+    scene = dataclasses.replace(scene, materials=dict.fromkeys(MATERIALS, rubber))
+
+    def shrink(nodes: Floats) -> Floats:
+        moved = nodes * (stretch**-0.5 - 1)
+        moved[:, 2:] = 0.0
+        return moved
+
+    free = cauchy_stress(rubber, np.diag([stretch**-0.5] * 2 + [stretch]), np.array(0.0))
+    straight = state(scene, 0.0, stretch, shrink)
+    straight = dataclasses.replace(straight, multiplier=straight.multiplier - free[0, 0])
+    fields = recover(scene, straight)
+    expected = stretch * uniaxial_stress(rubber, np.array([stretch]))[0]
+    assert fields.jacobian == pytest.approx(1.0)
+    assert fields.log_strain == pytest.approx(np.log(stretch))
+    assert fields.cauchy[:, 2, 2] == pytest.approx(expected)
+    assert fields.cauchy[:, :2, :2] == pytest.approx(0.0, abs=1e-12)
+    assert fields.von_mises == pytest.approx(expected)
+
+
+@BOTH
+def test_bending_stretches_by_the_height(make: Callable[[], Scenery]) -> None:
+    scene = make()
+    bent = state(scene, 120.0, 0.95)
+    nodes = split_alike(scene.mesh)
+    stretch = 0.95 + bent.curvature * scene.mesh.nodes[nodes.node, 1]
+    # nothing else moves: det F is the axial stretch, λ0 + k y; y is not linear in curved elements
+    assert recover(scene, bent, nodes).jacobian == pytest.approx(stretch, rel=8e-3)
+
+
+def test_twist_shears_by_the_distance() -> None:
+    # a straight section that turns by τ: F = 1 + τ (−y, x) ⊗ e_z, σ23 = 2 ψ1 τ x, σ13 = −2 ψ1 τ y
+    mu, twist, scene = 0.5, 0.01, section()
+    scene = dataclasses.replace(
+        scene, materials=dict.fromkeys(MATERIALS, Material("neo-hooke", {"mu": mu}))
+    )
+    nodes = split_alike(scene.mesh)
+    fields = recover(scene, state(scene, 0.0, twist=twist), nodes)
+    x, y = scene.mesh.nodes[nodes.node].T
+    # up to 0.05; x and y are not linear in curved elements
+    assert fields.cauchy[:, 1, 2] == pytest.approx(mu * twist * x, abs=1e-3)
+    assert fields.cauchy[:, 0, 2] == pytest.approx(-mu * twist * y, abs=1e-3)
+
+
+def test_wrong_shapes_are_refused() -> None:
+    scene = section()
+    bent = state(scene)
+    with pytest.raises(ValueError, match="displacement"):
+        recover(scene, dataclasses.replace(bent, displacement=bent.displacement[1:]))
+    with pytest.raises(ValueError, match="multiplier"):
+        recover(scene, dataclasses.replace(bent, multiplier=bent.multiplier[:, :4]))
+    with pytest.raises(ValueError, match="expected a solid"):
+        dataclasses.replace(scene, uniform=False)
+    for draw in (Sections, Slices):
+        with pytest.raises(ValueError, match="no state"):
+            draw(cell(), [])
+
+
+# --- stacks ----------------------------------------------------------------------------------
+
+
+def wave(nodes: Floats) -> Floats:
+    """What differs between mirror planes: largest between them, with slices that are no planes."""
+    turn = np.pi * nodes[:, 2] / (PITCH / 2)
+    return np.column_stack(
+        [0.01 * nodes[:, 0], 0.1 - 0.1 * np.cos(turn), 0.05 * nodes[:, 1] * np.sin(turn)]
+    )
+
+
+@pytest.mark.parametrize("half", [True, False])
+def test_repeated_slices_are_the_long_body(half: bool) -> None:
+    scene = cell(half)
+    stack = repeated(scene, 3)
+    fibers, long = stack.scenery.fibers, embed(stack.scenery.mesh, SHORT, DOUBLE)
+    assert fibers is not None
+    for field in dataclasses.fields(long):
+        ours, theirs = getattr(fibers, field.name), getattr(long, field.name)
+        assert ours == pytest.approx(theirs, abs=1e-9), field.name
+    moved = stack.snapshot(scene, state(scene, move=wave))
+    # one body in one piece: the same point of every pitch lies on the arc
+    pitch = 2 * PITCH / 2 if half else PITCH
+    mesh, bend = stack.scenery.mesh, Bend.of(state(scene))
+    placed = mesh.nodes + moved.displacement
+    own = mesh.nodes.copy()
+    own[:, 2] = 0.0
+    expected = bend.place(own + wave(mesh.nodes), mesh.nodes[:, 2])
+    assert placed == pytest.approx(expected, abs=1e-9)
+    assert mesh.nodes[-1, 2] == pytest.approx(1.5 * pitch if half else 3 * pitch)
+
+
+def test_mirrored_slices_recover_alike() -> None:
+    scene = cell()
+    bent = state(scene, 60.0, 0.98, wave)
+    nodes = split_alike(scene.mesh)
+    stack = repeated(scene, 4)
+    spread = stack.fields(nodes, recover(scene, bent, nodes), bent)
+    direct = recover(stack.scenery, stack.snapshot(scene, bent))
+    inner = _inside(stack.scenery.mesh)
+    # what second-order interpolation of the arc leaves
+    assert spread.stretches[inner] == pytest.approx(direct.stretches[inner], rel=2e-3)
+    off = np.linalg.norm(spread.cauchy[inner] - direct.cauchy[inner])
+    # a mirrored shear with the wrong sign would leave 1 here
+    assert off < 0.03 * np.linalg.norm(direct.cauchy[inner])
+
+
+def _inside(mesh: MeshData) -> np.ndarray:
+    z = mesh.nodes[split_alike(mesh).node, 2]
+    return (z > PITCH / 2) & (z < z.max() - PITCH / 2)
+
+
+def test_swept_section_recovers_alike() -> None:
+    scene = section()
+    bent = state(scene, 90.0, 0.98)
+    nodes = split_alike(scene.mesh)
+    stack = swept(scene, SHORT.length, 24)
+    spread = stack.fields(nodes, recover(scene, bent, nodes), bent)
+    direct = recover(stack.scenery, stack.snapshot(scene, bent))
+    assert spread.stretches == pytest.approx(direct.stretches, rel=2e-3)
+    assert spread.cauchy == pytest.approx(direct.cauchy, abs=5e-3 * np.abs(direct.cauchy).max())
+
+
+def warp(nodes: Floats) -> Floats:
+    """A section that warps as the twofold axis allows: w odd in x."""
+    return np.column_stack([0.0 * nodes[:, 0], 0.0 * nodes[:, 0], 0.05 * nodes[:, 0]])
+
+
+def test_turned_half_completes_a_twisted_section() -> None:
+    scene = section()
+    twisted = state(scene, 90.0, move=warp, twist=-0.01)
+    stack = swept(scene, SHORT.length, 8, turned=True)
+    mesh = stack.scenery.mesh
+    assert not mesh.half
+    half = swept(scene, SHORT.length, 8).scenery.mesh
+    volumes = region_volumes(half)
+    assert region_volumes(mesh) == pytest.approx({name: 2 * v for name, v in volumes.items()})
+    placed = mesh.nodes + stack.snapshot(scene, twisted).displacement
+    own = np.column_stack([mesh.nodes[:, :2], 0.05 * mesh.nodes[:, 0]])
+    expected = Bend.of(twisted).place(own, mesh.nodes[:, 2])
+    assert placed == pytest.approx(expected, abs=1e-9)
+
+
+# --- pictures --------------------------------------------------------------------------------
+
+
+def case_of(model: str) -> Any:
+    return parse_case(
+        {
+            "title": "Short",
+            "actuator": {
+                "section": "hemicircle",
+                "radius": "8 mm",
+                "length": "24 mm",
+                "wall": "2 mm",
+                "floor": "2 mm",
+                "sheath": "1 mm",
+                "cap": "4 mm",
+            },
+            "materials": {
+                "wall": "elastosil-m4601",
+                "floor": "combined-base",
+                "sheath": "ecoflex-0030",
+            },
+            "effects": [
+                {"pressure": {"to": "10 kPa"}},
+                {
+                    "winding": {
+                        "pattern": "double-helix",
+                        "pitch": "3 mm",
+                        "fiber": "kevlar",
+                        "as": "smeared" if model == "section" else "discrete",
+                    }
+                },
+            ],
+            "model": model,
+            "output": {"fields": True, "pictures": True},
+        }
+    )
+
+
+@pytest.mark.parametrize(
+    ("model", "half", "degrees"),
+    [
+        ("section", True, (60.0, 90.0)),
+        ("section", False, (90.0,)),
+        ("cell", True, (60.0, 90.0)),
+        ("cell", False, (90.0,)),
+    ],
+)
+def test_pictures_and_fields(
+    model: str, half: bool, degrees: tuple[float, ...], tmp_path: Path
+) -> None:
+    scene = section(half) if model == "section" else cell(half)
+    move = None if model == "section" else wave
+    states = [state(scene, angle, move=move) for angle in degrees]
+    said: list[str] = []
+    draw_states(RunFolder(tmp_path), case_of(model), scene, states, said.append)
+    assert not said
+    names = {"section_shape", "section_stress", "section_strain", "bent"}
+    if model == "cell":
+        names |= {"cell_bulge", "fiber_stretch"}
+    assert {path.stem for path in (tmp_path / "pictures").iterdir()} == names
+    assert all(is_drawn(path) for path in (tmp_path / "pictures").iterdir())
+    fields = {path.name for path in (tmp_path / "fields").iterdir()}
+    lines = [f"{s.label}_fibers.vtp" for s in states] if model == "cell" else []
+    assert fields == {*(f"{s.label}.vtu" for s in states), *lines, "states.pvd"}
+
+
+def test_fields_in_space_end_on_the_arc(tmp_path: Path) -> None:
+    import pyvista as pv
+
+    scene = section()
+    draw_states(RunFolder(tmp_path), case_of("section"), scene, [state(scene)], print)
+    grid = pv.read(tmp_path / "fields" / "90deg.vtu")
+    placed = grid.points + grid.point_data["displacement_mm"]
+    pin = np.flatnonzero(np.linalg.norm(grid.points - [0.0, 0.0, SHORT.length], axis=1) < 1e-6)
+    z, down = tip(np.pi / 2, SHORT.length)
+    assert placed[pin] == pytest.approx(np.tile([0.0, -down, z], (len(pin), 1)), abs=1e-4)
+
+
+def test_twisted_section_is_drawn_whole(tmp_path: Path) -> None:
+    scene = section()
+    states = [state(scene, 60.0, move=warp, twist=-0.01)]
+    draw_states(RunFolder(tmp_path), case_of("section"), scene, states, print)
+    assert is_drawn(tmp_path / "pictures" / "bent.png")
+
+
+def test_floor_bulge_is_read_between_middle_and_edge() -> None:
+    scene = section()
+
+    def sag(nodes: Floats) -> Floats:
+        return np.column_stack([0 * nodes[:, 0], 0.7 * (nodes[:, 0] / 10) ** 2])
+
+    # the edge of the winding lies at x = a + t = 10
+    assert Crosscut(scene).bulge(state(scene, move=sag)) == pytest.approx(0.7)
+    round_one = dataclasses.replace(SHORT, section="circle", floor=None, sheath=None)
+    mesh = swept_section(round_one, MeshSize(axial=PITCH))
+    tube = Scenery(mesh, MATERIALS, None, smeared=False, title="", uniform=True)
+    still = dataclasses.replace(
+        state(scene),
+        displacement=np.zeros_like(mesh.nodes),
+        multiplier=np.zeros(mesh.cells.shape),
+    )
+    assert Crosscut(tube).bulge(still) is None
+    assert Crosscut(tube).size(still) == pytest.approx((20.0, 20.0))
+
+
+def test_crosscut_covers_the_section() -> None:
+    for scene in (section(), cell(), section(half=False)):
+        cut = Crosscut(scene)
+        a, b, c = cut.points(None)[cut.triangles].transpose(1, 0, 2)
+        area = (np.cross(b - a, c - a) / 2).__abs__().sum()
+        # polygons inside round outlines: 9° pieces in 8 parts lose 1e-4
+        assert area == pytest.approx(sum(SHORT.region_areas().values()), rel=5e-4)
+    # the outlines close: every end meets another one
+    lines = cut.outlines(None)
+    ends = np.round(lines[:, [0, -1]].reshape(-1, 2), 6)
+    assert np.unique(ends, axis=0, return_counts=True)[1].min() >= 2
+
+
+def test_crown_bulge_is_that_of_the_state() -> None:
+    scene = cell()
+    z, height = Slices(scene, [state(scene)]).crown(state(scene, move=wave))
+    assert z == pytest.approx(np.linspace(0, PITCH / 2, 5))
+    assert np.ptp(height) == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("half", [True, False])
+def test_tension_is_that_of_the_whole_fiber(half: bool, tmp_path: Path) -> None:
+    scene = cell(half, fineness=3)
+    s, tension = tension_along(scene, state(scene), SHORT)
+    perimeter = SHORT.winding_perimeter
+    assert (s[0], s[-1]) == pytest.approx((0.0, perimeter / 2 if half else perimeter))
+    assert len(tension) == DOUBLE.lines_per_fiber
+    # a running mean over 2 mm of 2 + cos(s / 5), given per segment of up to 1.3 mm
+    assert tension == pytest.approx(np.tile(2 + np.cos(s / 5), (5, 1)), abs=0.15)
+    slack = dataclasses.replace(state(scene), fiber_force=None)
+    with pytest.raises(ValueError, match="no fiber forces"):
+        plot_tension(scene, [slack], tmp_path / "fiber.png", SHORT, 881.0)
+
+
+def test_nothing_is_imported_for_a_run_without_pictures() -> None:
+    # pyvista and matplotlib take longer to import than a section takes to solve
+    code = (
+        "import sys, fiberbend.runner, fiberbend.report, fiberbend.uniform_report\n"
+        "print([name for name in ('pyvista', 'matplotlib', 'vtkmodules') if name in sys.modules])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
+    )
+    assert done.stdout.strip() == "[]"
+
+
+def test_no_pyvista_leaves_the_sections(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setitem(sys.modules, "pyvista", None)
+    scene, said = section(), list[str]()
+    case = case_of("section").model_copy(
+        update={"output": case_of("section").output.model_copy(update={"fields": False})}
+    )
+    draw_states(RunFolder(tmp_path), case, scene, [state(scene)], said.append)
+    assert len(said) == 1
+    assert "pictures need pyvista" in said[0]
+    assert (tmp_path / "pictures" / "section_shape.png").exists()
