@@ -10,7 +10,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo sweep test verify tables check format schema clean
+.PHONY: help setup demo sweep test verify speed tables check format schema clean
 
 help: ## list the commands
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -33,6 +33,9 @@ verify: setup ## run the slow convergence ladders against exact solutions
 
 tables: setup ## make the accuracy tables in docs/ again; a quarter of an hour
 	$(MPIRUN) $(BIN)/python bench/tables.py
+
+speed: setup ## measure what an answer costs in each model; a minute on an idle machine
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/speed.py
 
 check: setup ## lint, format and types
 	$(BIN)/ruff check .

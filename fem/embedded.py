@@ -33,6 +33,13 @@ class _Second:
     corners: dict[tuple[str, str], float]
 
 
+def _contract(vectors: Floats, maps: Floats) -> Floats:
+    """Σ over points and components of vectors (n, q, 3) with maps (n, q, 3, k), (n, k)."""
+    count, width = len(maps), maps.shape[3]
+    result: Floats = (vectors.reshape(count, 1, -1) @ maps.reshape(count, -1, width))[:, 0]
+    return result
+
+
 def _cross(spin: Floats) -> Floats:
     """The matrix of spin ×."""
     x, y, z = spin
@@ -134,18 +141,18 @@ class FiberPotential:
         carry = self._body.carry()
         if carry is not None:
             position = (self._value @ x[:, None, :, None])[..., 0]
-            along, spin = np.array([0.0, 0.0, carry.stretch]), carry.spin
-            t = t + self._rise * (along + np.cross(spin, position))
-            self._map = self._slope + self._rise[..., None] * (_cross(spin) @ self._value)
+            along, spin = np.array([0.0, 0.0, carry.stretch]), _cross(carry.spin)
+            t = t + self._rise * (along + position @ spin.T)
+            self._map = self._slope + self._rise[..., None] * (spin @ self._value)
             for name, (vector, turn) in carry.rates.items():
-                self._rates[name] = self._rise * (vector + np.cross(turn, position))
+                self._rates[name] = self._rise * (vector + position @ _cross(turn).T)
         self._stretch = np.linalg.norm(t, axis=2)
         self._direction = t / self._stretch[:, :, None]
-        self.strain = np.einsum("nq,nq->n", self._share, self._stretch) - 1
+        self.strain = np.sum(self._share * self._stretch, axis=1) - 1
         weighted = self._share[:, :, None] * self._direction
-        self._b = np.einsum("nqi,nqik->nk", weighted, self._map, optimize=True)
+        self._b = _contract(weighted, self._map)
         self._e_q = {
-            name: np.einsum("nqi,nqi->n", weighted, rate) for name, rate in self._rates.items()
+            name: np.sum(weighted * rate, axis=(1, 2)) for name, rate in self._rates.items()
         }
         self._second = None
 
@@ -171,7 +178,10 @@ class FiberPotential:
 
     def add_residual(self, b: Floats) -> None:
         """Add ∂Π/∂w = Σ ℓ N ∂e/∂w to local coefficients."""
-        np.add.at(b, self._dofs, (self.length * self.force)[:, None] * self._b)
+        self._add(b, (self.length * self.force)[:, None] * self._b)
+
+    def _add(self, b: Floats, values: Floats) -> None:
+        b += np.bincount(self._dofs.ravel(), values.ravel(), len(b))
 
     def predict(
         self, correction: Floats | None, scalars: Mapping[str, float] | None = None
@@ -202,7 +212,8 @@ class FiberPotential:
         across *= (pull / self._stretch)[..., None, None]
         stiff = self.length * stiffness
         side = across @ self._map
-        block = np.einsum("nqik,nqil->nkl", self._map, side, optimize=True)
+        count, width = self._dofs.shape
+        block = self._map.reshape(count, -1, width).swapaxes(1, 2) @ side.reshape(count, -1, width)
         block += stiff[:, None, None] * (self._b[:, :, None] * self._b[:, None, :])
         borders: dict[str, Floats] = {}
         corners: dict[tuple[str, str], float] = {}
@@ -210,11 +221,10 @@ class FiberPotential:
         for name, rate in self._rates.items():
             assert carry is not None
             turned = self._rise[..., None] * (_cross(carry.rates[name][1]) @ self._value)
-            border = np.einsum("nqik,nqi->nk", side, rate)
-            border += np.einsum("nq,nqi,nqik->nk", pull, n, turned, optimize=True)
+            border = _contract(rate, side) + _contract(pull[:, :, None] * n, turned)
             borders[name] = border + (stiff * self._e_q[name])[:, None] * self._b
             for other, last in self._rates.items():
-                geometric = np.einsum("nqi,nqij,nqj->", rate, across, last, optimize=True)
+                geometric = np.sum(rate * (across @ last[..., None])[..., 0])
                 material = np.sum(stiff * self._e_q[name] * self._e_q[other])
                 corners[name, other] = float(geometric + material)
         self._second = _Second(block, borders, corners)
@@ -242,7 +252,7 @@ class FiberPotential:
     def add_load(self, name: str, b: Floats) -> None:
         """Add ∂²Π/∂w∂q to local coefficients (owned and ghosts)."""
         if name in self._e_q:
-            np.add.at(b, self._dofs, self._second_derivatives().borders[name])
+            self._add(b, self._second_derivatives().borders[name])
 
     def corner(self, first: str, second: str) -> float:
         """This rank's ∂²Π/∂q∂r of two global scalars."""
