@@ -46,7 +46,9 @@ class Frames:
         self._body = body
         nodes = body.domain.data.nodes
         low, high = nodes.min(axis=0), nodes.max(axis=0)
-        spacing = max(float(max(high[:2] - low[:2])) / 4, (high[2] - low[2]) / 200)
+        # no station between two planes of nodes, which would weigh none
+        gap = float(np.diff(np.unique(nodes[:, 2])).max())
+        spacing = max(float(max(high[:2] - low[:2])) / 4, (high[2] - low[2]) / 200, gap)
         count = max(2, int(np.ceil((high[2] - low[2]) / spacing)) + 1)
         self.z = np.linspace(low[2], high[2], count)
         self._nodes: Floats = nodes[body.owned_nodes]
@@ -133,9 +135,9 @@ class Frames:
         turn = np.zeros((len(self.z), 3))
         step, warp, start = self._steps(goal), goal.warp, goal.centre[0]
         for shape, guide, weight in zip(shapes, guides, weights, strict=False):
-            relative = Rotation.from_matrix(shape.rotation) * Rotation.from_matrix(
-                guide.rotation
-            ).inv()
+            relative = (
+                Rotation.from_matrix(shape.rotation) * Rotation.from_matrix(guide.rotation).inv()
+            )
             turn += weight * relative.as_rotvec()
             step = step + weight * (self._steps(shape) - self._steps(guide))
             warp = warp + weight * (shape.warp - guide.warp)

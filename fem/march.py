@@ -184,7 +184,11 @@ class March:
 
     def _guides(self, abscissa: str, values: Sequence[float]) -> list[Shape] | None:
         """Shapes of the guide at the given values of what is driven; None where it has none."""
-        if self.guide is None or self._astray or not all(self.guide.covers(abscissa, v) for v in values):
+        if (
+            self.guide is None
+            or self._astray
+            or not all(self.guide.covers(abscissa, v) for v in values)
+        ):
             return None
         return [self.guide.shape(abscissa, v) for v in values]
 

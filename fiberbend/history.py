@@ -12,7 +12,6 @@ from fem.newton import Newton, Outcome
 from fem.program import State
 from fem.scene import Scene
 
-
 Floats = npt.NDArray[np.float64]
 
 
