@@ -19,6 +19,7 @@ from fiberbend.case_effects import (
     WindingEffect,
 )
 from fiberbend.choice import mirror_breakers
+from fiberbend.fineness import misfitting
 from fiberbend.measured import what_is_wrong
 from fiberbend.problems import Problem, found
 from fiberbend.units import show
@@ -33,6 +34,7 @@ class Parts:
     mesh: Mesh | None = None
     solver: Solver | None = None
     output: Output | None = None
+    model: str | None = None
     effects: dict[int, Effect] = dataclasses.field(default_factory=dict)
     broken_effects: bool = False
 
@@ -45,6 +47,7 @@ class Parts:
             case.mesh,
             case.solver,
             case.output,
+            case.model,
             dict(enumerate(case.effects)),
         )
 
@@ -210,31 +213,10 @@ def _mesh(parts: Parts) -> Iterator[Problem]:
     if parts.mesh.symmetry == "half":
         for reason in mirror_breakers(parts.effects.values()):
             yield Problem("mesh.symmetry", f'"half", expected auto or full: {reason}')
-    if parts.actuator is not None and not any(_section(parts)):
-        if parts.mesh.axial > parts.actuator.length:
-            yield Problem(
-                "mesh.axial",
-                f"{_length(parts.mesh.axial)}, expected elements not longer than the chamber, "
-                f"{_length(parts.actuator.length)}",
-            )
-        path, tip = parts.find(BlockedTipEffect)
-        yield from _too_thin(parts.actuator, parts.mesh, path, tip)
-
-
-def _too_thin(
-    actuator: Actuator, mesh: Mesh, path: str, tip: BlockedTipEffect | None
-) -> Iterator[Problem]:
-    from geometry.size import check_size, too_thin
-
-    dimensions, fineness = bridge.dimensions(actuator), bridge.mesh_size(mesh, half=True)
-    thin = list(too_thin(dimensions, fineness))
-    for part, text in thin:
-        yield Problem(f"actuator.{part}", text)
-    if tip is not None and not thin:
-        try:
-            check_size(dimensions, fineness, bridge.strips(tip))
-        except ValueError as error:
-            yield Problem(path, str(error))
+    # elsewhere the mesh depends on the model and its defaults, and is checked with these
+    if parts.model == "body" and parts.actuator is not None and not any(_section(parts)):
+        size = bridge.mesh_size(parts.mesh, half=True)
+        yield from misfitting(parts.actuator, size, *parts.find(BlockedTipEffect))
 
 
 def _solver(parts: Parts) -> Iterator[Problem]:

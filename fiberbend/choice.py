@@ -169,19 +169,6 @@ def choose_half(case: Case) -> tuple[bool, str]:
     return True, "section, winding and loads are mirror-symmetric about x = 0"
 
 
-def cell_slice(case: Case, half: bool) -> tuple[float, int]:
-    """Length in mm of the slice that repeats, and its number of layers.
-
-    Half a pitch between mirror planes, a whole one without; without a winding any length does.
-    """
-    from geometry.size import divisions
-
-    winding = case.find(WindingEffect)
-    pitch = winding.pitch if winding is not None else 2 * case.mesh.axial
-    extent = pitch / 2 if half else pitch
-    return extent, divisions(extent, case.mesh.axial)
-
-
 def mirror_breakers(effects: Iterable[Effect]) -> Iterator[str]:
     """Why x = 0 is no mirror plane, one reason for each effect that breaks the symmetry."""
     for effect in effects:

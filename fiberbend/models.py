@@ -21,7 +21,8 @@ from fiberbend.case import Case
 from fiberbend.case_effects import BlockedTipEffect, StraightEffect, WindingEffect
 from fiberbend.choice import FIRST_TURN as FIRST_TURN
 from fiberbend.choice import TURN as TURN
-from fiberbend.choice import cell_slice, choose_half
+from fiberbend.choice import choose_half
+from fiberbend.fineness import cell_slice, mesh_size
 from fiberbend.gauges import BodyGauge, UniformGauge
 from fiberbend.history import Gauge
 from fiberbend.registry import helix, twisting
@@ -78,7 +79,7 @@ def make_mesh(case: Case, model: str, msh: Path | None = None) -> MeshData:
     """
     half, _ = choose_half(case)
     actuator = bridge.dimensions(case.actuator)
-    size = bridge.mesh_size(case.mesh, half)
+    size = mesh_size(case, model, half)
     winding = case.find(WindingEffect)
     if model == "section":
         from geometry.sweep import swept_section

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from fiberbend.case import Case
 from fiberbend.case_effects import WindingEffect
 from fiberbend.choice import MODELS, choose_half, choose_model, objection, omissions, refusals
+from fiberbend.fineness import mesh_size
 from fiberbend.units import show
 
 WIDTH = 100
@@ -131,15 +132,15 @@ def unused(case: Case, model: str) -> Iterator[str]:
 
 
 def winding_remark(case: Case) -> str | None:
-    """Whether elements of the case's axial length resolve its winding.
+    """Whether the elements of a case's model resolve its winding.
 
     Returns:
         A sentence, or None without a discrete winding.
     """
-    winding = case.find(WindingEffect)
-    if winding is None or winding.representation == "smeared":
+    winding, model = case.find(WindingEffect), choose_model(case)[0]
+    if winding is None or winding.representation == "smeared" or model == "analytic":
         return None
-    axial, most = case.mesh.axial, winding.pitch / 2
+    axial, most = mesh_size(case, model, choose_half(case)[0]).axial, winding.pitch / 2
     turn = f"a pitch of {show(winding.pitch, 'length')}"
     if axial <= most * (1 + 1e-9):
         return f"resolved (elements of {show(axial, 'length')}, {turn})"

@@ -7,7 +7,8 @@ import dataclasses
 from fiberbend import bridge
 from fiberbend.case import Case
 from fiberbend.case_effects import BlockedTipEffect, PressureEffect, StraightEffect
-from fiberbend.choice import UNIFORM, cell_slice, mirror_breakers
+from fiberbend.choice import UNIFORM, mirror_breakers
+from fiberbend.fineness import cell_slice, mesh_size
 
 
 @dataclasses.dataclass(frozen=True)
@@ -46,7 +47,7 @@ def size_of(case: Case, model: str, half: bool) -> Size:
     from geometry.sweep import swept_body, swept_section, swept_slice
     from geometry.tets import to_tetrahedra
 
-    actuator, fineness = bridge.dimensions(case.actuator), bridge.mesh_size(case.mesh, half)
+    actuator, fineness = bridge.dimensions(case.actuator), mesh_size(case, model, half)
     twisted, kind, pressures = any(mirror_breakers(case.effects)), "hexahedra", 4
     if model == "section":
         mesh, kind, pressures, layers = swept_section(actuator, fineness), "quadrilaterals", 3, 1.0

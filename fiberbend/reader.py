@@ -15,6 +15,7 @@ from fiberbend.case import Actuator, Case, Materials, Mesh, Output, Solver
 from fiberbend.case_checks import Parts, check
 from fiberbend.case_defaults import complete
 from fiberbend.case_effects import EffectEntry, unwrap
+from fiberbend.fineness import misfits
 from fiberbend.problems import CaseError, Problem, from_pydantic
 
 _SECTIONS: dict[str, type[BaseModel]] = {
@@ -84,13 +85,14 @@ def parse_case(data: Mapping[str, Any]) -> Case:
         raise CaseError(problems)
     case = complete(case)
     problems += [Problem(path, text) for path, text in choice.problems(case)]
+    problems += misfits(case)
     if problems:
         raise CaseError(problems)
     return case
 
 
 def _valid_parts(data: Mapping[str, Any]) -> Parts:
-    parts = Parts()
+    parts = Parts(model=str(data.get("model")))
     for name, model in _SECTIONS.items():
         try:
             setattr(parts, name, model.model_validate(data.get(name, {})))

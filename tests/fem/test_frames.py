@@ -5,10 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from fem.domain import Domain
 from fem.frames import Frames
 from fem.kinematics import Body
 from fem.measures import BendingAngle, Tip
 from geometry.reference import area_vectors
+from geometry.size import MeshSize
+from geometry.sweep import swept_body
 from tests.fem.parts import SHORT, Floats, short_domain
 
 LENGTH = SHORT.length
@@ -44,6 +47,15 @@ def test_weights_of_one_return_the_state(body: Body) -> None:
     shape = frames.fit(_arc(body, np.deg2rad(140)))
     same = frames.extrapolate([shape, shape, shape], np.array([1.0, -3.0, 3.0]))
     assert frames.rebuild(same) == pytest.approx(frames.rebuild(shape), abs=1e-10)
+
+
+def test_long_elements_leave_no_station_empty() -> None:
+    # planes of nodes 12 mm apart: stations in between had no nodes to fit, and the run crashed
+    size = MeshSize(axial=24, section=1, half=True)
+    body = Body(Domain(swept_body(SHORT, size)), ["u"])
+    frames = Frames(body)
+    u = _arc(body, np.deg2rad(20))
+    assert frames.rebuild(frames.fit(u)) == pytest.approx(u, abs=1e-12)
 
 
 @pytest.mark.parametrize("degrees", [-200.0, 30.0, 179.0, 181.0, 400.0])
