@@ -29,7 +29,8 @@ class Gallery:
         level: pieces along an element's edge.
 
     Attributes:
-        skin: the surface that is drawn.
+        skin: the surface that is drawn, the chamber's too.
+        outside: the part of it that is seen from outside.
         sheathed: what to add to a label: whether a sheath was left out.
     """
 
@@ -37,6 +38,8 @@ class Gallery:
         self._mesh, self._states = scenery.mesh, states
         self._props = Props(scenery)
         self.skin = Tessellation(scenery.mesh, self._props.outside(self._props.bare), level)
+        name = "outer" if self._props.bare.all() else "winding"
+        self.outside = Tessellation(scenery.mesh, scenery.mesh.facets[name], level)
         self.sheathed = "" if self._props.bare.all() else ", sheath not drawn"
 
     def page(
@@ -72,7 +75,7 @@ class Gallery:
         try:
             for state, value, view in zip(self._states, values, views, strict=True):
                 surface = self._props.surface(self.skin, state, self._mesh.half)
-                surface["value"] = np.resize(value, surface.n_points)
+                surface["value"] = np.tile(value, 2 if self._mesh.half else 1)
                 layers = [Layer(surface, scalars="value"), *self._props.threads(state)]
                 view = dataclasses.replace(view, width=width)
                 images.append(stage.draw(layers, view, limits, colors or colormap()))

@@ -212,12 +212,19 @@ def _both_halves(half: MeshData) -> tuple[MeshData, Ints, Floats, Ints, Ints]:
     number = np.arange(nodes)
     number[added] = nodes + np.arange(len(added))
     backward = np.arange(9).reshape(3, 3)[:, ::-1].ravel()
+    # the second and third side change places
+    side = np.array([0, 2, 1, 3])
+    facets = {
+        name: np.concatenate([pairs, np.column_stack([pairs[:, 0] + cells, side[pairs[:, 1]]])])
+        for name, pairs in half.facets.items()
+        if name != "symmetry"
+    }
     mesh = dataclasses.replace(
         half,
         nodes=np.concatenate([half.nodes, half.nodes[added] * [-1.0, 1.0]]),
         cells=np.concatenate([half.cells, number[half.cells][:, backward]]),
         cell_region=np.tile(half.cell_region, 2),
-        facets={},
+        facets=facets,
         half=False,
     )
     sign = np.ones((len(mesh.nodes), 3))

@@ -106,15 +106,14 @@ def draw_bent(
 
     nodes = split_alike(scenery.mesh)
     gallery = Gallery(stack.scenery, [stack.snapshot(scenery, s) for s in snapshots], level=3)
-    strains = [
-        gallery.skin.interpolate(stack.at_cells(field.log_strain[nodes.cells])) for field in fields
-    ]
+    strains = [stack.at_cells(field.log_strain[nodes.cells]) for field in fields]
+    high = max(float(np.quantile(gallery.outside.interpolate(s), 0.998)) for s in strains)
     model = "section" if _is_section(scenery) else "cell"
     page = gallery.page(
         title=f"{scenery.title}: {model} model, caps not modelled",
         captions=[_caption(state, stack) for state in snapshots],
-        values=strains,
-        limits=(0.0, nice_above(max(float(np.quantile(s, 0.998)) for s in strains))),
+        values=[gallery.skin.interpolate(strain) for strain in strains],
+        limits=(0.0, nice_above(high)),
         label="maximum principal logarithmic strain",
         toward=FROM_THE_SIDE,
     )
