@@ -9,6 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
 
+from fem import compat
+
 Floats = npt.NDArray[np.float64]
 
 
@@ -33,7 +35,7 @@ class Border:
         names: names of these scalars.
         closures: as many equations.
         free: owned dofs that no constraint holds.
-        solve: K⁻¹ times an owned vector.
+        solve: K⁻¹ times owned vectors.
         comm: communicator.
 
     Attributes:
@@ -46,12 +48,12 @@ class Border:
         names: Sequence[str],
         closures: Sequence[Closure],
         free: npt.NDArray[np.bool_],
-        solve: Callable[[Floats], Floats],
+        solve: Callable[[Sequence[Floats]], list[Floats]],
         comm: MPI.Comm,
     ) -> None:
         self._comm = comm
         self.rows = [np.where(free, closure.row(), 0.0) for closure in closures]
-        self.spread = [solve(column) for column in columns]
+        self.spread = solve(columns)
         slopes = [[closure.slope(name) for name in names] for closure in closures]
         self.schur = np.array(slopes).reshape(len(closures), len(names))
         for spread, column in zip(self.spread, self.schur.T, strict=True):
@@ -60,7 +62,7 @@ class Border:
     def _dots(self, a: Floats) -> Floats:
         """Inner products of the rows with a vector, over all ranks."""
         mine = np.array([float(row @ a) for row in self.rows])
-        total: Floats = self._comm.allreduce(mine, MPI.SUM)
+        total: Floats = compat.total(self._comm, mine)
         return total
 
     def eliminate(self, a: Floats, r_q: Floats) -> tuple[Floats, Floats]:

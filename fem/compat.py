@@ -352,6 +352,11 @@ def may_free(item: PETSc.Object) -> bool:
     return not PETSc.Sys.isFinalized() and item.getComm().getSize() == 1
 
 
+def total(comm: MPI.Comm, mine: Any) -> Any:
+    """Sum over all ranks; free on a single one, where a reduction costs as much as an assembly."""
+    return mine if comm.size == 1 else comm.allreduce(mine, MPI.SUM)
+
+
 def versions() -> dict[str, str]:
     """Versions of what computes."""
     major, minor, micro = PETSc.Sys.getVersion()

@@ -167,7 +167,7 @@ class Newton:
         """Rows and columns of scalars at the present state and factor."""
         columns = [self.problem.load(name) for name in unknown]
         free = self.problem.free[: self._owned]
-        return Border(columns, unknown, closures, free, self.solve_linear, self.comm)
+        return Border(columns, unknown, closures, free, self.factor.solve_many, self.comm)
 
     def response(
         self, scalar: str, unknown: Sequence[str] = (), closures: Sequence[Closure] = ()

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import ufl
-from mpi4py import MPI
 from petsc4py import PETSc
 
 from fem import compat
@@ -67,6 +66,7 @@ class Scene:
         self.domain = domain
         self.body = kinematics(domain, (name for effect in ordered for name in effect.fields))
         self.force_scale = 1.0
+        self._corners: dict[tuple[str, str], float] = {}
         self.discrete: dict[str, Discrete] = {}
         potentials: dict[str, Any] = {}
         constraints: list[Constraint] = []
@@ -167,6 +167,7 @@ class Scene:
 
     def set(self, w: Floats) -> None:
         """Take the owned coefficients w as the state; held dofs take their values."""
+        self._corners.clear()
         self.w[:] = np.where(self.free[: self.body.owned], w, self._held_values[: self.body.owned])
         follow, lead = self.body.ties
         self.w[follow] = self.w[lead]
@@ -180,6 +181,7 @@ class Scene:
 
     def set_scalar(self, name: str, value: float) -> None:
         """Set a global scalar."""
+        self._corners.clear()
         self.body.scalars[name].value = value
 
     # --- the potential and its derivatives ---------------------------------------------------
@@ -200,23 +202,27 @@ class Scene:
                 continue
             if key in self.discrete:
                 mine += self.discrete[key].energy()
-            result[key] = float(comm.allreduce(mine, MPI.SUM))
+            result[key] = float(compat.total(comm, mine))
         return result
 
     def conjugate(self, name: str) -> float:
         """−∂Π/∂q of a global scalar q: the chamber volume in mm³ for the pressure."""
         mine = -compat.assemble_scalar(self._forms[f"conjugate {name}"])
         mine += sum(discrete.conjugate(name) for discrete in self.discrete.values())
-        return float(self.domain.comm.allreduce(mine, MPI.SUM))
+        return float(compat.total(self.domain.comm, mine))
 
     def corner(self, first: str, second: str) -> float:
         """∂²Π/∂q∂r of two global scalars at the present state."""
+        if (first, second) in self._corners:
+            return self._corners[first, second]
         mine = sum(discrete.corner(first, second) for discrete in self.discrete.values())
         for key in (f"corner {first} {second}", f"corner {second} {first}"):
             if key in self._forms:
                 mine += compat.assemble_scalar(self._forms[key])
                 break
-        return float(self.domain.comm.allreduce(mine, MPI.SUM))
+        value = float(compat.total(self.domain.comm, mine))
+        self._corners[first, second] = self._corners[second, first] = value
+        return value
 
     def _sum(self, form: Any, add: Iterable[Callable[[Floats], None]]) -> tuple[Floats, float]:
         """Owned part of an assembled vector, and the norm of its discrete part."""
@@ -249,7 +255,7 @@ class Scene:
         )
         held = ~self.free[: self.body.owned]
         reaction = self.norm(r[held])
-        total = float(np.sqrt(self.domain.comm.allreduce(norm**2, MPI.SUM)))
+        total = float(np.sqrt(compat.total(self.domain.comm, norm**2)))
         self.force_scale = max(reaction, total, 1e-30)
         return r, self.force_scale
 
@@ -275,7 +281,7 @@ class Scene:
 
     def norm(self, values: Floats) -> float:
         """Euclidean norm over all ranks of owned values."""
-        return float(np.sqrt(self.domain.comm.allreduce(float(values @ values), MPI.SUM)))
+        return float(np.sqrt(compat.total(self.domain.comm, float(values @ values))))
 
     @property
     def supports(self) -> list[str]:
