@@ -20,62 +20,20 @@ from fiberbend.reader import parse_case
 from fiberbend.recovery import cauchy_stress, recover
 from fiberbend.runfolder import RunFolder
 from fiberbend.section_pictures import Sections
-from fiberbend.snapshot import Scenery, Snapshot
+from fiberbend.snapshot import Scenery
 from fiberbend.stack import repeated, split_alike, swept
 from fiberbend.uniform_report import draw_states
 from geometry.checks import region_volumes
-from geometry.embed import embed, smear
+from geometry.embed import embed
 from geometry.mesh import Floats, MeshData
 from geometry.size import MeshSize
-from geometry.sweep import swept_section, swept_slice
-from geometry.winding import Winding
+from geometry.sweep import swept_section
 from materials.laws import Material, uniaxial_stress
 from tests.output.bending import MATERIALS, SHORT
 from tests.output.test_pictures import is_drawn
-
-PITCH = 3.0
-DOUBLE = Winding("double-helix", PITCH, 0.38)
-
-
-def section(half: bool = True) -> Scenery:
-    mesh = swept_section(SHORT, MeshSize(axial=PITCH, half=half))
-    fibers = smear(mesh, SHORT, DOUBLE)
-    return Scenery(mesh, MATERIALS, fibers, smeared=True, title="Section", uniform=True)
-
-
-def cell(half: bool = True, fineness: int = 1) -> Scenery:
-    extent = PITCH / 2 if half else PITCH
-    mesh = swept_slice(SHORT, MeshSize(axial=PITCH, section=fineness, half=half), extent, 2)
-    fibers = embed(mesh, SHORT, DOUBLE)
-    return Scenery(mesh, MATERIALS, fibers, smeared=False, title="Cell", uniform=True)
-
+from tests.output.uniform import DOUBLE, PITCH, cell, section, state, warp, wave
 
 BOTH = pytest.mark.parametrize("make", [section, cell], ids=["section", "cell"])
-
-
-def state(
-    scene: Scenery,
-    degrees: float = 90.0,
-    stretch: float = 1.0,
-    move: Callable[[Floats], Floats] | None = None,
-    twist: float = 0.0,
-) -> Snapshot:
-    """A state of given kinematics, with a made-up fiber force of 2 N and more."""
-    mesh, fibers = scene.mesh, scene.fibers
-    assert fibers is not None
-    displacement = np.zeros_like(mesh.nodes) if move is None else move(mesh.nodes)
-    return Snapshot(
-        label=f"{degrees:.0f}deg",
-        step=1,
-        pressure_kpa=degrees / 2,
-        angle_deg=degrees,
-        displacement=displacement,
-        multiplier=np.zeros(mesh.cells.shape),
-        fiber_force=fibers.share * (2 + np.cos(fibers.s / 5)),
-        curvature=np.radians(degrees) / SHORT.length,
-        stretch=stretch,
-        twist=twist,
-    )
 
 
 # --- the mapping -----------------------------------------------------------------------------
@@ -175,14 +133,6 @@ def test_wrong_shapes_are_refused() -> None:
 # --- stacks ----------------------------------------------------------------------------------
 
 
-def wave(nodes: Floats) -> Floats:
-    """What differs between mirror planes: largest between them, with slices that are no planes."""
-    turn = np.pi * nodes[:, 2] / (PITCH / 2)
-    return np.column_stack(
-        [0.01 * nodes[:, 0], 0.1 - 0.1 * np.cos(turn), 0.05 * nodes[:, 1] * np.sin(turn)]
-    )
-
-
 @pytest.mark.parametrize("half", [True, False])
 def test_repeated_slices_are_the_long_body(half: bool) -> None:
     scene = cell(half)
@@ -233,11 +183,6 @@ def test_swept_section_recovers_alike() -> None:
     direct = recover(stack.scenery, stack.snapshot(scene, bent))
     assert spread.stretches == pytest.approx(direct.stretches, rel=2e-3)
     assert spread.cauchy == pytest.approx(direct.cauchy, abs=5e-3 * np.abs(direct.cauchy).max())
-
-
-def warp(nodes: Floats) -> Floats:
-    """A section that warps as the twofold axis allows: w odd in x."""
-    return np.column_stack([0.0 * nodes[:, 0], 0.0 * nodes[:, 0], 0.05 * nodes[:, 0]])
 
 
 def test_turned_half_completes_a_twisted_section() -> None:
