@@ -69,7 +69,7 @@ def make_plan(case: Case) -> Plan:
     if remark is not None:
         tail["winding"] = [remark]
     if model == "analytic":
-        return Plan(model, _rows(head | _closed_form() | tail))
+        return Plan(model, _rows(head | _closed_form(case) | tail))
     return _finite_elements(case, model, head, tail)
 
 
@@ -92,13 +92,14 @@ def _finite_elements(
     return Plan(model, _rows(head | body | tail), size.elements, size.unknowns, cost.steps)
 
 
-def _closed_form() -> dict[str, list[str]]:
-    from fiberbend.plan_cost import start_seconds
+def _closed_form(case: Case) -> dict[str, list[str]]:
+    from fiberbend.plan_cost import drawing_seconds, start_seconds
 
-    return {
-        "unknowns": ["none, a closed form"],
-        "time": [f"about {start_seconds('analytic'):g} s to start, a millisecond to compute"],
-    }
+    time = [f"about {start_seconds('analytic'):g} s to start, a millisecond to compute"]
+    drawing = drawing_seconds(case, "analytic")
+    if drawing:
+        time.append(f"about {drawing:g} s more for pictures")
+    return {"unknowns": ["none, a closed form"], "time": time}
 
 
 def _rows(rows: dict[str, list[str]]) -> tuple[tuple[str, tuple[str, ...]], ...]:

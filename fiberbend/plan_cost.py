@@ -27,6 +27,10 @@ _START = {"analytic": 1.5, "section": 1.8, "cell": 1.8, "body": 6.0}
 """Seconds to import, to mesh, to load compiled kernels, and for the section that steers a body."""
 _COMPILE = {"section": 9.0, "cell": 20.0, "body": 20.0}
 """Seconds to compile a scene that is not in the cache."""
+_PICTURES = {"analytic": (1.0, 0.0), "section": (3.0, 0.4), "cell": (5.0, 1.0), "body": (5.0, 2.0)}
+"""Seconds to draw: in all, and for each state that is asked for."""
+_FIELDS = {"analytic": 0.0, "section": 0.3, "cell": 0.5, "body": 1.0}
+"""Seconds to write the fields of a state."""
 _ITERATIONS = {"section": 2.0, "cell": 3.3, "body": 4.2}
 """Newton iterations in a step of free bending."""
 _BLOCKED_ITERATIONS = 6.0
@@ -69,12 +73,14 @@ class Cost:
             if model == "body":
                 time += f" on one rank, {_rounded(self.seconds(2) or whole)} s on two"
         time += f"; {MACHINE}, an estimate"
-        new = "nothing is compiled yet" if cold() else "if no scene of this kind was compiled yet"
-        compiling = f"about {self.compile_s:g} s more {'as ' if cold() else ''}{new}"
+        more = [f"about {self.compile_s:g} s more {_compiled()}"]
+        drawing = drawing_seconds(case, model)
+        if drawing:
+            more.append(f"about {_rounded(drawing)} s more for pictures and fields")
         memory = f"about {_rounded(self.memory_mb / 1000)} GB"
         if model == "body":
             memory += ", and 0.2 GB for each further rank"
-        return {"steps": [steps], "time": [time, compiling], "memory": [memory]}
+        return {"steps": [steps], "time": [time, *more], "memory": [memory]}
 
     def seconds(self, ranks: int = 1) -> float | None:
         """Seconds of the whole run with compiled kernels, where its steps can be foreseen."""
@@ -110,6 +116,19 @@ def _still(case: Case) -> bool:
 def start_seconds(model: str) -> float:
     """Seconds before a model's first step."""
     return _START[model]
+
+
+def drawing_seconds(case: Case, model: str) -> float:
+    """Seconds for pictures and fields of the states that are asked for, at least one."""
+    output = case.output
+    states = max(1, len(output.at_angles) + len(output.at_pressures))
+    once, each = _PICTURES[model]
+    pictures = once + states * each if output.pictures else 0.0
+    return pictures + (states * _FIELDS[model] if output.fields else 0.0)
+
+
+def _compiled() -> str:
+    return "as nothing is compiled yet" if cold() else "if no scene of this kind was compiled yet"
 
 
 def cold() -> bool:

@@ -13,7 +13,7 @@ from fiberbend.case import Case
 from fiberbend.case_effects import BlockedTipEffect, GravityEffect, PressureEffect, WindingEffect
 
 _CLOSED_FORM = "pressure for an angle 33 % (90°) to 13 % (360°) above the section model"
-_ENDS = "the whole body bends 0.6 to 1.4 % further than its middle (accuracy_free.md)"
+_ENDS = "the whole body bends 0.6 to 1.4 % further than its middle (docs/accuracy_free.md)"
 
 
 def errors_of(case: Case, model: str) -> Iterator[str]:
@@ -30,12 +30,12 @@ def errors_of(case: Case, model: str) -> Iterator[str]:
     if held(case):
         yield from _held(case, model)
     elif model == "body":
-        yield "mesh: section and length of the elements move P by 0.1 to 0.3 % (accuracy_free.md)"
+        yield "mesh: section and length of the elements move P by 0.1 to 0.3 % (docs/accuracy_free.md)"
         if case.find(GravityEffect) is None:
             yield f"ends: {_ENDS}: see uniform_angle_deg"
     else:
         mesh = "0.1 %" if model == "section" else "0.5 %"
-        yield f"mesh: moves P by about {mesh} (accuracy_uniform.md)"
+        yield f"mesh: moves P by about {mesh} (docs/accuracy_uniform.md)"
         yield f"ends: left out; {_ENDS}"
     if case.mesh.element == "tetrahedron":
         yield "tetrahedra: too stiff beside hexahedra of the same length; refine once to see it"
@@ -46,17 +46,17 @@ def _closed_form(case: Case) -> Iterator[str]:
     if held(case):
         yield "κP/L_f: 42 % below the section held straight on the baseline (54 to 94 N mm)"
         return
-    yield f"closed form: {_CLOSED_FORM} on the baseline (crosscheck.md)"
+    yield f"closed form: {_CLOSED_FORM} on the baseline (docs/crosscheck.md)"
     yield "fitted to an experiment: up to 11 % in pressure (Polygerinos et al. 2015)"
 
 
 def _held(case: Case, model: str) -> Iterator[str]:
     if case.find(BlockedTipEffect) is not None:
-        yield "mesh: moves the tip force by 1 to 3 % (accuracy_blocked.md)"
-        yield "strips: roof and post of other sizes move it by up to 12 % (accuracy_blocked.md)"
+        yield "mesh: moves the tip force by 1 to 3 % (docs/accuracy_blocked.md)"
+        yield "strips: roof and post of other sizes move it by up to 12 % (docs/accuracy_blocked.md)"
         return
     yield f"mesh: moves the moment by about {'0.1' if model == 'section' else '0.5'} %"
-    yield "tip: a real one turns and its sheath yields, about half the force (accuracy_causes.md)"
+    yield "tip: a real one turns and its sheath yields, about half the force (docs/accuracy_causes.md)"
 
 
 def _winding(case: Case, model: str) -> Iterator[str]:
@@ -69,8 +69,8 @@ def _winding(case: Case, model: str) -> Iterator[str]:
     if high >= 0.05:
         scaled = "" if winding.pitch == BULGING_PITCH else f", scaled from {BULGING_PITCH:g} mm"
         yield (
-            f"winding: P too low by about {low:.1f} % at 90° to {high:.1f} % at 360°, for rubber "
-            f"bulges between turns {winding.pitch:g} mm apart (crosscheck.md{scaled})"
+            f"winding: P too low by about {low:.1f} % at 90° to {high:.1f} % at 360°: the rubber "
+            f"between turns {winding.pitch:g} mm apart bulges (docs/crosscheck.md{scaled})"
         )
     elif model == "body":
-        yield "winding: resolved; against a cell within 1.5 % (accuracy_winding.md)"
+        yield "winding: resolved; against a cell within 1.5 % (docs/accuracy_winding.md)"

@@ -144,6 +144,15 @@ def test_cold_cache_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     assert "more if no scene of this kind was compiled" in row(plan("model=section"), "time")
 
 
+def test_pictures_and_fields_cost_extra() -> None:
+    more = "more for pictures and fields"
+    assert more in row(plan("model=section"), "time")
+    silent = "output={pictures: false, fields: false}"
+    assert more not in row(plan("model=section", silent), "time")
+    assert "more for pictures" in row(plan("model=analytic"), "time")
+    assert "more for pictures" not in row(plan("model=analytic", silent), "time")
+
+
 def test_plan_says_why_no_cheaper_model() -> None:
     text = row(plan("model=auto"), "model")
     assert text.startswith("cell (the cheapest that holds everything)\n")
@@ -180,7 +189,7 @@ def test_expected_error_follows_the_winding() -> None:
     # 3.5 % at 90° to 5.1 % at 360° for a pitch of 3 mm: docs/crosscheck.md
     spread = row(plan("model=section"), "error")
     assert "3.5 % at 90° to 5.1 % at 360°" in spread
-    assert "(crosscheck.md)" in spread
+    assert "(docs/crosscheck.md)" in spread
     finer = row(plan("model=section", "effects.1.winding.pitch=1.5 mm"), "error")
     assert "1.4 % at 90° to 2.1 % at 360°" in finer
     assert "scaled from 3 mm" in finer
