@@ -30,7 +30,7 @@ def errors_of(case: Case, model: str) -> Iterator[str]:
     if held(case):
         yield from _held(case, model)
     elif model == "body":
-        yield "mesh: section and length of the elements move P by 0.1 to 0.3 % (docs/accuracy_free.md)"
+        yield "mesh: finer elements move P by 0.1 to 0.3 % (docs/accuracy_free.md)"
         if case.find(GravityEffect) is None:
             yield f"ends: {_ENDS}: see uniform_angle_deg"
     else:
@@ -53,10 +53,10 @@ def _closed_form(case: Case) -> Iterator[str]:
 def _held(case: Case, model: str) -> Iterator[str]:
     if case.find(BlockedTipEffect) is not None:
         yield "mesh: moves the tip force by 1 to 3 % (docs/accuracy_blocked.md)"
-        yield "strips: roof and post of other sizes move it by up to 12 % (docs/accuracy_blocked.md)"
+        yield "strips: other roofs and posts move it by up to 12 % (docs/accuracy_blocked.md)"
         return
     yield f"mesh: moves the moment by about {'0.1' if model == 'section' else '0.5'} %"
-    yield "tip: a real one turns and its sheath yields, about half the force (docs/accuracy_causes.md)"
+    yield "tip: a real one turns, its sheath yields: about half the force (docs/accuracy_causes.md)"
 
 
 def _winding(case: Case, model: str) -> Iterator[str]:
