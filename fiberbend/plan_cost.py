@@ -31,7 +31,7 @@ _PICTURES = {"analytic": (1.0, 0.0), "section": (3.0, 0.4), "cell": (5.0, 1.0), 
 """Seconds to draw: in all, and for each state that is asked for."""
 _FIELDS = {"analytic": 0.0, "section": 0.3, "cell": 0.5, "body": 1.0}
 """Seconds to write the fields of a state."""
-_ITERATIONS = {"section": 2.0, "cell": 3.3, "body": 4.2}
+_ITERATIONS = {"section": 2.0, "cell": 3.3, "body": 3.5}
 """Newton iterations in a step of free bending."""
 _BLOCKED_ITERATIONS = 6.0
 """The same with a blocked tip, whose sheath yields under the strips."""
