@@ -35,8 +35,7 @@ _ITERATIONS = {"section": 2.0, "cell": 3.3, "body": 3.5}
 """Newton iterations in a step of free bending."""
 _BLOCKED_ITERATIONS = 6.0
 """The same with a blocked tip, whose sheath yields under the strips."""
-_GROWTH = {"section": 1.5, "cell": 1.5, "body": 1.25}
-"""From step to step; a body takes a few hard ones that do not grow."""
+_GROWTH = 1.5
 _NEAR = 0.2
 _TWO_RANKS = 0.6
 _START_SHARE = 1 / 20
@@ -166,7 +165,7 @@ def steps_of(case: Case, model: str) -> int | None:
     steps = 1 if case.find(GravityEffect) is not None else 0
     if pressure is None:
         return steps
-    output, growth = case.output, _GROWTH[model]
+    output = case.output
     least = 0
     if pressure.to is not None and case.solver.max_step is not None:
         least = math.ceil(abs(pressure.to) / case.solver.max_step)
@@ -176,25 +175,25 @@ def steps_of(case: Case, model: str) -> int | None:
             return None
         share = _START_SHARE if case.find(StraightEffect) is not None else 1.0
         goals = [value / pressure.to for value in output.at_pressures]
-        return steps + max(least, count_steps(share, math.inf, [*goals, 1.0], growth))
+        return steps + max(least, count_steps(share, math.inf, [*goals, 1.0]))
     end = expected_angle(case)
     if end is None:
         return None
     turn = case.solver.max_turn or TURN[model]
     goals = [angle for angle in output.at_angles if 0 < angle / end < 1]
     goals = [*map(abs, goals), abs(end)]
-    counted = count_steps(min(turn, FIRST_TURN[model]), turn, goals, growth)
+    counted = count_steps(min(turn, FIRST_TURN[model]), turn, goals)
     return steps + max(least, counted + len(output.at_pressures))
 
 
-def count_steps(first: float, most: float, goals: list[float], growth: float) -> int:
-    """Steps from zero through every goal, growing until they have their greatest size."""
+def count_steps(first: float, most: float, goals: list[float]) -> int:
+    """Steps from zero through every goal, growing by half until they have their greatest size."""
     here, size, steps = 0.0, first, 0
     for goal in sorted(goals):
         while here < goal * (1 - 1e-9):
             size = min(size, most)
             here = goal if here + size > goal - _NEAR * size else here + size
-            size *= growth
+            size *= _GROWTH
             steps += 1
     return steps
 
