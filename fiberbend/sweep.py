@@ -61,7 +61,7 @@ def run_sweep(
         _solve(sweep, store, path, settings, jobs, _Teller(len(sweep.points), before, say))
     except KeyboardInterrupt:
         interrupted = True
-    _write(sweep, store, say)
+    _write(sweep, store, say, pictures=not interrupted)
     return _summary(sweep, store, interrupted, say)
 
 
@@ -128,8 +128,7 @@ def _summary(sweep: Sweep, store: Store, interrupted: bool, say: Say) -> int:
 # --- table and pictures ------------------------------------------------------------------------
 
 
-def _write(sweep: Sweep, store: Store, say: Say) -> None:
-    from fiberbend.sweep_plots import draw
+def _write(sweep: Sweep, store: Store, say: Say, pictures: bool) -> None:
     from fiberbend.sweep_table import as_csv, collect, quantities
     from fiberbend.sweep_trends import as_markdown
 
@@ -137,14 +136,20 @@ def _write(sweep: Sweep, store: Store, say: Say) -> None:
     told = quantities(sweep.report, rows)
     folder.write_text("sweep.csv", as_csv(rows))
     folder.write_text("trends.md", as_markdown(sweep.columns, rows, told))
-    draw(
-        sweep.title,
-        sweep.columns,
-        rows,
-        [quantity for quantity in told if quantity.kind in sweep.report.maps],
-        lambda name, fill: folder.write(f"maps/{name}", fill),
-    )
     for index, name in enumerate(sweep.report.history):
         if all(row.get(name) is None for row in rows):
             say(f"report.history.{index}: no point has a column {name}")
-    say(f"table in {store.path / 'sweep.csv'}, maps in {store.path / 'maps'}")
+    say(f"table in {store.path / 'sweep.csv'}")
+    if pictures:
+        from fiberbend.sweep_plots import draw
+
+        drawn = [quantity for quantity in told if quantity.kind in sweep.report.maps]
+        names = draw(
+            sweep.title,
+            sweep.columns,
+            rows,
+            drawn,
+            lambda name, fill: folder.write(f"maps/{name}", fill),
+        )
+        if names:
+            say(f"maps in {store.path / 'maps'}")
