@@ -80,9 +80,11 @@ class Effect:
 
     Attributes:
         fields: names of the fields it needs.
+        outside: its forces act from outside, as a support's do; they have a resultant.
     """
 
     fields: ClassVar[tuple[str, ...]] = ("u",)
+    outside: ClassVar[bool] = False
 
     @property
     def key(self) -> str:

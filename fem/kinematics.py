@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import dolfinx.fem as dfem
@@ -180,6 +180,10 @@ class Kinematics:
     def coefficient(self, by_region: dict[str, float]) -> Any:
         """A material constant as a piecewise constant field, one value per region."""
         return compat.cell_field(self.domain.mesh, self.domain.cell_values(by_region))
+
+    def constants(self, values: Sequence[float]) -> Any:
+        """Numbers that are no code: other ones do not recompile."""
+        return dfem.Constant(self.domain.mesh, [float(value) for value in values])
 
     def scalar(self, name: str) -> Any:
         """The UFL variable of a global scalar, such as the chamber pressure in MPa."""

@@ -178,8 +178,8 @@ class Balance:
     """Supports and loads at an equilibrium.
 
     Attributes:
-        supports: what each support does to the body; a mirror plane is internal and not among
-            them.
+        supports: what each support, and each effect that acts from outside, does to the body; a
+            mirror plane is internal and not among them.
         force: what is left of all forces, relative to the greatest support force.
         moment: what is left of all moments about the origin, likewise.
     """
@@ -190,7 +190,7 @@ class Balance:
 
 
 def balance(scene: Scene, mirror: str = "symmetry") -> Balance:
-    """Reactions by the residual, and how far they and the loads are from balance.
+    """Reactions by the residual, contact by its own forces, and how far all is from balance.
 
     A pressurised closed chamber has no resultant, so that the supports must balance the other
     loads, and each other without any.
@@ -201,6 +201,7 @@ def balance(scene: Scene, mirror: str = "symmetry") -> Balance:
         for name in scene.supports
         if name != mirror
     }
+    supports |= {key: resultant(scene, scene.force(key), None) for key in scene.outside}
     total = Resultant(np.zeros(3), np.zeros(3))
     for support in supports.values():
         total += support

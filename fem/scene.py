@@ -43,6 +43,7 @@ class Scene:
     Attributes:
         body: kinematics with the unknowns.
         keys: names of the effects, sorted.
+        effects: the effects by these names.
         natural: global scalars in which the potential is stationary at an equilibrium.
         force_scale: scale of the forces in the last residual.
         free: local dofs (owned and ghosts) that no constraint holds.
@@ -63,6 +64,7 @@ class Scene:
         for key in self.keys:
             if self.keys.count(key) > 1:
                 raise ValueError(f"the effect {key} is given twice")
+        self.effects = {effect.key: effect for effect in ordered}
         self.domain = domain
         self.body = kinematics(domain, (name for effect in ordered for name in effect.fields))
         self.force_scale = 1.0
@@ -100,6 +102,8 @@ class Scene:
         forms: dict[str, Any] = {"residual": residual, "tangent": tangent}
         for key, form in potentials.items():
             forms[f"energy {key}"] = form
+            if self.effects[key].outside:
+                forms[f"force {key}"] = ufl.derivative(form, body.w, test)
         lowered = ufl.algorithms.apply_algebra_lowering.apply_algebra_lowering(total)
         for i, name in enumerate(body.scalars):
             conjugate = _differentiate(lowered, body.scalar(name))
@@ -282,6 +286,15 @@ class Scene:
     def norm(self, values: Floats) -> float:
         """Euclidean norm over all ranks of owned values."""
         return float(np.sqrt(compat.total(self.domain.comm, float(values @ values))))
+
+    @property
+    def outside(self) -> list[str]:
+        """Keys of the effects whose forces act from outside."""
+        return [key for key in self.keys if f"force {key}" in self._forms]
+
+    def force(self, key: str) -> Floats:
+        """What an effect does to the body at the present state, −∂Π_e/∂w, owned part."""
+        return -self._sum(self._forms[f"force {key}"], ())[0]
 
     @property
     def supports(self) -> list[str]:

@@ -1,0 +1,109 @@
+"""Contact of the outer surface with rigid, frictionless obstacles."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, ClassVar, Protocol
+
+import ufl
+
+from fem.effect import Effect
+from fem.kinematics import Kinematics
+
+
+class Obstacle(Protocol):
+    """A rigid body that keeps its place."""
+
+    def numbers(self) -> list[float]:
+        """What places it, mm."""
+
+    def gap(self, x: Any, numbers: Any) -> Any:
+        """Signed distance of a point to its surface in mm; negative inside.
+
+        Args:
+            x: y and z of the point at least, by component: a UFL vector, or arrays.
+            numbers: those of `numbers`, as they are or as UFL constants.
+        """
+
+
+@dataclasses.dataclass(frozen=True)
+class Plane:
+    """A half space behind a plane.
+
+    Attributes:
+        point: a point of the plane, mm.
+        normal: out of the obstacle, of any length above zero.
+    """
+
+    point: tuple[float, float, float]
+    normal: tuple[float, float, float]
+
+    def numbers(self) -> list[float]:
+        """Unit normal and distance from the origin along it."""
+        length = sum(n * n for n in self.normal) ** 0.5
+        normal = [n / length for n in self.normal]
+        return [*normal, sum(n * p for n, p in zip(normal, self.point, strict=True))]
+
+    def gap(self, x: Any, numbers: Any) -> Any:
+        """n · x − n · p."""
+        return sum(numbers[i] * x[i] for i in range(3)) - numbers[3]
+
+
+@dataclasses.dataclass(frozen=True)
+class Cylinder:
+    """A round bar along x.
+
+    Attributes:
+        center: y and z of its axis, mm.
+        radius: mm.
+    """
+
+    center: tuple[float, float]
+    radius: float
+
+    def numbers(self) -> list[float]:
+        """Center and radius."""
+        return [*self.center, self.radius]
+
+    def gap(self, x: Any, numbers: Any) -> Any:
+        """Distance from the axis less the radius."""
+        return ((x[1] - numbers[0]) ** 2 + (x[2] - numbers[1]) ** 2) ** 0.5 - numbers[2]
+
+
+class Contact(Effect):
+    """Π = ∫ φ(g) dS, g the gap at the deformed point of a surface: a penalty, unilateral.
+
+    The pressure −φ' is k d²/(2 δ) up to a depth d = −g of δ and k (d − δ/2) beyond, so that the
+    tangent is continuous through touch and lift-off, and nothing acts at a distance.
+
+    Args:
+        name: of the obstacle.
+        obstacle: what is touched.
+        surface: named surface of the body that may touch it.
+        stiffness: k, MPa/mm.
+        rounding: δ, mm.
+    """
+
+    outside: ClassVar[bool] = True
+
+    def __init__(
+        self, name: str, obstacle: Obstacle, surface: str, stiffness: float, rounding: float
+    ) -> None:
+        self.name = name
+        self.obstacle = obstacle
+        self.surface = surface
+        self.stiffness = stiffness
+        self.rounding = rounding
+
+    @property
+    def key(self) -> str:
+        """Several obstacles may exist."""
+        return f"Contact[{self.name}]"
+
+    def potential(self, body: Kinematics) -> Any:
+        """The penalty as a form; all numbers are constants."""
+        place = body.constants(self.obstacle.numbers())
+        law = body.constants([self.stiffness, self.rounding])
+        depth = -self.obstacle.gap(body.x, place)
+        full, above = (ufl.max_value(d, 0.0) for d in (depth, depth - law[1]))
+        return law[0] / (6 * law[1]) * (full**3 - above**3) * body.ds(self.surface)
