@@ -2,73 +2,82 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-from fem.border import Closure
-from fem.frames import Frames, Shape
-from fem.guide import Guide
+from fem.equilibrium import MODES, Equilibrium
+from fem.frames import Frames
+from fem.limit import critical, crossing, limit_ahead, limit_between, softens
 from fem.newton import Newton, Outcome
-from fem.program import Functional, Ramp, Report, Rules, State, measure
+from fem.predictor import distinct, lagrange
+from fem.program import Critical, Functional, Ramp, Report, Rules, State, measure
 from fem.scene import Scene
 
-Floats = npt.NDArray[np.float64]
+JUMPED = "Newton went to another branch"
+BEYOND = "the load falls from here on"
 
 
-class _Conjugate:
-    """Closing equation: the conjugate of a scalar takes a value."""
+@dataclasses.dataclass(frozen=True)
+class _Way:
+    """How a ramp is driven at present.
 
-    def __init__(self, scene: Scene, name: str, target: float) -> None:
-        self._scene, self._name, self._target = scene, name, target
-        self._scale = max(abs(target), 1e-30)
+    Attributes:
+        kind: 'value', 'conjugate' or 'followed'.
+        key: the measure that is driven.
+        sign: whether it grows.
+        end: its value at the end.
+        span: all the way to go.
+        stops: its values to be hit exactly.
+        largest: greatest increment.
+    """
 
-    def value(self) -> float:
-        return (self._scene.conjugate(self._name) - self._target) / self._scale
+    kind: str
+    key: str
+    sign: float
+    end: float
+    span: float
+    stops: tuple[float, ...]
+    largest: float
 
-    def row(self) -> Floats:
-        return -self._scene.load(self._name) / self._scale
-
-    def slope(self, scalar: str) -> float:
-        return -self._scene.corner(self._name, scalar) / self._scale
-
-
-class _Stationary:
-    """Closing equation: the potential is stationary in a natural scalar."""
-
-    def __init__(self, scene: Scene, name: str) -> None:
-        self._scene, self._name = scene, name
-        self._lever = scene.body.span / scene.body.size_of(name)
-
-    @property
-    def _scale(self) -> float:
-        return self._scene.force_scale * self._lever
-
-    def value(self) -> float:
-        return -self._scene.conjugate(self._name) / self._scale
-
-    def row(self) -> Floats:
-        return self._scene.load(self._name) / self._scale
-
-    def slope(self, scalar: str) -> float:
-        return self._scene.corner(self._name, scalar) / self._scale
+    def next(self, now: float, size: float) -> float:
+        """Where an increment of a size would end; at a stop that is near."""
+        target = now + self.sign * size
+        stops = [s for s in (*self.stops, self.end) if self.sign * (s - now) > 1e-9 * self.span]
+        nearest = min(stops, key=lambda s: abs(s - now))
+        return nearest if self.sign * (target - nearest) > -0.2 * size else target
 
 
-class _Target:
-    """Closing equation: a functional takes a value."""
+class _Requests:
+    """Values of the followed functional that a ramp is to hit.
 
-    def __init__(self, functional: Functional, target: float) -> None:
-        self._functional, self._target = functional, target
+    Attributes:
+        insist: the next increment hits one, whatever is expected.
+    """
 
-    def value(self) -> float:
-        return self._functional.value() - self._target
+    def __init__(self, ramp: Ramp) -> None:
+        self.insist = False
+        self._pending = sorted(ramp.at) if ramp.drive != "followed" else []
+        if ramp.until is not None:
+            before = (a for a in self._pending if a < ramp.until)
+            self._pending = sorted({*before, ramp.until})
 
-    def row(self) -> Floats:
-        return self._functional.row()
+    def due(self, state: State) -> float | None:
+        """The next one."""
+        here = state.measures.get("followed", np.inf)
+        return next((a for a in self._pending if a > here + 1e-9), None)
 
-    def slope(self, scalar: str) -> float:
-        return self._functional.slope(scalar)
+    def met(self, new: State, goal: float, kind: str, way: _Way) -> bool:
+        """Whether a new state may be kept: it has not run past the one that was due."""
+        if kind != "followed":
+            self.insist = new.measures["followed"] > goal + 1e-9
+            return not self.insist
+        if way.kind != kind and way.sign * (new.measures[way.key] - way.end) > 0:
+            # the angle lies beyond the load's end: go there by the load instead
+            self._pending = [a for a in self._pending if a < goal - 1e-12]
+            return False
+        return True
 
 
 class March:
@@ -94,17 +103,12 @@ class March:
         on_step: Callable[[State, Outcome], None],
         warn: Callable[[str], None],
     ) -> None:
-        self.scene = scene
-        self.newton = newton
-        self.frames = frames
         self.followed = followed
         self.rules = rules
         self.on_step = on_step
         self.warn = warn
-        self.guide: Guide | None = None
-        """A cheaper model's shapes, from which the difference is extrapolated."""
-        self._astray = False
-        """The last increment failed: the next one does without the guide."""
+        self.equilibrium = Equilibrium(scene, newton, frames, followed)
+        self.predictor = self.equilibrium.predictor
         self.states: list[State] = []
         self.report = Report()
         self.ramp = 0
@@ -112,127 +116,11 @@ class March:
         self.increment: float | None = None
         """Increment of the driven quantity to try next; None at the start of a ramp."""
 
-    # --- states --------------------------------------------------------------------------------
-
-    def capture(self) -> State:
-        """The present state of the scene."""
-        scene = self.scene
-        scalars = {name: scene.scalar(name) for name in scene.body.scalars}
-        measures = {f"value {name}": value for name, value in scalars.items()}
-        measures |= {f"conjugate {name}": scene.conjugate(name) for name in scalars}
-        if self.followed is not None:
-            measures["followed"] = self.followed.value()
-        return State(
-            w=scene.w.copy(),
-            scalars=scalars,
-            measures=measures,
-            shape=self.frames.fit(scene.body.displacement()) if self.frames else None,
-            discrete={key: item.state() for key, item in scene.discrete.items()},
-        )
-
-    def restore(self, state: State) -> None:
-        """Put the scene back to a captured state, exactly."""
-        for name, value in state.scalars.items():
-            self.scene.set_scalar(name, value)
-        self.scene.set(state.w)
-
-    def _natural(self) -> list[_Stationary]:
-        """One equation for each natural scalar."""
-        return [_Stationary(self.scene, name) for name in self.scene.natural]
-
-    def _tangent_state(self, scalar: str) -> State:
-        """A neighbour of the last state along the linear response to a scalar."""
-        base = self.states[-1]
-        self.restore(base)
-        for discrete in self.scene.discrete.values():
-            discrete.predict(None)
-        scene, body = self.scene, self.scene.body
-        rate, natural = self.newton.response(scalar, scene.natural, self._natural())
-        nodal = body.with_ghosts(rate)[body.node_dofs[body.owned_nodes]]
-        top = float(np.max(np.abs(nodal), initial=0.0))
-        largest = max(scene.domain.comm.allgather(top)) / body.span
-        for name, value in natural.items():
-            largest = max(largest, abs(value) / body.size_of(name))
-        step = 1e-5 / max(largest, 1e-300)
-        scene.set_scalar(scalar, base.scalars[scalar] + step)
-        for name, value in natural.items():
-            scene.set_scalar(name, base.scalars[name] + step * value)
-        scene.set(base.w + step * rate)
-        state = self.capture()
-        self.restore(base)
-        return state
-
-    def _predict(self, abscissa: str, target: float, history: list[State]) -> Floats:
-        """Set the scene to the extrapolated state and return its coefficients."""
-        t = np.array([state.measures[abscissa] for state in history])
-        weights = np.array(
-            [np.prod([(target - b) / (a - b) for b in np.delete(t, i)]) for i, a in enumerate(t)]
-        )
-        body = self.scene.body
-        for name in body.scalars:
-            values = [state.scalars[name] for state in history]
-            self.scene.set_scalar(name, float(weights @ values))
-        self.scene.set(np.tensordot(weights, [state.w for state in history], axes=1))
-        if self.frames is not None:
-            shapes = [state.shape for state in history if state.shape is not None]
-            shape = self.frames.extrapolate(shapes, weights, self._guides(abscissa, [*t, target]))
-            body.set_displacement(self.frames.rebuild(shape))
-            self.scene.set(self.scene.w.copy())
-        for key, discrete in self.scene.discrete.items():
-            discrete.extrapolate([state.discrete[key] for state in history], weights)
-        return self.scene.w.copy()
-
-    def _guides(self, abscissa: str, values: Sequence[float]) -> list[Shape] | None:
-        """Shapes of the guide at the given values of what is driven; None where it has none."""
-        if (
-            self.guide is None
-            or self._astray
-            or not all(self.guide.covers(abscissa, v) for v in values)
-        ):
-            return None
-        return [self.guide.shape(abscissa, v) for v in values]
-
-    def _history(self, abscissa: str) -> list[State]:
-        """The last states with distinct abscissae, at most three, oldest first."""
-        chosen: list[State] = []
-        for state in reversed(self.states):
-            value = state.measures[abscissa]
-            scale = 1e-9 * max(abs(value), 1e-30)
-            if all(abs(value - other.measures[abscissa]) > scale for other in chosen):
-                chosen.insert(0, state)
-            if len(chosen) == 3:
-                break
-        return chosen
-
-    # --- increments ----------------------------------------------------------------------------
-
-    def _solve(self, ramp: Ramp, kind: str, target: float) -> Outcome:
-        """Predict and solve one increment; kind is 'value', 'conjugate' or 'followed'."""
-        abscissa = measure(kind, ramp.scalar)
-        start = self._predict(abscissa, target, self._history(abscissa))
-        unknown: list[str] = list(self.scene.natural)
-        closures: list[Closure] = list(self._natural())
-        if kind == "value":
-            self.scene.set_scalar(ramp.scalar, target)
-            return self.newton.solve(start, unknown, closures)
-        if kind == "conjugate":
-            closures.append(_Conjugate(self.scene, ramp.scalar, target))
-        else:
-            assert self.followed is not None
-            closures.append(_Target(self.followed, target))
-        return self.newton.solve(start, [*unknown, ramp.scalar], closures)
-
-    def _guess(self, drive: str, target: float) -> float:
-        """Extrapolated value of the followed functional where the increment would end."""
-        history = self._history(drive)
-        t = [state.measures[drive] for state in history]
-        y = [state.measures["followed"] for state in history]
-        return float(np.polynomial.Polynomial(_interpolate(t, y))(target - t[-1]))
-
     def start(self) -> None:
         """Capture the state at rest; without it nothing can be predicted."""
-        self.scene.set(self.scene.w.copy())
-        self.states = [self.capture()]
+        scene = self.equilibrium.scene
+        scene.set(scene.w.copy())
+        self.states = [self.equilibrium.capture()]
 
     def run(self, ramps: Sequence[Ramp]) -> Report:
         """March through all ramps in order, earlier loads held."""
@@ -243,88 +131,196 @@ class March:
                 break
             self.ramp += 1
             self.increment = None
+            self.report.detour = False
         return self.report
 
+    def _way(self, ramp: Ramp, span: float) -> _Way:
+        """How a ramp is driven from the last state on; `span` is all of it."""
+        now = self.states[-1].measures
+        if not self.report.detour:
+            sign = np.sign(ramp.target - now[ramp.key])
+            stops = ramp.stops if ramp.drive != "followed" else (*ramp.stops, *ramp.at)
+            largest = abs(ramp.largest) if ramp.largest else np.inf
+            return _Way(ramp.drive, ramp.key, sign, ramp.target, abs(span), stops, largest)
+        key = measure("conjugate", ramp.scalar)
+        volume = now[key]
+        sign = np.sign(span)
+        end = sign * np.inf
+        limit = self._limit(ramp)
+        if limit is not None and now.get(measure("rate", ramp.scalar), 1.0) < 0:
+            end = limit.conjugate * self.rules.beyond**sign
+        return _Way("conjugate", key, sign, end, volume, (), self.rules.swell * volume)
+
+    def _limit(self, ramp: Ramp) -> Critical | None:
+        """The last limit point beyond which the ramp's load falls."""
+        found = (
+            c
+            for c in reversed(self.report.critical)
+            if c.kind == "limit" and c.scalar == ramp.scalar and c.after > c.before
+        )
+        return next(found, None)
+
     def _ramp(self, ramp: Ramp) -> bool:
-        drive = ramp.key
-        now = self.states[-1].measures[drive]
-        span = ramp.target - now
+        span = ramp.target - self.states[-1].measures[ramp.key]
         if span == 0:
             return True
-        largest = abs(ramp.largest) if ramp.largest else np.inf
-        sign = np.sign(span)
         if self.increment is None:
-            seed = self._tangent_state(ramp.scalar)
-            size = abs(ramp.first) if ramp.first else self._first_size(seed, drive, abs(span))
-            self.states = [seed, self.states[-1]]
-            self.increment = min(size, largest, abs(span))
-        size = self.increment
+            base = self.states[-1]
+            seed = self.equilibrium.neighbour(base, ramp.scalar)
+            size = abs(ramp.first) if ramp.first else self._first_size(seed, ramp, abs(span))
+            self.states = [seed, base]
+            self.increment = min(size, abs(ramp.largest or np.inf), abs(span))
+        requests = _Requests(ramp)
         failures = 0
-        insist = False
-        pending, halts = sorted(ramp.at), ramp.stops
-        if ramp.until is not None:
-            pending = sorted({*(a for a in ramp.at if a < ramp.until), ramp.until})
-        if ramp.drive == "followed":
-            pending, halts = [], (*ramp.stops, *ramp.at)
         while True:
             state = self.states[-1]
-            now = state.measures[drive]
-            left = abs(ramp.target - now)
-            if left <= 1e-9 * abs(span):
+            if abs(ramp.target - state.measures[ramp.key]) <= 1e-9 * abs(span):
                 return True
-            stops = [s for s in (*halts, ramp.target) if sign * (s - now) > 1e-9 * abs(span)]
-            nearest = min(stops, key=lambda s: abs(s - now))
-            size = min(size, self._turn_limit(drive))
-            target = now + sign * size
-            if sign * (target - nearest) > -0.2 * size:
-                target = nearest
-            kind = ramp.drive
-            goal = self._due(pending, state)
-            close = goal is not None and (insist or self._guess(drive, target) > goal - 0.02)
-            insist = False
-            if goal is not None and close:
+            way = self._way(ramp, span)
+            now = state.measures[way.key]
+            if self.report.detour and way.sign * (way.end - now) <= 1e-9 * way.span:
+                return self._end("")
+            size = min(self.increment, self._turn_limit(way.key), way.largest)
+            target = way.next(now, size)
+            if way.kind == "value" and limit_ahead(self.states, ramp.scalar, target):
+                self._turn_off(ramp)
+                continue
+            kind, aim = way.kind, target
+            goal = requests.due(state)
+            if goal is not None and (
+                requests.insist or self._guess(way.key, target, "followed") > goal - 0.02
+            ):
                 kind, aim = "followed", goal
-            else:
-                aim = float(target)
-            outcome = self._solve(ramp, kind, aim)
-            self.report.iterations += outcome.iterations
-            self.report.factorisations += outcome.factorisations
-            accepted = outcome.converged
-            overshot = False
-            if accepted:
-                new = self.capture()
-                if goal is not None and kind != "followed":
-                    overshot = insist = new.measures["followed"] > goal + 1e-9
-                if kind != ramp.drive and sign * (new.measures[drive] - ramp.target) > 0:
-                    # the angle lies beyond the load's end: go there by the load instead
-                    pending = [a for a in pending if a < goal - 1e-12] if goal else []
-                    overshot = True
-            self._astray = not accepted
-            if not accepted or overshot:
-                self.restore(state)
-                if overshot:
-                    continue
+            requests.insist = False
+            new, outcome, kind = self._attempt(ramp, span, kind, aim)
+            self.predictor.astray = new is None
+            if new is None:
                 failures += 1
                 self.report.cutbacks += 1
+                self.equilibrium.restore(state)
                 self.warn(f"increment cut back: {outcome.reason}")
+                self.increment = size * self.rules.cut
                 if failures > self.rules.cutbacks:
-                    self.report.status = "failed"
-                    self.report.reason = outcome.reason
-                    return False
-                size *= self.rules.cut
+                    return self._end(outcome.reason)
+                if self.increment < self.rules.least * way.span:
+                    return self._end(f"{outcome.reason}, in ever smaller increments")
+                if way.kind == kind == "value" and (
+                    outcome.reason == BEYOND or softens(self.states, ramp.scalar)
+                ):
+                    self._turn_off(ramp)
+                continue
+            if goal is not None and not requests.met(new, goal, kind, way):
+                self.equilibrium.restore(state)
                 continue
             failures = 0
             self.states = [*self.states[-2:], new]
             self.report.steps += 1
             self.report.per_step.append(outcome.iterations)
+            self._note(ramp.scalar)
             if outcome.iterations <= self.rules.easy:
-                size = min(size * self.rules.grow, largest)
+                size = min(size * self.rules.grow, way.largest)
             elif outcome.iterations >= self.rules.slow:
                 size *= self.rules.shrink
             self.increment = size
             self.on_step(new, outcome)
             if kind == "followed" and ramp.until is not None and aim >= ramp.until - 1e-9:
                 return True
+
+    def _attempt(
+        self, ramp: Ramp, span: float, kind: str, aim: float
+    ) -> tuple[State | None, Outcome, str]:
+        """Try an increment; land where it passes a value that was asked for, or a limit point.
+
+        Returns:
+            The state, if one was found that is to be kept; how Newton ended; what was given.
+        """
+        scalar, key = ramp.scalar, measure(kind, ramp.scalar)
+        start = (distinct(self.states, key), key, aim)
+        outcome = self._find(scalar, kind, aim, start)
+        new = self._found(scalar, outcome)
+        if new is not None and kind == "value" and self._jumped(scalar, aim, new):
+            outcome.reason, new = JUMPED, None
+        if new is not None and kind == "value" and new.measures[measure("rate", scalar)] < 0:
+            outcome.reason, new = BEYOND, None
+        if new is None:
+            return new, outcome, kind
+        states, key = [*self.states[-2:], new], measure("conjugate", scalar)
+        goal = self._passed(ramp, span, new)
+        if goal is not None:
+            start = (distinct(states, key), key, crossing(states, scalar, goal))
+            outcome = self._find(scalar, "value", goal, start)
+            return self._found(scalar, outcome), outcome, "landing"
+        limit = limit_between(states, scalar) if kind == "conjugate" else None
+        if limit is not None:
+            outcome = self._find(scalar, kind, limit, (distinct(states, key), key, limit))
+            return self._found(scalar, outcome), outcome, kind
+        return new, outcome, kind
+
+    def _find(
+        self, scalar: str, kind: str, aim: float, start: tuple[list[State], str, float]
+    ) -> Outcome:
+        outcome = self.equilibrium.find(scalar, kind, aim, start)
+        self.report.iterations += outcome.iterations
+        self.report.factorisations += outcome.factorisations
+        return outcome
+
+    def _found(self, scalar: str, outcome: Outcome) -> State | None:
+        """The state that was found, judged."""
+        if not outcome.converged:
+            return None
+        new = self.equilibrium.capture()
+        self.equilibrium.judge(new, self.states[-1], scalar)
+        return new
+
+    def _jumped(self, scalar: str, aim: float, new: State) -> bool:
+        """Whether the conjugate is far from where the last states point to."""
+        name = measure("conjugate", scalar)
+        now = self.states[-1].measures[name]
+        expected = self._guess(measure("value", scalar), aim, name)
+        off = abs(new.measures[name] - expected)
+        return bool(off > self.rules.jump * abs(expected - now) + 1e-6 * abs(now))
+
+    # --- limit points --------------------------------------------------------------------------
+
+    def _turn_off(self, ramp: Ramp) -> None:
+        """Drive the conjugate from here on, at the pace it had."""
+        key = measure("conjugate", ramp.scalar)
+        a, b = (state.measures[key] for state in self.states[-2:])
+        self.increment = abs(b - a)
+        self.report.detour = True
+
+    def _passed(self, ramp: Ramp, span: float, new: State) -> float | None:
+        """Value asked for that a detour has passed and never reached before."""
+        if not self.report.detour:
+            return None
+        sign, key = np.sign(span), measure("value", ramp.scalar)
+        limit = self._limit(ramp)
+        reached = [self.states[-1].measures[key], *([limit.value] if limit else [])]
+        peak = max(sign * value for value in reached)
+        top = sign * new.measures[key]
+        goals = [sign * goal for goal in (*ramp.stops, ramp.target)]
+        margin = 1e-9 * abs(span)
+        passed = [goal for goal in goals if peak + margin < goal < top - margin]
+        return float(sign * min(passed)) if passed else None
+
+    def _note(self, scalar: str) -> None:
+        """Report where stability was lost or gained in the last increment."""
+        self.report.critical += critical(self.states, scalar, MODES)
+
+    def _end(self, reason: str) -> bool:
+        """The load cannot be reached."""
+        beyond = self.report.detour and any(c.kind == "limit" for c in self.report.critical)
+        self.report.status = "stopped" if beyond else "failed"
+        self.report.reason = reason
+        return False
+
+    # --- increments ----------------------------------------------------------------------------
+
+    def _guess(self, key: str, target: float, name: str) -> float:
+        """Extrapolated value of a measure where the increment of another would end."""
+        history = distinct(self.states, key)
+        weights = lagrange(np.array([state.measures[key] for state in history]), target)
+        return float(weights @ [state.measures[name] for state in history])
 
     def _turn_limit(self, drive: str) -> float:
         """Increment that turns the followed functional by `turn`, from the last two states."""
@@ -334,28 +330,19 @@ class March:
         turned = abs(b["followed"] - a["followed"])
         return float(abs(b[drive] - a[drive]) * self.rules.turn / max(turned, 1e-12))
 
-    def _due(self, pending: list[float], state: State) -> float | None:
-        """The next requested value of the followed functional."""
-        if self.followed is None:
-            return None
-        here = state.measures["followed"]
-        return next((a for a in pending if a > here + 1e-9), None)
+    def _first_size(self, seed: State, ramp: Ramp, span: float) -> float:
+        """First increment, by the linear response.
 
-    def _first_size(self, seed: State, drive: str, span: float) -> float:
-        """First increment: the linear response turns the followed functional by `first_turn`."""
-        base = self.states[-1]
-        if self.followed is None:
+        It turns the followed functional by `first_turn`, a twentieth of the load where nothing
+        turns, and changes the conjugate by no more than `swell`.
+        """
+        base = self.states[-1].measures
+        change = {name: abs(value - base[name]) for name, value in seed.measures.items()}
+        driven, turned = change[ramp.key], change.get("followed", 0.0)
+        volume = measure("conjugate", ramp.scalar)
+        if driven < 1e-300:
             return span / 20
-        turned = seed.measures["followed"] - base.measures["followed"]
-        driven = seed.measures[drive] - base.measures[drive]
-        if abs(turned) < 1e-14 or abs(driven) < 1e-300:
-            return span / 20
-        return float(abs(driven / turned) * self.rules.first_turn)
-
-
-def _interpolate(t: list[float], y: list[float]) -> Floats:
-    """Coefficients in (x − t[-1]) of the polynomial through the points, lowest first."""
-    x = np.array(t) - t[-1]
-    scale = np.max(np.abs(x)) or 1.0
-    powers = np.vander(x / scale, increasing=True)
-    return np.linalg.solve(powers, np.array(y)) / scale ** np.arange(len(x))
+        size = span / 20 if turned < 1e-14 else driven / turned * self.rules.first_turn
+        if base[volume] and change[volume]:
+            size = min(size, driven * self.rules.swell * abs(base[volume]) / change[volume])
+        return float(size)

@@ -179,6 +179,7 @@ class Newton:
         self.problem.assemble_tangent()
         self.factor.renew()
         border = self.border(unknown, closures)
+        self.schur = border.schur
         a = self.solve_linear(self.problem.load(scalar))
         sides = np.array([closure.slope(scalar) for closure in closures])
         a, q = border.eliminate(a, sides)

@@ -92,6 +92,13 @@ class Rules:
         cutbacks: consecutive failed increments after which the march gives up.
         turn: greatest change of the followed functional an increment may aim at.
         first_turn: the same for an increment from the linear response.
+        least: least increment, relative to the whole ramp.
+        jump: how much further, in units of the step that was expected, the conjugate may go in an
+            increment of the value; beyond it Newton may have found another branch.
+        swell: greatest relative change of the conjugate in an increment that drives it in place
+            of the value.
+        beyond: how far beyond a limit point a falling branch is followed, as a factor of the
+            conjugate.
     """
 
     easy: int = 5
@@ -102,6 +109,35 @@ class Rules:
     cutbacks: int = 6
     turn: float = np.deg2rad(60.0)
     first_turn: float = np.deg2rad(20.0)
+    least: float = 1e-7
+    jump: float = 2.0
+    swell: float = 0.3
+    beyond: float = 4.0
+
+
+@dataclasses.dataclass(frozen=True)
+class Critical:
+    """Where a body loses its stability, or gains it back, with all loads held.
+
+    Attributes:
+        kind: 'limit': a load that is driven has a greatest or a least value here, and the mode is
+            gone where its conjugate is held instead; 'bifurcation': another branch starts here, and
+            the mode is there however the load is driven.
+        scalar: the load that is driven.
+        value: its value, interpolated at a limit; that of the first state beyond a bifurcation.
+        conjugate: its conjugate there, such as the chamber volume.
+        followed: the followed functional there, if there is one.
+        before: unstable modes before it.
+        after: unstable modes beyond it.
+    """
+
+    kind: str
+    scalar: str
+    value: float
+    conjugate: float
+    followed: float | None
+    before: int
+    after: int
 
 
 @dataclasses.dataclass
@@ -109,12 +145,15 @@ class Report:
     """How a march ended.
 
     Attributes:
-        status: 'converged', or 'failed'.
-        reason: cause of the failure, or empty.
+        status: 'converged'; 'stopped' where the load cannot be reached; or 'failed'.
+        reason: why not converged, or empty.
         steps: converged increments.
         iterations: Newton iterations, failed increments included.
         factorisations: tangents factorised for them.
         cutbacks: failed increments.
+        per_step: iterations of each converged increment.
+        critical: where stability was lost or gained, in the order of the march.
+        detour: the ramp under way has turned from the value of its scalar to the conjugate.
     """
 
     status: str = "converged"
@@ -124,3 +163,9 @@ class Report:
     factorisations: int = 0
     cutbacks: int = 0
     per_step: list[int] = dataclasses.field(default_factory=list)
+    critical: list[Critical] = dataclasses.field(default_factory=list)
+    detour: bool = False
+
+    def __post_init__(self) -> None:
+        # a checkpoint gives back mappings
+        self.critical = [c if isinstance(c, Critical) else Critical(**c) for c in self.critical]

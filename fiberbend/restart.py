@@ -54,7 +54,7 @@ def load(folder: RunFolder, archive: Archive, march: March, recorder: Recorder) 
             if name:
                 states.setdefault(number, {})[name] = file[key]
     march.states = [archive.unpack(states[number]) for number in sorted(states)]
-    march.restore(march.states[-1])
+    march.equilibrium.restore(march.states[-1])
     march.ramp = position["ramp"]
     march.increment = position["increment"]
     march.report = Report(**position["report"])

@@ -126,7 +126,7 @@ class _Run:
             states = _on_rank_0(self.comm, lambda: section_states(case))
             if states is not None:
                 length = case.actuator.length
-                self.march.guide = states.guide(self.scene, reading.frames, length)
+                self.march.predictor.guide = states.guide(self.scene, reading.frames, length)
                 self.march.rules = steered(self.march.rules, case)
         self.progress.phase("solve")
         report = self.march.run(self.ramps)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
+
+import numpy as np
 
 from geometry.blocks import Layout, Point
 from geometry.mesh import MeshData
@@ -114,3 +117,46 @@ def _add_quarter(layout: Layout, radius: float, n: int, k: int, named: bool) -> 
         "solid", (right, ends[0], corner, ends[1]), (n, n), {2: center}, {0: start, 2: outer}
     )
     layout.add("solid", (up, corner, ends[2], ends[1]), (n, n), {3: center}, {1: end, 3: outer})
+
+
+def sphere_octant(inner: float, outer: float, divisions: tuple[int, int]) -> MeshData:
+    """The octant x, y, z ≥ 0 of a hollow sphere, every node on its sphere.
+
+    Three blocks, one for each face of a cube about the sphere that the octant meets.
+
+    Args:
+        inner: inner radius in mm.
+        outer: outer radius in mm.
+        divisions: elements along the radius, and along each of the two sides of a block.
+
+    Returns:
+        Mesh with surfaces "inner", "outer" and, in the planes x, y, z = 0, "left", "front" and
+        "bottom"; region "solid".
+    """
+    across = np.array([[1.0, -1.0, 0.0], [1.0, 1.0, -2.0]]) / np.sqrt([[2.0], [6.0]])
+
+    def seen(x: float, y: float, z: float) -> Point:
+        """A point of the cube as seen along its diagonal; its three faces fill a hexagon."""
+        u, v = across @ (x, y, z)
+        return (float(u), float(v))
+
+    n = (divisions[1], divisions[1])
+    one = seen(1, 1, 1)
+    ends = ("left", "front", "bottom")
+    layout = Layout()
+    for i in range(3):
+        # the face of the cube that lies on axis i + 2, between the two others
+        axes = np.roll(np.eye(3), i, axis=0)
+        a, b, c = (seen(*row) for row in (axes[2], axes[2] + axes[0], axes[2] + axes[1]))
+        names = [ends[int(np.argmax(axes[k]))] for k in range(2)]
+        layout.add("solid", (a, b, c, one), n, {}, {0: (names[1],), 1: (names[0],)})
+    sides = frozenset(ends)
+    stations = Stations(
+        (Segment(inner, outer, divisions[0], sides, False),), (("inner", None), ("outer", None))
+    )
+    flat = sweep(section_mesh(layout), stations)
+    plane = flat.nodes[:, :2] @ across
+    cube = plane + (1.0 - plane.max(axis=1, keepdims=True))
+    cube = np.tan(math.pi / 4 * cube)  # nearly equal elements
+    nodes = flat.nodes[:, 2:] * cube / np.linalg.norm(cube, axis=1, keepdims=True)
+    return dataclasses.replace(flat, nodes=nodes)

@@ -118,7 +118,7 @@ def test_a_failed_increment_is_rolled_back_exactly() -> None:
     assert np.array_equal(w, state.w)
     assert pressure == state.scalars["pressure"]
     # the fibers' strain is that of the state as well
-    body.march.restore(state)
+    body.march.equilibrium.restore(state)
     for key, discrete in body.scene.discrete.items():
         for name, values in discrete.state().items():
             assert np.array_equal(values, state.discrete[key][name])
