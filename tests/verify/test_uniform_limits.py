@@ -70,3 +70,8 @@ def test_torsion_of_a_tube() -> None:
     # Rivlin's torsion; the frame rides on the outer surface, so curvature, stretch and twist all
     # enter
     _close(limits.torsion(2), 2e-5)
+
+
+def test_double_helix_does_not_twist_when_it_may() -> None:
+    # twist is an unknown here, and its torque zero by the symmetry of the two hands
+    assert abs(limits.double_helix_twist(1, 0.06)) < 1e-10

@@ -201,6 +201,16 @@ def single_helix(n: int, hand: int, pitch: float = 3.0, pressure: float = 0.03) 
     ]
 
 
+def double_helix_twist(n: int, pressure: float) -> float:
+    """τ in rad/mm of the baseline with both hands, smeared, at a pressure in MPa."""
+    where = domain(BASELINE, n)
+    fibers = smear(where.data, BASELINE, Winding("double-helix", 3.0, 0.38))
+    effects = [*rubber(LAWS), ChamberPressure(), SmearedWinding(fibers, EA)]
+    scene = section(where, BASELINE, effects, twisted=True)
+    march(scene, Ramp("pressure", pressure, first=pressure / 10))
+    return scene.scalar(TWIST)
+
+
 def torsion(n: int) -> list[Check]:
     """The tube twisted by ψ = 0.05 rad/mm at constant length and radii, which takes a pressure.
 
