@@ -10,11 +10,9 @@ from fem.closures import Conjugate, Stationary, Target
 from fem.frames import Frames
 from fem.newton import Newton, Outcome
 from fem.predictor import Predictor
-from fem.program import Functional, State, measure
+from fem.program import MODES, Functional, State, measure
 from fem.scene import Scene
 
-MODES = "modes"
-"""Name of the measure that counts unstable modes."""
 TINY = 1e-5
 """Strain to a neighbour that shows a slope: its square is lost, round-off is not seen."""
 

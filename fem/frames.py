@@ -163,6 +163,27 @@ class Frames:
         step = (rotation[1:] * rotation[:-1].inv()).as_rotvec()
         return Rotation.from_rotvec(step / 2) * rotation[:-1]
 
+    def greatest(self, shape: Shape, directions: Floats) -> Floats:
+        """Greatest extent of every station's section in its own frame along directions, mm.
+
+        Args:
+            shape: of the body.
+            directions: (m, 2).
+
+        Returns:
+            (stations, m).
+        """
+        extent = (self._section + shape.warp)[:, :2] @ directions.T
+        greatest = np.full((len(self.z), len(directions)), -np.inf)
+        order = np.argsort(self._below, kind="stable")
+        below, first = np.unique(self._below[order], return_index=True)
+        if len(below):
+            between = np.maximum.reduceat(extent[order], first)
+            greatest[below] = between
+            greatest[below + 1] = np.maximum(greatest[below + 1], between)
+        total: Floats = self._body.domain.comm.allreduce(greatest, MPI.MAX)
+        return total
+
     def bending(self, shape: Shape) -> Floats:
         """Rotation about x of every station, unwrapped along the body from the root, rad, (k,)."""
         from scipy.spatial.transform import Rotation

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from fem.program import Critical, State, measure
+from fem.program import MODES, Critical, State, measure
 
 Floats = npt.NDArray[np.float64]
 
@@ -138,16 +138,15 @@ def crossing(states: Sequence[State], scalar: str, goal: float) -> float:
     return float(v[-2] + (between[0] if between else chord))
 
 
-def critical(states: Sequence[State], scalar: str, modes: str) -> list[Critical]:
+def critical(states: Sequence[State], scalar: str) -> list[Critical]:
     """Where stability was lost or gained between the last two states.
 
     Args:
         states: converged and judged states, the last one last.
         scalar: the load that is driven.
-        modes: name of the measure that counts unstable modes.
     """
     old, new = states[-2].measures, states[-1].measures
-    before, after = int(old.get(modes, 0)), int(new[modes])
+    before, after = int(old.get(MODES, 0)), int(new[MODES])
     rate = new[measure("rate", scalar)]
     found = []
     if _turned(states, scalar):

@@ -7,13 +7,15 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from fem.equilibrium import MODES, Equilibrium
+from fem.diagnosis import Diagnosis
+from fem.equilibrium import Equilibrium
 from fem.frames import Frames
 from fem.limit import critical, crossing, limit_ahead, limit_between, softens
 from fem.newton import Newton, Outcome
 from fem.predictor import distinct, lagrange
 from fem.program import Critical, Functional, Ramp, Report, Rules, State, measure
 from fem.scene import Scene
+from fem.selfcontact import Rod, first_contact
 
 JUMPED = "Newton went to another branch"
 BEYOND = "the load falls from here on"
@@ -109,6 +111,9 @@ class March:
         self.warn = warn
         self.equilibrium = Equilibrium(scene, newton, frames, followed)
         self.predictor = self.equilibrium.predictor
+        self.diagnosis = Diagnosis(scene)
+        self.rod: Rod | None = None
+        """The states as rods, to see whether the body passes through itself; None: not looked."""
         self.states: list[State] = []
         self.report = Report()
         self.ramp = 0
@@ -120,7 +125,8 @@ class March:
         """Capture the state at rest; without it nothing can be predicted."""
         scene = self.equilibrium.scene
         scene.set(scene.w.copy())
-        self.states = [self.equilibrium.capture()]
+        self.rest = self.equilibrium.capture()
+        self.states = [self.rest]
 
     def run(self, ramps: Sequence[Ramp]) -> Report:
         """March through all ramps in order, earlier loads held."""
@@ -197,13 +203,18 @@ class March:
             if new is None:
                 failures += 1
                 self.report.cutbacks += 1
+                self.increment = size * self.rules.cut
+                hopeless = (
+                    failures > self.rules.cutbacks or self.increment < self.rules.least * way.span
+                )
+                inverted = self.diagnosis.inverted() if hopeless else ""
                 self.equilibrium.restore(state)
                 self.warn(f"increment cut back: {outcome.reason}")
-                self.increment = size * self.rules.cut
-                if failures > self.rules.cutbacks:
-                    return self._end(outcome.reason)
-                if self.increment < self.rules.least * way.span:
-                    return self._end(f"{outcome.reason}, in ever smaller increments")
+                if hopeless:
+                    critical = self.report.critical
+                    return self._end(
+                        self.diagnosis.explain(self.states, self.rest, critical, outcome, inverted)
+                    )
                 if way.kind == kind == "value" and (
                     outcome.reason == BEYOND or softens(self.states, ramp.scalar)
                 ):
@@ -304,8 +315,17 @@ class March:
         return float(sign * min(passed)) if passed else None
 
     def _note(self, scalar: str) -> None:
-        """Report where stability was lost or gained in the last increment."""
-        self.report.critical += critical(self.states, scalar, MODES)
+        """Report what happened in the last increment to stability and to the body's clearance."""
+        self.report.critical += critical(self.states, scalar)
+        if self.rod is None or self.report.self_contact is not None:
+            return
+        old, new = self.states[-2:]
+        share = first_contact(self.rod, old, new)
+        if share is not None:
+            self.report.self_contact = {
+                name: (1 - share) * value + share * new.measures[name]
+                for name, value in old.measures.items()
+            }
 
     def _end(self, reason: str) -> bool:
         """The load cannot be reached."""

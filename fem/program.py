@@ -13,6 +13,10 @@ from fem.frames import Shape
 Floats = npt.NDArray[np.float64]
 
 
+MODES = "modes"
+"""Name of the measure that counts unstable modes."""
+
+
 class Functional(Protocol):
     """A scalar measure with its gradient, such as the bending angle."""
 
@@ -153,6 +157,7 @@ class Report:
         cutbacks: failed increments.
         per_step: iterations of each converged increment.
         critical: where stability was lost or gained, in the order of the march.
+        self_contact: measures where the body begins to pass through itself; None: it does not.
         detour: the ramp under way has turned from the value of its scalar to the conjugate.
     """
 
@@ -164,6 +169,7 @@ class Report:
     cutbacks: int = 0
     per_step: list[int] = dataclasses.field(default_factory=list)
     critical: list[Critical] = dataclasses.field(default_factory=list)
+    self_contact: dict[str, float] | None = None
     detour: bool = False
 
     def __post_init__(self) -> None:

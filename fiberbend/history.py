@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from fem.embedded import FiberPotential
-from fem.newton import Newton, Outcome
-from fem.program import State
+from fem.newton import Outcome
+from fem.program import MODES, State
 from fem.scene import Scene
 
 Floats = npt.NDArray[np.float64]
@@ -44,12 +44,11 @@ class Recorder:
         self._scene = scene
         self._gauge = gauge
         self._factor = scene.body.copies
-        self._volumetric = int(scene.domain.comm.allreduce(int(np.count_nonzero(scene.volumetric))))
-        self.rows = [self._row(0, rest, None, None)]
+        self.rows = [self._row(0, rest, None)]
 
-    def add(self, state: State, outcome: Outcome, newton: Newton) -> dict[str, Any]:
+    def add(self, state: State, outcome: Outcome) -> dict[str, Any]:
         """Append the row of a new state, at which the scene is; collective."""
-        row = self._row(len(self.rows), state, outcome, newton)
+        row = self._row(len(self.rows), state, outcome)
         self.rows.append(row)
         return row
 
@@ -58,9 +57,7 @@ class Recorder:
         for row, work in zip(self.rows, self._work(), strict=True):
             row["work_mJ"] = float(work)
 
-    def _row(
-        self, step: int, state: State, outcome: Outcome | None, newton: Newton | None
-    ) -> dict[str, Any]:
+    def _row(self, step: int, state: State, outcome: Outcome | None) -> dict[str, Any]:
         scene = self._scene
         tip = self._gauge.tip(state)
         row: dict[str, Any] = {
@@ -89,8 +86,8 @@ class Recorder:
         for name, value in loads.items():
             row[f"load {name}"] = state.scalars[name]
             row[f"conjugate {name}"] = self._factor * value
-        if newton is not None:
-            row["unstable_modes"] = newton.negative_pivots(scene.natural) - self._volumetric
+        if outcome is not None:
+            row["unstable_modes"] = int(state.measures[MODES])
             row |= self._gauge.last_columns(state)
         return row
 

@@ -14,7 +14,7 @@ from fem.checkpoint import Archive
 from fem.embedded import FiberPotential
 from fem.newton import Outcome
 from fem.program import Ramp, Report, State
-from fiberbend import models, restart
+from fiberbend import models, restart, stability
 from fiberbend.assembly import assemble
 from fiberbend.case import Case
 from fiberbend.case_effects import BlockedTipEffect
@@ -104,6 +104,7 @@ class _Run:
         self.model = model
         self.blocked = case.find(BlockedTipEffect)
         self.snapshots: list[Snapshot] = []
+        self.warnings: list[str] = []
 
     def go(self, again: bool) -> RunResult:
         """Mesh, compile, solve, write."""
@@ -119,7 +120,9 @@ class _Run:
         self.recorder = Recorder(self.scene, reading.gauge(), self.march.states[0])
         if again and self.folder is not None:
             self.snapshots = restart.load(self.folder, self.archive, self.march, self.recorder)
+            self._remark_stability()
             self.progress.message(f"resumed after step {self.recorder.rows[-1]['step']}")
+        self.march.rod = stability.rod(self.scene, reading.frames, case.actuator.cap)
         self._remark()
         if reading.frames is not None and guides(case):
             self.progress.phase("section")
@@ -166,7 +169,8 @@ class _Run:
     # --- steps ---------------------------------------------------------------------------------
 
     def _on_step(self, state: State, outcome: Outcome) -> None:
-        row = self.recorder.add(state, outcome, self.newton)
+        row = self.recorder.add(state, outcome)
+        self._remark_stability()
         self.progress.step(
             row["step"],
             self._fraction(state),
@@ -180,6 +184,13 @@ class _Run:
         if self.folder is not None and self.model not in UNIFORM:
             self.recorder.integrate()
             restart.save(self.folder, self.archive, self.march, self.recorder.rows)
+
+    def _remark_stability(self) -> None:
+        """Say once where stability was lost or gained, and where the body meets itself."""
+        for text in stability.remarks(self.march.report):
+            if text not in self.warnings:
+                self.warnings.append(text)
+                self.progress.message(text)
 
     def _fraction(self, state: State) -> float:
         """Part of all ramps that is done."""
@@ -249,6 +260,11 @@ class _Run:
     # --- results -------------------------------------------------------------------------------
 
     def _status(self, report: Report) -> tuple[str, str]:
+        if report.status == "stopped":
+            ramp = self.ramps[self.march.ramp]
+            unit, factor = ("kPa", 1e3) if ramp.scalar == "pressure" else ("", 1.0)
+            target = f"{factor * ramp.target:g} {unit}".strip()
+            return "stopped", stability.stopped(report, target, self.march.rules.beyond)
         if report.status == "failed":
             row = self.recorder.rows[-1]
             return "failed", (
@@ -285,6 +301,8 @@ class _Run:
             "newton_iterations": report.iterations,
             "factorisations": report.factorisations,
             "cutbacks": report.cutbacks,
+            "warnings": self.warnings,
+            "critical_points": stability.critical_points(report, scene.body.copies),
             "wall_s": self._wall(),
             "peak_memory_MB": round(memory, 1),
             "ranks": self.comm.size,
