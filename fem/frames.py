@@ -181,7 +181,7 @@ class Frames:
             between = np.maximum.reduceat(extent[order], first)
             greatest[below] = between
             greatest[below + 1] = np.maximum(greatest[below + 1], between)
-        total: Floats = self._body.domain.comm.allreduce(greatest, MPI.MAX)
+        total: Floats = np.max(self._body.domain.comm.allgather(greatest), axis=0)
         return total
 
     def bending(self, shape: Shape) -> Floats:

@@ -150,7 +150,7 @@ def test_giving_up_keeps_the_last_converged_state() -> None:
     rules = Rules(cutbacks=2)
     body = bender(rules, wrap=_Hopeless)  # type: ignore[arg-type]
     report = body.run([Ramp("pressure", 0.02, largest=0.002)])
-    assert (report.status, report.reason) == ("failed", "hopeless")
+    assert (report.status, report.reason) == ("failed", "numerical: hopeless")
     assert report.cutbacks == rules.cutbacks + 1
     assert report.steps == 2
     assert np.array_equal(body.scene.w, body.states[-1].w)
