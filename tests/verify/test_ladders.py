@@ -10,7 +10,7 @@ import pytest
 from tests.verify import helix
 from tests.verify.ladder import Ladder, Rung, rates
 from tests.verify.problems import LADDERS
-from tests.verify.report import HEAD, helix_section, ladder_section
+from tests.verify.report import HEAD, helix_section, ladder_section, limits_section
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "verification.md"
 CELLS = ("hexahedron", "tetrahedron")
@@ -34,7 +34,9 @@ class Book:
         """Write the page."""
         sections = [ladder_section(x, self.climbed[x.title]) for x in LADDERS]
         PAGE.parent.mkdir(exist_ok=True)
-        PAGE.write_text("\n".join([HEAD, *sections, self.helix]), encoding="utf-8")
+        PAGE.write_text(
+            "\n".join([HEAD, *sections, self.helix, limits_section()]), encoding="utf-8"
+        )
 
 
 @pytest.fixture(scope="module")

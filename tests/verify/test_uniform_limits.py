@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from tests.verify import uniform_limits as limits
@@ -64,6 +66,15 @@ def test_single_helix_unwinds_under_pressure(hand: int) -> None:
     twist, stretch = limits.single_helix(1, hand)
     assert twist.found * hand < 0
     _close([twist, stretch], 1e-4)
+
+
+@pytest.mark.parametrize(
+    "limit", [limits.beam, limits.free_tube, limits.wound_tube, limits.torsion]
+)
+def test_errors_fall_with_the_fourth_power(limit: Callable[[int], list[Check]]) -> None:
+    # resultants and pressures are derivatives of an energy: twice the order of its strains
+    for coarse, fine in zip(limit(1), limit(2), strict=True):
+        assert abs(fine.error) < abs(coarse.error) / 12, coarse.name
 
 
 def test_torsion_of_a_tube() -> None:
