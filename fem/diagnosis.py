@@ -107,7 +107,9 @@ class Diagnosis:
         gap = self._gap()
         found = []
         if ratio < EMPTIED and state.scalars[PRESSURE] < 0:
-            found.append(f"the chamber collapses under vacuum: {100 * ratio:.0f} % of it is left")
+            found.append(
+                f"the chamber collapses under vacuum: {100 * ratio:.0f} % of its volume is left"
+            )
         if gap is not None:
             found.append(f"opposite walls of the chamber meet: {gap:.2g} mm apart")
         return found

@@ -51,6 +51,9 @@ class Discrete(Protocol):
     def add_residual(self, b: Floats) -> None:
         """Add ∂Π/∂w to local coefficients (owned and ghosts)."""
 
+    def add_noise(self, b: Floats) -> None:
+        """Add the least forces that double precision resolves, at rest, to local coefficients."""
+
     def add_tangent(self, matrix: PETSc.Mat, free: npt.NDArray[np.bool_]) -> None:
         """Add ∂²Π/∂w² on the free local dofs."""
 

@@ -180,6 +180,16 @@ class FiberPotential:
         """Add ∂Π/∂w = Σ ℓ N ∂e/∂w to local coefficients."""
         self._add(b, (self.length * self.force)[:, None] * self._b)
 
+    def add_noise(self, b: Floats) -> None:
+        """Add the forces that round-off in the strains makes, at rest, to local coefficients.
+
+        F T is a sum of positions over the size of an element: its error is that of the summands.
+        """
+        x = np.abs(self._reference)[:, None, :, None]
+        error = np.finfo(float).eps * np.linalg.norm((np.abs(self._slope) @ x)[..., 0], axis=2)
+        force = self.length * self.stiffness * np.sum(self._share * error, axis=1)
+        self._add(b, force[:, None] * np.abs(self._b))
+
     def _add(self, b: Floats, values: Floats) -> None:
         b += np.bincount(self._dofs.ravel(), values.ravel(), len(b))
 

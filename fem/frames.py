@@ -147,6 +147,30 @@ class Frames:
         centre = np.vstack([start, start + np.cumsum(steps, axis=0)])
         return Shape(rotation.as_matrix(), centre, warp)
 
+    def between(self, old: Shape, new: Shape, share: float) -> Shape:
+        """A shape between two others, however far apart: bends and steps station by station.
+
+        Args:
+            old: the shape at 0.
+            new: the shape at 1; its warp is taken.
+            share: from 0 to 1.
+        """
+        from scipy.spatial.transform import Rotation
+
+        first, bends, steps = np.zeros(3), np.zeros(3), np.zeros(3)
+        for shape, weight in ((old, 1 - share), (new, share)):
+            rotation = Rotation.from_matrix(shape.rotation)
+            first = first + weight * rotation[0].as_rotvec()
+            bends = bends + weight * (rotation[:-1].inv() * rotation[1:]).as_rotvec()
+            steps = steps + weight * self._steps(shape)
+        turned = [Rotation.from_rotvec(first)]
+        for bend in np.atleast_2d(bends):
+            turned.append(turned[-1] * Rotation.from_rotvec(bend))
+        rotation = Rotation.concatenate(turned)
+        start = (1 - share) * old.centre[0] + share * new.centre[0]
+        along = np.cumsum(self._middle(rotation).apply(steps), axis=0)
+        return Shape(rotation.as_matrix(), np.vstack([start, start + along]), new.warp)
+
     def _steps(self, shape: Shape) -> Floats:
         """Steps of the centre-line from station to station in the turning frame, mm, (k − 1, 3)."""
         from scipy.spatial.transform import Rotation

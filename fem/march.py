@@ -223,7 +223,8 @@ class March:
             if goal is not None and not requests.met(new, goal, kind, way):
                 self.equilibrium.restore(state)
                 continue
-            failures = 0
+            if not (self.report.detour and np.isfinite(way.end)):
+                failures = 0
             self.states = [*self.states[-2:], new]
             self.report.steps += 1
             self.report.per_step.append(outcome.iterations)

@@ -32,6 +32,7 @@ class Problem(Protocol):
     free: npt.NDArray[np.bool_]
     volumetric: npt.NDArray[np.bool_]
     volume_scale: float
+    force_noise: float
     discrete: dict[str, Any]
     body: Any
 
@@ -65,8 +66,8 @@ class Settings:
     """Limits of one Newton solve.
 
     Attributes:
-        tolerance: of forces, relative to reactions and fiber forces, and of volumes, relative to
-            the volume of an element; each for itself.
+        tolerance: of forces, relative to reactions and fiber forces but no finer than round-off,
+            and of volumes, relative to the volume of an element; each for itself.
         iterations: most iterations.
         hybrid: use the predicted fiber force in the geometric stiffness.
         reuse: take the last factor again where it converges fast; a solve costs a twentieth of
@@ -310,7 +311,8 @@ class _Solve:
         if not np.isfinite(force):
             self.reason = INVERTED.format(self.least)
             return int(reasons.DIVERGED_FNORM_NAN)
-        if force <= tolerance and volume <= tolerance and closing <= tolerance:
+        resolved = max(tolerance, self.problem.force_noise / self.scale)
+        if force <= resolved and volume <= tolerance and closing <= tolerance:
             return int(reasons.CONVERGED_FNORM_RELATIVE)
         if iteration >= self.newton.settings.iterations:
             self.reason = f"no convergence in {iteration} iterations"

@@ -93,7 +93,8 @@ class Rules:
         easy: iterations up to which the next increment grows by `grow`.
         slow: iterations from which it shrinks by `shrink`.
         cut: factor after a failed increment.
-        cutbacks: consecutive failed increments after which the march gives up.
+        cutbacks: consecutive failed increments after which the march gives up; on a falling
+            branch beyond a limit point, which only explains why a load is not reached, all of them.
         turn: greatest change of the followed functional an increment may aim at.
         first_turn: the same for an increment from the linear response.
         least: least increment, relative to the whole ramp.

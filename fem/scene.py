@@ -46,6 +46,7 @@ class Scene:
         effects: the effects by these names.
         natural: global scalars in which the potential is stationary at an equilibrium.
         force_scale: scale of the forces in the last residual.
+        force_noise: norm of the forces that round-off in stiff discrete potentials makes.
         free: local dofs (owned and ghosts) that no constraint holds.
         discrete: by key, the potentials with own code.
 
@@ -86,6 +87,7 @@ class Scene:
         self.natural = tuple(name for name in self.body.natural if name not in held)
         self._compile(potentials)
         self._constrain(constraints)
+        self.force_noise = self._noise()
 
     def __del__(self) -> None:
         if hasattr(self, "matrix") and compat.may_free(self.matrix):
@@ -246,6 +248,14 @@ class Scene:
         np.add.at(values, lead, values[follow])
         values[follow] = 0.0
         return values, norm
+
+    def _noise(self) -> float:
+        noise = np.zeros(self.body.local)
+        for discrete in self.discrete.values():
+            discrete.update(self.body.w.x.array)
+            discrete.add_noise(noise)
+        total = compat.total(self.domain.comm, float(noise @ noise))
+        return float(np.sqrt(total))
 
     def residual(self) -> tuple[Floats, float]:
         """R = ∂Π/∂w at the present state.

@@ -101,12 +101,12 @@ class BodyRod:
         self._body, self._frames = body, frames
 
     def pose(self, old: State, new: State, share: float) -> Pose:
-        """Rotations between the states on their group."""
+        """Bent station by station."""
         assert old.shape is not None
         assert new.shape is not None
         shape = new.shape
         if share != 1:
-            shape = self._frames.extrapolate([old.shape, new.shape], np.array([1 - share, share]))
+            shape = self._frames.between(old.shape, new.shape, share)
         return Pose(self._frames.z, shape.centre, shape.rotation, self._reach(shape))
 
     def _reach(self, shape: Shape) -> Floats:

@@ -10,7 +10,7 @@ import pytest
 
 from geometry.checks import determinants, region_volumes, surface_area
 from geometry.mesh import MeshData
-from geometry.shapes import box, cylinder, tube_sector
+from geometry.shapes import box, cylinder, sphere_octant, tube_sector
 from geometry.tets import to_tetrahedra
 
 
@@ -26,7 +26,16 @@ def _full_bar(n: int) -> MeshData:
     return cylinder(10, 5, n, 1, quarter=False)
 
 
-SOLIDS = [(_tube, 27 * math.pi), (_bar, 125 * math.pi), (_full_bar, 500 * math.pi)]
+def _hollow(n: int) -> MeshData:
+    return sphere_octant(6, 10, (n, n))
+
+
+SOLIDS = [
+    (_tube, 27 * math.pi),
+    (_bar, 125 * math.pi),
+    (_full_bar, 500 * math.pi),
+    (_hollow, math.pi / 6 * (10**3 - 6**3)),
+]
 
 
 @pytest.mark.parametrize(("build", "volume"), SOLIDS)
@@ -63,3 +72,13 @@ def test_full_cylinder_is_watertight() -> None:
     layer = 4 * 3 * 2**2
     assert len(mesh.cells) == layer
     assert len(mesh.nodes) == 3 * (4 * layer + 1 + 8 * 2)
+
+
+def test_octant_of_a_sphere() -> None:
+    # its planes are mirrors of a sphere, and a pressure acts on its inner side
+    mesh = sphere_octant(6, 10, (2, 3))
+    for name, radius in (("inner", 6), ("outer", 10)):
+        assert np.linalg.norm(mesh.nodes[mesh.facet_nodes(name)], axis=-1) == pytest.approx(radius)
+    for axis, name in enumerate(("left", "front", "bottom")):
+        assert len(mesh.facets[name]) == 2 * 2 * 3
+        assert np.abs(mesh.nodes[mesh.facet_nodes(name)][..., axis]).max() < 1e-12
