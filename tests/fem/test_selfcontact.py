@@ -73,7 +73,7 @@ def _uniform_states(turns: float) -> tuple[UniformRod, State, State]:
     mesh = swept_section(ACTUATOR, MeshSize(axial=4, section=1, half=True))
     scene = Scene(
         Domain(mesh),
-        [Elastic("neo-hooke", dict.fromkeys(mesh.regions, {"mu": 1.0}))],
+        [Elastic("neo-hooke", {name: {"mu": 1.0} for name in mesh.regions})],
         lambda domain, fields: Section(domain, fields, ACTUATOR.length),
     )
     angles = (0.0, 2 * np.pi * turns)
@@ -109,7 +109,9 @@ def test_a_short_increment_before_the_contact_is_clear() -> None:
 def test_first_contact_of_a_body(half: bool) -> None:
     # the same arc as a body that is bent in one go: stations turn by more than half a turn
     domain = Domain(swept_body(ACTUATOR, MeshSize(axial=8, section=1, half=half)))
-    scene = Scene(domain, [Elastic("neo-hooke", dict.fromkeys(domain.data.regions, {"mu": 1.0}))])
+    scene = Scene(
+        domain, [Elastic("neo-hooke", {name: {"mu": 1.0} for name in domain.data.regions})]
+    )
     frames = Frames(scene.body)
     states = []
     for angle in (1e-6, 2 * np.pi):
