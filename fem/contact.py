@@ -1,4 +1,4 @@
-"""What a user reads off a contact: where a surface touches its obstacle, and how deep it lies in."""
+"""What a user reads off a contact: how much of a surface touches, and how deep it lies in."""
 
 from __future__ import annotations
 
@@ -41,12 +41,13 @@ class Probe:
         self._numbers = contact.obstacle.numbers()
         domain = scene.domain
         data = domain.data
-        pairs = data.facets[contact.surface]
+        pairs = np.concatenate([data.facets[name] for name in contact.surfaces])
+        vectors = np.concatenate([area_vectors(data, name)[1] for name in contact.surfaces])
         mine = np.flatnonzero(domain.local_cell[pairs[:, 0]] >= 0)
         points, _, _ = facet_rules(data.cell_type)
         self._values = shape_functions(data.cell_type, points)[0][pairs[mine, 1]]
         self._nodes = data.cells[pairs[mine, 0]]
-        self._area = np.linalg.norm(area_vectors(data, contact.surface)[1][mine], axis=2)
+        self._area = np.linalg.norm(vectors[mine], axis=2)
 
     def read(self) -> Touch:
         """The contact at the present state; collective."""

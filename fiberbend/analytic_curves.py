@@ -11,7 +11,7 @@ from analytic.stress import Floats, Stress, wound
 from fiberbend import bridge
 from fiberbend.case import Case
 from fiberbend.case import Material as MaterialSpec
-from fiberbend.case_effects import BlockedTipEffect, HoopsEffect, StraightEffect, WindingEffect
+from fiberbend.case_effects import HoopsEffect, WindingEffect, hold_straight
 from materials.laws import energy_slopes
 
 LIMITING = 10.0
@@ -80,13 +80,13 @@ def assumptions(case: Case) -> list[str]:
 
 def held(case: Case) -> bool:
     """The actuator cannot bend: its tip force is asked for, not its angle."""
-    return case.find(BlockedTipEffect) is not None or case.find(StraightEffect) is not None
+    return hold_straight(case.effects)
 
 
 def lever_arm(case: Case) -> float:
     """L_f in mm: from the end of the chamber to the middle of the post, or the whole cap."""
-    post = case.find(BlockedTipEffect)
-    return case.actuator.cap - (post.post_length / 2 if post is not None else 0.0)
+    strips = bridge.strips(bridge.tip_support(case))
+    return case.actuator.cap - (strips.post_length / 2 if strips is not None else 0.0)
 
 
 def dimensions(case: Case) -> tuple[float, float, float, float]:

@@ -12,7 +12,7 @@ from fem.march import March
 from fem.newton import Newton, Outcome, Settings
 from fem.program import Ramp, Rules, State
 from fem.scene import Scene
-from fiberbend import models
+from fiberbend import contact, models
 from fiberbend.case import Case
 from fiberbend.choice import FIRST_TURN, TURN
 from fiberbend.registry import Parts, build
@@ -61,13 +61,16 @@ def assemble(
     parts = build(case, mesh, model)
     scene = Scene(Domain(mesh, comm), parts.effects, models.kinematics(case, model))
     reading = models.reading(case, scene)
-    newton = Newton(scene, comm, Settings(tolerance=case.solver.tolerance))
+    settings = contact.settings(case, Settings(tolerance=case.solver.tolerance))
+    newton = Newton(scene, comm, settings)
     turn = case.solver.max_turn
     rules = Rules(
         cutbacks=case.solver.max_cutbacks,
         turn=turn or TURN[model],
         first_turn=min(turn or TURN[model], FIRST_TURN[model]),
     )
+    rules = contact.pace(case, rules)
     march = March(scene, newton, reading.frames, reading.followed, rules, on_step, warn)
+    march.predictor.memory = contact.memory(case, march.predictor.memory)
     march.start()
     return Assembly(parts, scene, reading, newton, march, parts.ramps(scene.body.copies))

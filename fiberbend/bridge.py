@@ -34,11 +34,25 @@ def mesh_size(mesh: case.Mesh, half: bool) -> MeshSize:
     return MeshSize(axial=mesh.axial, section=mesh.section, element=mesh.element, half=half)
 
 
-def strips(tip: case_effects.BlockedTipEffect) -> Strips:
-    """The strips of a blocked tip as the geometry takes them."""
+def strips(tip: case_effects.BlockedTipEffect | case_effects.ContactEffect | None) -> Strips | None:
+    """The strips of roof and post as the geometry takes them; None where neither exists."""
     from geometry.size import Strips
 
+    if isinstance(tip, case_effects.ContactEffect):
+        if tip.roof is None and tip.post is None:
+            return None
+        roof, post = tip.roof or case_effects.Roof(), tip.post or case_effects.Post()
+        return Strips(roof_half_width=roof.width / 2, post_length=post.length)
+    if tip is None:
+        return None
     return Strips(roof_half_width=tip.roof_width / 2, post_length=tip.post_length)
+
+
+def tip_support(
+    given: case.Case,
+) -> case_effects.BlockedTipEffect | case_effects.ContactEffect | None:
+    """The effect of a case that may have a roof and a post."""
+    return given.find(case_effects.BlockedTipEffect) or given.find(case_effects.ContactEffect)
 
 
 def material(spec: case.Material) -> Material:

@@ -10,15 +10,17 @@ from fiberbend import bridge
 from fiberbend.case import Actuator, Case, Material, Materials, Mesh, Output, Solver
 from fiberbend.case_effects import (
     BlockedTipEffect,
+    ContactEffect,
     Effect,
     Fiber,
     GravityEffect,
     HoopsEffect,
     PressureEffect,
-    StraightEffect,
     WindingEffect,
+    hold_straight,
 )
 from fiberbend.choice import mirror_breakers
+from fiberbend.clearance import wrong_obstacles
 from fiberbend.fineness import misfitting
 from fiberbend.measured import what_is_wrong
 from fiberbend.problems import Problem, found
@@ -71,6 +73,7 @@ def check(parts: Parts) -> Iterator[Problem]:
     yield from _winding(parts)
     yield from _materials(parts)
     yield from _gravity(parts)
+    yield from _contact(parts)
     yield from _mesh(parts)
     yield from _solver(parts)
     yield from _output(parts)
@@ -207,6 +210,18 @@ def _gravity(parts: Parts) -> Iterator[Problem]:
                 yield Problem(f"{path}.density", "missing, expected a density for gravity")
 
 
+def _contact(parts: Parts) -> Iterator[Problem]:
+    path, contact = parts.find(ContactEffect)
+    if contact is None:
+        return
+    other, tip = parts.find(BlockedTipEffect)
+    for name in ("roof", "post"):
+        if tip is not None and getattr(contact, name) is not None:
+            yield Problem(f"{path}.{name}", f"{other} holds it already, expected one of them")
+    actuator = parts.actuator if not any(_section(parts)) else None
+    yield from wrong_obstacles(actuator, path, contact)
+
+
 def _mesh(parts: Parts) -> Iterator[Problem]:
     if parts.mesh is None:
         return
@@ -216,7 +231,9 @@ def _mesh(parts: Parts) -> Iterator[Problem]:
     # elsewhere the mesh depends on the model and its defaults, and is checked with these
     if parts.model == "body" and parts.actuator is not None and not any(_section(parts)):
         size = bridge.mesh_size(parts.mesh, half=True)
-        yield from misfitting(parts.actuator, size, *parts.find(BlockedTipEffect))
+        path, tip = parts.find(BlockedTipEffect)
+        path, tip = (path, tip) if tip is not None else parts.find(ContactEffect)
+        yield from misfitting(parts.actuator, size, path, tip)
 
 
 def _solver(parts: Parts) -> Iterator[Problem]:
@@ -259,8 +276,7 @@ def _output(parts: Parts) -> Iterator[Problem]:
         if pressure is None:
             wrong: str | None = "no effect without pressure, expected no value"
         else:
-            blocked = any(parts.find(kind)[1] for kind in (BlockedTipEffect, StraightEffect))
-            wrong = what_is_wrong(output.measured, blocked)
+            wrong = what_is_wrong(output.measured, hold_straight(parts.effects.values()))
         if wrong is not None:
             yield Problem("output.measured", wrong)
     for index, value in enumerate(output.at_pressures):

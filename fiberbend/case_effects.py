@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, ClassVar, Literal
 
 from pydantic import ConfigDict, Field, create_model, model_serializer, model_validator
@@ -10,9 +11,11 @@ from pydantic_core import PydanticCustomError
 from fiberbend.fields import (
     Acceleration,
     Angle,
+    Bedding,
     Length,
     Model,
     Modulus,
+    Position,
     SignedPressure,
     Volume,
     Width,
@@ -121,6 +124,76 @@ class BlockedTipEffect(Effect):
     """Length of the strip at the end of the tip cap's underside that rests on the post."""
 
 
+class Roof(Model):
+    """A rigid, straight bar over the chamber."""
+
+    gap: Width = 0.0
+    """Clearance at rest over the highest line of the body."""
+    width: Length = 4.0
+    """Width of the strip along the crown that may touch it."""
+
+
+class Post(Model):
+    """A rigid plane under the end of the tip cap."""
+
+    gap: Width = 0.0
+    """Clearance at rest under the cap."""
+    length: Length = 2.0
+    """Length of the strip at the end of the tip cap's underside that may rest on it."""
+
+
+class Plane(Model):
+    """A rigid plane; the body stays on the side to which its normal points."""
+
+    point: tuple[Position, Position, Position] = Field(strict=False)
+    """x, y and z of one of its points; z = 0 is the root end of the chamber, y = 0 the lower face
+    of the floor, and the body bends toward -y."""
+    normal: tuple[float, float, float] = Field(strict=False)
+    """Direction out of the obstacle, of any length; [0, 1, 0] is a table under the body."""
+
+
+class Cylinder(Model):
+    """A rigid round bar across the body, along x."""
+
+    center: tuple[Position, Position] = Field(strict=False)
+    """y and z of its axis."""
+    radius: Length
+    """Radius of the bar."""
+
+
+Obstacle = Roof | Post | Plane | Cylinder
+"""Anything rigid that a body may touch."""
+
+
+class ContactEffect(Effect):
+    """Rigid obstacles without friction that the outer surface may touch and leave."""
+
+    name = "contact"
+
+    roof: Roof | None = None
+    """A straight roof over the chamber; with a post, the paper's test of the tip force."""
+    post: Post | None = None
+    """A post under the tip."""
+    plane: Plane | None = None
+    """A plane anywhere."""
+    cylinder: Cylinder | None = None
+    """A round bar to be grasped."""
+    stiffness: Bedding | None = None
+    """Pressure per depth with which the obstacles yield; a hundred times the wall's modulus by the
+    thickness of sheath or wall unless said."""
+
+    @property
+    def obstacles(self) -> dict[str, Obstacle]:
+        """Those that the case names."""
+        all_of_them: dict[str, Obstacle | None] = {
+            "roof": self.roof,
+            "post": self.post,
+            "plane": self.plane,
+            "cylinder": self.cylinder,
+        }
+        return {name: item for name, item in all_of_them.items() if item is not None}
+
+
 class StraightEffect(Effect):
     """The body held straight, zero curvature: the blocked state of uniform bending."""
 
@@ -138,10 +211,20 @@ EFFECTS: dict[str, type[Effect]] = {
         HoopsEffect,
         GravityEffect,
         BlockedTipEffect,
+        ContactEffect,
         StraightEffect,
     )
 }
 """Every effect that a case can name; each at most once in a case."""
+
+
+def hold_straight(effects: Iterable[Effect]) -> bool:
+    """Whether effects keep the actuator from bending: its force is asked for, not its angle."""
+    return any(
+        isinstance(effect, BlockedTipEffect | StraightEffect)
+        or (isinstance(effect, ContactEffect) and bool(effect.roof and effect.post))
+        for effect in effects
+    )
 
 
 class _OneEffect(Model):

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator
 from fiberbend.case import Case
 from fiberbend.case_effects import (
     BlockedTipEffect,
+    ContactEffect,
     Effect,
     GravityEffect,
     HoopsEffect,
@@ -104,6 +105,8 @@ def _refuses(model: str, effect: Effect) -> str:
         return "weight bends no uniform arc"
     if model in UNIFORM and isinstance(effect, BlockedTipEffect):
         return "roof and post need the ends of a body (effect straight: the blocked uniform bend)"
+    if isinstance(effect, ContactEffect):
+        return "obstacles need a body in space (effect straight: the blocked uniform bend)"
     if isinstance(effect, WindingEffect):
         if effect.representation == "discrete" and model != "cell":
             return "only cell and body have turns (as: smeared, or leave `as` to the model)"
@@ -176,3 +179,5 @@ def mirror_breakers(effects: Iterable[Effect]) -> Iterator[str]:
             yield "a single helix is not its own mirror image"
         if isinstance(effect, GravityEffect) and effect.direction.endswith("x"):
             yield "gravity along x pulls to one side"
+        if isinstance(effect, ContactEffect) and effect.plane and effect.plane.normal[0] != 0:
+            yield "a plane that leans sideways pushes to one side"

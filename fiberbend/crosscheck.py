@@ -21,7 +21,12 @@ from fiberbend import crosscheck_causes as why
 from fiberbend.analytic_curves import dimensions, held, no_analytic
 from fiberbend.bulging import BULGING_PITCH, bulging, resolved
 from fiberbend.case import Case
-from fiberbend.case_effects import GravityEffect, PressureEffect, WindingEffect
+from fiberbend.case_effects import (
+    ContactEffect,
+    GravityEffect,
+    PressureEffect,
+    WindingEffect,
+)
 from fiberbend.crosscheck_models import (
     Other,
     Straight,
@@ -46,6 +51,8 @@ _SMEARED = 0.5
 _BULGING = 5.5
 _LEAST_ANGLE = 1.0
 _LEAST_LOSS = 0.5
+_FULL = 0.4
+"""Part of the greatest pressure from which a body lies firmly on roof and post."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -178,13 +185,16 @@ def crosscheck(
     if case.find(PressureEffect) is None:
         return nothing
     blocked = held(case)
-    judged = case.find(GravityEffect) is None
+    alone = _alone(case)
     columns = ("pressure_kPa", "tip_force_N") if blocked else ("angle_deg", "pressure_kPa")
     others = (
         force_models(case, model, straight) if blocked else bending_models(case, model, section)
     )
     at, run = (_column(rows, name) for name in columns)
-    counts = np.abs(at) > (0.0 if blocked else _LEAST_ANGLE)
+    least = 0.0 if blocked else _LEAST_ANGLE
+    if blocked and case.find(ContactEffect) is not None:
+        least = _FULL * np.abs(at).max()
+    counts = np.abs(at) > least
     added: list[Row] = [{} for _ in rows]
     lines, comparisons = [], []
     for other in others:
@@ -198,7 +208,7 @@ def crosscheck(
             index, percent = worst
             where = f"{at[index]:.1f}{' kPa' if blocked else '°'}"
             limit, causes = None, []
-            if judged and not (model == "analytic" and other.line):
+            if not alone and not (model == "analytic" and other.line):
                 limit = _limit(case, model, other, blocked)
                 causes = why.find(case, model, rows[index], other, float(values[index]))
             comparisons.append(
@@ -206,8 +216,8 @@ def crosscheck(
             )
     points: tuple[Points, ...] = ()
     remarks = [] if blocked else _unresolved(case, model, rows, [o.name for o in others])
-    if not judged:
-        remarks.append("gravity acts in this run alone: its differences are shown, not judged")
+    if alone:
+        remarks.append(f"{alone} in this run alone: its differences are shown, not judged")
     if measured is not None:
         points = (Points(f"measured ({measured.source})", *measured.shown()),)
         comparison, outside = _beside_measured(rows, columns, points[0], blocked)
@@ -224,6 +234,13 @@ def crosscheck(
         remarks=tuple(remarks),
         calibration=None if measured is None or blocked else _calibration(case, measured),
     )
+
+
+def _alone(case: Case) -> str:
+    """What acts on the run and on no model beside it; empty for nothing."""
+    if case.find(GravityEffect) is not None:
+        return "gravity acts"
+    return "obstacles act" if case.find(ContactEffect) is not None and not held(case) else ""
 
 
 def band(case: Case, model: str) -> float:

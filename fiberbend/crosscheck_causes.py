@@ -23,7 +23,7 @@ from fiberbend.analytic_curves import (
 )
 from fiberbend.bulging import bulging, resolved
 from fiberbend.case import Case
-from fiberbend.case_effects import BlockedTipEffect, WindingEffect
+from fiberbend.case_effects import WindingEffect
 from fiberbend.crosscheck_models import Other
 
 Row = Mapping[str, Any]
@@ -183,7 +183,7 @@ def _of_force(case: Case, row: Row, force: float) -> list[Cause]:
         text = f"the tip is guided, not held: the section z = L turns by {rotation:.1f}°"
         found.append(Cause("guided tip", None, text, -1))
     sheath, wall = case.materials.sheath, bridge.material(case.materials.wall)
-    if sheath is not None and case.find(BlockedTipEffect) is not None:
+    if sheath is not None and bridge.strips(bridge.tip_support(case)) is not None:
         ratio = bridge.material(sheath).initial_shear_modulus / wall.initial_shear_modulus
         text = f"the sheath under roof and post, {ratio:.2f} times as stiff as the wall, yields"
         if ratio < _SOFT:

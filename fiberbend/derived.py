@@ -5,6 +5,7 @@ from __future__ import annotations
 from fiberbend.case import Case, Output, Solver
 from fiberbend.case_effects import (
     BlockedTipEffect,
+    ContactEffect,
     GravityEffect,
     HoopsEffect,
     PressureEffect,
@@ -12,6 +13,8 @@ from fiberbend.case_effects import (
     WindingEffect,
 )
 from fiberbend.problems import CaseError, Problem
+
+_LEFT_OUT = (PressureEffect, GravityEffect, BlockedTipEffect, ContactEffect, StraightEffect)
 
 
 def load(*, to: float | None = None, angle: float | None = None) -> PressureEffect:
@@ -34,7 +37,7 @@ def as_section(case: Case, pressure: PressureEffect) -> Case:
         if isinstance(effect, HoopsEffect):
             text = "the section model beside it needs a winding with pitch and fiber"
             raise CaseError([Problem(f"effects.{index}.hoops", text)])
-        if isinstance(effect, PressureEffect | GravityEffect | BlockedTipEffect | StraightEffect):
+        if isinstance(effect, _LEFT_OUT):
             continue
         if isinstance(effect, WindingEffect):
             effect = effect.model_copy(

@@ -10,7 +10,7 @@ from pydantic_core import PydanticCustomError, core_schema
 
 from fiberbend.units import KINDS, parse, show
 
-Sign = Literal["above zero", "zero or above", "other than zero"]
+Sign = Literal["above zero", "zero or above", "other than zero", "any"]
 
 
 class Model(BaseModel):
@@ -69,6 +69,7 @@ class Quantity:
             "above zero": value > 0,
             "zero or above": value >= 0,
             "other than zero": value != 0,
+            "any": True,
         }
         if not allowed[self.sign]:
             message = f"expected {KINDS[self.kind].name} {self.sign}"
@@ -80,6 +81,8 @@ Length = Annotated[float, Quantity("length")]
 """mm, above zero."""
 Width = Annotated[float, Quantity("length", "zero or above")]
 """mm, zero allowed."""
+Position = Annotated[float, Quantity("length", "any")]
+"""mm, of either sign."""
 Pressure = Annotated[float, Quantity("pressure")]
 """MPa, above zero."""
 SignedPressure = Annotated[float, Quantity("pressure", "other than zero")]
@@ -94,5 +97,7 @@ Volume = Annotated[float, Quantity("volume")]
 """mm³, above zero."""
 Density = Annotated[float, Quantity("density")]
 """t/mm³, above zero."""
+Bedding = Annotated[float, Quantity("bedding")]
+"""MPa/mm, above zero."""
 Acceleration = Annotated[float, Quantity("acceleration")]
 """mm/s², above zero."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from fiberbend import bridge
 from fiberbend.case import Actuator, Case
-from fiberbend.case_effects import BlockedTipEffect, WindingEffect
+from fiberbend.case_effects import BlockedTipEffect, ContactEffect, WindingEffect
 from fiberbend.choice import choose_model
 from fiberbend.problems import Problem
 from fiberbend.units import show
@@ -57,21 +57,21 @@ def misfits(case: Case) -> Iterator[Problem]:
     model, _ = choose_model(case)
     if model == "analytic":
         return
-    tip = case.find(BlockedTipEffect)
+    tip = bridge.tip_support(case)
     path = f"effects.{case.effects.index(tip)}.{tip.name}" if tip is not None else ""
     yield from misfitting(case.actuator, mesh_size(case, model, half=True), path, tip)
 
 
 def misfitting(
-    actuator: Actuator, size: MeshSize, path: str, tip: BlockedTipEffect | None
+    actuator: Actuator, size: MeshSize, path: str, tip: BlockedTipEffect | ContactEffect | None
 ) -> Iterator[Problem]:
     """Why a mesh cannot hold the dimensions of an actuator.
 
     Args:
         actuator: its dimensions.
         size: fineness of the mesh.
-        path: of the blocked tip in the case.
-        tip: the blocked tip, if there is one.
+        path: of the tip's support in the case.
+        tip: what may have a roof and a post, if there is such an effect.
     """
     from geometry.size import check_size, too_thin
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from analytic.path import tip
+from fem.contact import Probe
+from fem.effects.contact import Contact
 from fem.frames import Frames
-from fem.measures import Tip, UniformAngle, balance
+from fem.measures import Resultant, Tip, UniformAngle, balance
 from fem.program import State
 from fem.scene import Scene
 from fem.uniform import CURVATURE, STRETCH, TWIST
@@ -19,13 +21,16 @@ class BodyGauge:
     Args:
         scene: the scene.
         frames: rod frames of the body.
-        blocked: the tip is blocked: reactions and balances are of interest.
     """
 
-    def __init__(self, scene: Scene, frames: Frames, blocked: bool) -> None:
-        self._scene, self._blocked = scene, blocked
+    def __init__(self, scene: Scene, frames: Frames) -> None:
+        self._scene = scene
         self._tip = Tip(scene.body)
         self._uniform = UniformAngle(scene.body, frames)
+        self._guided = "post" in scene.supports
+        contacts = [e for e in scene.effects.values() if isinstance(e, Contact)]
+        self._probes = {contact.name: Probe(scene, contact) for contact in contacts}
+        self._keys = {contact.name: contact.key for contact in contacts}
 
     def tip(self, state: State) -> tuple[float, float]:
         """y and z of the centroid of the tip cap's outer face, mm."""
@@ -38,18 +43,36 @@ class BodyGauge:
         return {"uniform_angle_deg": float(np.rad2deg(self._uniform.value(state.shape)))}
 
     def last_columns(self, state: State) -> dict[str, float]:
-        """Reactions of a blocked tip."""
-        if not self._blocked:
+        """What holds the body, and what it touches."""
+        if not self._guided and not self._probes:
             return {}
         found = balance(self._scene)
-        return {
-            "tip_force_N": float(found.supports["post"].force[1]),
-            "roof_force_N": float(-found.supports["roof"].force[1]),
-            "clamp_force_y_N": float(found.supports["clamp"].force[1]),
-            "clamp_moment_x_Nmm": float(found.supports["clamp"].moment[0]),
-            "balance_force": found.force,
-            "balance_moment": found.moment,
-        }
+        supports = found.supports
+        row: dict[str, float] = {}
+        for column, name, sign in (("tip", "post", 1.0), ("roof", "roof", -1.0)):
+            by = supports.get(self._keys.get(name, name))
+            if by is not None:
+                row[f"{column}_force_N"] = sign * float(by.force[1])
+        row["clamp_force_y_N"] = float(supports["clamp"].force[1])
+        row["clamp_moment_x_Nmm"] = float(supports["clamp"].moment[0])
+        row |= self._contacts(supports)
+        if self._guided or any(row[f"contact_{name}_area_mm2"] for name in self._probes):
+            row |= {"balance_force": found.force, "balance_moment": found.moment}
+        return row
+
+    def _contacts(self, supports: dict[str, Resultant]) -> dict[str, float]:
+        """Force of every obstacle on the body, what touches it, and how far or deep."""
+        row: dict[str, float] = {}
+        for name, probe in self._probes.items():
+            by, touch = supports[self._keys[name]], probe.read()
+            row |= {
+                f"contact_{name}_y_N": float(by.force[1]),
+                f"contact_{name}_z_N": float(by.force[2]),
+                f"contact_{name}_moment_x_Nmm": float(by.moment[0]),
+                f"contact_{name}_area_mm2": touch.area,
+                f"contact_{name}_gap_mm": touch.gap,
+            }
+        return row
 
 
 class UniformGauge:

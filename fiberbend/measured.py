@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 
 from analytic.table import read_columns
 from fiberbend.case import Case
-from fiberbend.case_effects import BlockedTipEffect, StraightEffect
+from fiberbend.case_effects import hold_straight
 
 if TYPE_CHECKING:
     from geometry.mesh import Floats
@@ -85,8 +85,7 @@ def read_measured(case: Case) -> Measured | None:
     file = case.output.measured
     if file is None:
         return None
-    held = case.find(BlockedTipEffect) is not None or case.find(StraightEffect) is not None
-    quantity = expected_quantity(held)
+    quantity = expected_quantity(hold_straight(case.effects))
     pressure, value = np.array(read_columns(Path(file), ("pressure_kPa", quantity))).T
     if quantity == "angle_deg":
         value = value * (math.pi / 180)

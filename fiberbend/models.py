@@ -18,7 +18,7 @@ from fem.scene import Scene
 from fem.uniform import Cell, CurvatureAngle, Section, Uniform
 from fiberbend import bridge
 from fiberbend.case import Case
-from fiberbend.case_effects import BlockedTipEffect, StraightEffect, WindingEffect
+from fiberbend.case_effects import StraightEffect, WindingEffect
 from fiberbend.choice import FIRST_TURN as FIRST_TURN
 from fiberbend.choice import TURN as TURN
 from fiberbend.choice import choose_half
@@ -62,8 +62,7 @@ def reading(case: Case, scene: Scene) -> Reading:
         straight = case.find(StraightEffect) is not None
         return Reading(None, CurvatureAngle(body), lambda: UniformGauge(scene, actuator, straight))
     frames = Frames(body)
-    blocked = case.find(BlockedTipEffect) is not None
-    return Reading(frames, BendingAngle(body, frames), lambda: BodyGauge(scene, frames, blocked))
+    return Reading(frames, BendingAngle(body, frames), lambda: BodyGauge(scene, frames))
 
 
 def make_mesh(case: Case, model: str, msh: Path | None = None) -> MeshData:
@@ -96,5 +95,4 @@ def make_mesh(case: Case, model: str, msh: Path | None = None) -> MeshData:
         helices = helix(winding)
         turns = int(np.ceil(actuator.length / winding.pitch)) * 24
         curves = [helices.points(actuator, curve, turns)[0] for curve in range(helices.curves)]
-    tip = case.find(BlockedTipEffect)
-    return build_body(actuator, size, bridge.strips(tip) if tip else None, curves, msh)
+    return build_body(actuator, size, bridge.strips(bridge.tip_support(case)), curves, msh)

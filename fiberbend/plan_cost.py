@@ -14,9 +14,11 @@ from pathlib import Path
 from fiberbend.case import Case
 from fiberbend.case_effects import (
     BlockedTipEffect,
+    ContactEffect,
     GravityEffect,
     PressureEffect,
     StraightEffect,
+    hold_straight,
 )
 from fiberbend.choice import FIRST_TURN, TURN
 from fiberbend.plan_size import Size
@@ -109,7 +111,7 @@ def _rounded(value: float) -> str:
 
 def _still(case: Case) -> bool:
     """The actuator is held, so that its steps are those of the load."""
-    return case.find(StraightEffect) is not None or case.find(BlockedTipEffect) is not None
+    return hold_straight(case.effects)
 
 
 def start_seconds(model: str) -> float:
@@ -149,8 +151,8 @@ def _step_seconds(case: Case, model: str, size: Size) -> float:
     tangent = (1.1e-4 if size.kind == "tetrahedra" else 5.3e-4) * size.elements
     factor = 1.5e-7 * size.layers * (size.unknowns / size.layers) ** 1.75
     iteration = 0.65 * (tangent + factor) + 2.8e-6 * size.unknowns
-    blocked = case.find(BlockedTipEffect) is not None
-    return iteration * (_BLOCKED_ITERATIONS if blocked else _ITERATIONS[model])
+    touching = case.find(BlockedTipEffect) is not None or case.find(ContactEffect) is not None
+    return iteration * (_BLOCKED_ITERATIONS if touching else _ITERATIONS[model])
 
 
 def _memory(model: str, size: Size) -> float:

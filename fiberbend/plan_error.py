@@ -10,7 +10,13 @@ from collections.abc import Iterator
 from fiberbend.analytic_curves import held
 from fiberbend.bulging import BULGING_PITCH, bulging, resolved
 from fiberbend.case import Case
-from fiberbend.case_effects import BlockedTipEffect, GravityEffect, PressureEffect, WindingEffect
+from fiberbend.case_effects import (
+    BlockedTipEffect,
+    ContactEffect,
+    GravityEffect,
+    PressureEffect,
+    WindingEffect,
+)
 
 _CLOSED_FORM = "pressure for an angle 33 % (90°) to 13 % (360°) above the section model"
 _ENDS = "the whole body bends 0.6 to 1.4 % further than its middle (docs/accuracy_free.md)"
@@ -54,6 +60,10 @@ def _held(case: Case, model: str) -> Iterator[str]:
     if case.find(BlockedTipEffect) is not None:
         yield "mesh: moves the tip force by 1 to 3 % (docs/accuracy_blocked.md)"
         yield "strips: other roofs and posts move it by up to 12 % (docs/accuracy_blocked.md)"
+        return
+    if case.find(ContactEffect) is not None:
+        yield "mesh: moves the tip force by 1 to 3 % (docs/accuracy_blocked.md)"
+        yield "obstacles: yield a little, which costs 0.2 % of the force (docs/contact.md)"
         return
     yield f"mesh: moves the moment by about {'0.1' if model == 'section' else '0.5'} %"
     yield "tip: a real one turns, its sheath yields: about half the force (docs/accuracy_causes.md)"

@@ -6,7 +6,7 @@ import dataclasses
 
 from fiberbend import bridge
 from fiberbend.case import Case
-from fiberbend.case_effects import BlockedTipEffect, PressureEffect, StraightEffect
+from fiberbend.case_effects import PressureEffect, StraightEffect
 from fiberbend.choice import UNIFORM, mirror_breakers
 from fiberbend.fineness import cell_slice, mesh_size
 
@@ -56,8 +56,7 @@ def size_of(case: Case, model: str, half: bool) -> Size:
         extent, number = cell_slice(case, half)
         mesh, layers, components = swept_slice(actuator, fineness, extent, number), number, 3
     else:
-        tip = case.find(BlockedTipEffect)
-        mesh = swept_body(actuator, fineness, bridge.strips(tip) if tip else None)
+        mesh = swept_body(actuator, fineness, bridge.strips(bridge.tip_support(case)))
         layers, components = actuator.total_length / case.mesh.axial, 3
     constraints = pressures * len(mesh.cells)
     if case.mesh.element == "tetrahedron":

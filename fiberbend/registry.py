@@ -16,11 +16,12 @@ from fem.effects.incompressible import Incompressible
 from fem.effects.supports import BlockedTip, Clamp, HeldStraight, Symmetry, TwofoldAxis
 from fem.effects.winding import SmearedWinding, Winding
 from fem.program import Ramp
-from fiberbend import bridge
+from fiberbend import bridge, contact
 from fiberbend.case import Case
 from fiberbend.case_defaults import DEFAULT_LINES
 from fiberbend.case_effects import (
     BlockedTipEffect,
+    ContactEffect,
     GravityEffect,
     PressureEffect,
     StraightEffect,
@@ -162,6 +163,11 @@ def _blocked_tip(effect: Any, case: Case, mesh: MeshData, parts: Parts) -> Parts
     return parts
 
 
+def _contact(effect: Any, case: Case, mesh: MeshData, parts: Parts) -> Parts:
+    parts.effects.extend(contact.effects(case))
+    return parts
+
+
 def _straight(effect: Any, case: Case, mesh: MeshData, parts: Parts) -> Parts:
     parts.effects.append(HeldStraight(effect.stretch == "held"))
     return parts
@@ -172,6 +178,7 @@ _BUILDERS: dict[type[Any], Callable[[Any, Case, MeshData, Parts], Parts]] = {
     WindingEffect: _winding,
     GravityEffect: _gravity,
     BlockedTipEffect: _blocked_tip,
+    ContactEffect: _contact,
     StraightEffect: _straight,
 }
 """One line an effect."""

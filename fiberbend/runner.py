@@ -15,9 +15,10 @@ from fem.embedded import FiberPotential
 from fem.newton import Outcome
 from fem.program import Ramp, Report, State
 from fiberbend import models, restart, stability
+from fiberbend.analytic_curves import held
 from fiberbend.assembly import assemble
 from fiberbend.case import Case
-from fiberbend.case_effects import BlockedTipEffect
+from fiberbend.case_effects import ContactEffect
 from fiberbend.choice import UNIFORM, choose_model
 from fiberbend.history import Recorder
 from fiberbend.plan import winding_remark
@@ -25,7 +26,7 @@ from fiberbend.progress import Progress
 from fiberbend.result import RunResult
 from fiberbend.runfolder import RunFolder
 from fiberbend.snapshot import Scenery, Snapshot
-from fiberbend.summary import blocked_tip, versions
+from fiberbend.summary import blocked_tip, contact, versions
 from fiberbend.warm import guides, section_states, steered
 from geometry.mesh import MeshData
 
@@ -102,7 +103,7 @@ class _Run:
     ) -> None:
         self.case, self.folder, self.progress, self.comm = case, folder, progress, comm
         self.model = model
-        self.blocked = case.find(BlockedTipEffect)
+        self.blocked = model == "body" and held(case)
         self.snapshots: list[Snapshot] = []
         self.warnings: list[str] = []
 
@@ -309,10 +310,10 @@ class _Run:
             "winding": winding_remark(self.case),
             "versions": versions(),
         }
-        if self.blocked is not None:
-            run["blocked_tip"] = blocked_tip(
-                self.case.actuator, self.blocked, self.recorder.rows[-1]
-            )
+        if self.blocked and "tip_force_N" in self.recorder.rows[-1]:
+            run["blocked_tip"] = blocked_tip(self.case, self.recorder.rows[-1])
+        if self.case.find(ContactEffect) is not None:
+            run["contact"] = contact(self.case, self.recorder.rows)
         if self.check is not None:
             run["crosscheck"] = self.check.entry()
         if self.folder is not None:

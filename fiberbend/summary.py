@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fem import compat
 from fiberbend import __version__, bridge
-from fiberbend.case import Actuator
-from fiberbend.case_effects import BlockedTipEffect
+from fiberbend.analytic_curves import lever_arm
+from fiberbend.case import Case
+from fiberbend.contact import obstacles, stiffness
 
 
 def versions() -> dict[str, str]:
@@ -21,18 +22,15 @@ def versions() -> dict[str, str]:
     }
 
 
-def blocked_tip(
-    actuator: Actuator, effect: BlockedTipEffect, row: Mapping[str, Any]
-) -> dict[str, float]:
+def blocked_tip(case: Case, row: Mapping[str, Any]) -> dict[str, float]:
     """F L_f beside κ P of Polygerinos et al. 2015, eqs. (20) and (21).
 
     Args:
-        actuator: dimensions; κ is the chamber's first moment about y = 0.
-        effect: the strips; L_f reaches from z = L to the middle of the post.
-        row: the last row of the history.
+        case: κ is its chamber's first moment about y = 0, L_f reaches from z = L to the middle of
+            the post.
+        row: the last row of the history, under load.
     """
-    kappa = bridge.dimensions(actuator).chamber_moment
-    lever = actuator.cap - effect.post_length / 2
+    kappa, lever = bridge.dimensions(case.actuator).chamber_moment, lever_arm(case)
     return {
         "L_f_mm": lever,
         "tip_force_N": row["tip_force_N"],
@@ -43,3 +41,25 @@ def blocked_tip(
         "balance_force": row["balance_force"],
         "balance_moment": row["balance_moment"],
     }
+
+
+def contact(case: Case, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """When each obstacle was touched and left, and the force on the body at the end.
+
+    Args:
+        case: a case with obstacles.
+        rows: its history, from rest on.
+    """
+    entry: dict[str, Any] = {"stiffness_MPa_per_mm": stiffness(case)}
+    for name in obstacles(case):
+        touching = [bool(row.get(f"contact_{name}_area_mm2")) for row in rows]
+        changes = [i for i in range(1, len(rows)) if touching[i] != touching[i - 1]]
+        depth = max(-row.get(f"contact_{name}_gap_mm", 0.0) for row in rows)
+        entry[name] = {
+            "touched_at_kPa": [rows[i]["pressure_kPa"] for i in changes if touching[i]],
+            "left_at_kPa": [rows[i]["pressure_kPa"] for i in changes if not touching[i]],
+            "force_y_N": rows[-1].get(f"contact_{name}_y_N"),
+            "force_z_N": rows[-1].get(f"contact_{name}_z_N"),
+            "greatest_depth_mm": max(depth, 0.0),
+        }
+    return entry

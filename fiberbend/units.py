@@ -64,6 +64,13 @@ KINDS = {
         "9.81 m/s^2",
         {"mm/s^2": "1", "m/s^2": "1e3"},
     ),
+    "bedding": Kind(
+        "a pressure per depth",
+        "MPa/mm",
+        "MPa/mm",
+        "60 MPa/mm",
+        {"MPa/mm": "1", "kPa/mm": "1e-3", "N/mm^3": "1"},
+    ),
     "time": Kind("a time", "s", "ms", "5 ms", {"s": "1", "ms": "1e-3"}),
     "frequency": Kind("a frequency", "Hz", "Hz", "100 Hz", {"Hz": "1", "kHz": "1e3"}),
     "conductance": Kind(

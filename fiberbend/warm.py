@@ -17,7 +17,12 @@ from fem.scene import Scene
 from fem.uniform import CURVATURE, STRETCH
 from fiberbend.assembly import assemble
 from fiberbend.case import Case
-from fiberbend.case_effects import BlockedTipEffect, PressureEffect, WindingEffect
+from fiberbend.case_effects import (
+    BlockedTipEffect,
+    ContactEffect,
+    PressureEffect,
+    WindingEffect,
+)
 from fiberbend.derived import as_section
 from fiberbend.models import make_mesh
 
@@ -85,6 +90,7 @@ def guides(case: Case) -> bool:
     return (
         case.find(PressureEffect) is not None
         and case.find(BlockedTipEffect) is None
+        and case.find(ContactEffect) is None
         and (winding is None or winding.pattern == "double-helix")
     )
 

@@ -16,8 +16,8 @@ LEAVES = ("materials", "geometry", "analytic")
 SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
 FENICS = {"dolfinx", "ufl", "ffcx", "basix", "petsc4py", "mpi4py"}
 LIGHT = (
-    "units fields bridge case case_effects case_checks case_defaults choice problems reader plan "
-    "progress runfolder launch measured"
+    "units fields bridge case case_effects case_checks case_defaults choice clearance problems "
+    "reader plan progress runfolder launch measured"
 )
 SCHEMA = [ROOT / "fiberbend" / f"{name}.py" for name in re.findall(r"\w+", LIGHT)]
 BELOW_EFFECTS = {"effect", "kinematics", "domain", "compat", "embedded"}

@@ -71,29 +71,33 @@ class Cylinder:
 
 
 class Contact(Effect):
-    """Π = ∫ φ(g) dS, g the gap at the deformed point of a surface: a penalty, unilateral.
+    """Π = ∫ ½ k d² dS, d the depth of a surface's deformed point in the obstacle: unilateral.
 
-    The pressure −φ' is k d²/(2 δ) up to a depth d = −g of δ and k (d − δ/2) beyond, so that the
-    tangent is continuous through touch and lift-off, and nothing acts at a distance.
+    A penalty: the obstacle yields by p/k under a pressure p. Π is once continuously
+    differentiable, so that touch and lift-off bend the forces and do not break them; the tangent
+    is that of the points that touch. Nothing acts at a distance.
 
     Args:
         name: of the obstacle.
         obstacle: what is touched.
-        surface: named surface of the body that may touch it.
+        surfaces: named surfaces of the body that may touch it.
         stiffness: k, MPa/mm.
-        rounding: δ, mm.
+
+    Raises:
+        ValueError: a stiffness that is not positive.
     """
 
     outside: ClassVar[bool] = True
 
     def __init__(
-        self, name: str, obstacle: Obstacle, surface: str, stiffness: float, rounding: float
+        self, name: str, obstacle: Obstacle, surfaces: tuple[str, ...], stiffness: float
     ) -> None:
+        if not stiffness > 0:
+            raise ValueError(f"contact stiffness {stiffness} MPa/mm, expected a positive value")
         self.name = name
         self.obstacle = obstacle
-        self.surface = surface
+        self.surfaces = surfaces
         self.stiffness = stiffness
-        self.rounding = rounding
 
     @property
     def key(self) -> str:
@@ -103,7 +107,7 @@ class Contact(Effect):
     def potential(self, body: Kinematics) -> Any:
         """The penalty as a form; all numbers are constants."""
         place = body.constants(self.obstacle.numbers())
-        law = body.constants([self.stiffness, self.rounding])
-        depth = -self.obstacle.gap(body.x, place)
-        full, above = (ufl.max_value(d, 0.0) for d in (depth, depth - law[1]))
-        return law[0] / (6 * law[1]) * (full**3 - above**3) * body.ds(self.surface)
+        stiffness = body.constants([self.stiffness])[0]
+        depth = ufl.max_value(-self.obstacle.gap(body.x, place), 0.0)
+        density = stiffness / 2 * depth**2
+        return sum((density * body.ds(name) for name in self.surfaces), ufl.Form([]))

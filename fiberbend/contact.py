@@ -1,0 +1,106 @@
+"""The obstacles of a case as the finite-element code takes them, and the pace of its march."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+from fem.effects.contact import Contact, Cylinder, Obstacle, Plane
+from fem.newton import Settings
+from fem.program import Rules
+from fiberbend import bridge, case_effects
+from fiberbend.analytic_curves import held
+from fiberbend.case import Case
+from fiberbend.case_effects import ContactEffect
+
+SURFACES = {"roof": ("roof",), "post": ("post",)}
+EVERYWHERE = ("outer", "tip")
+"""Surfaces that may touch an obstacle anywhere in space."""
+
+STIFFNESS = 100.0
+ITERATIONS = 25
+HELD_TURN = 0.05
+_REACH = 0.5
+
+
+def obstacles(case: Case) -> dict[str, Obstacle]:
+    """The rigid bodies of a case by their names, in space."""
+    contact = case.find(ContactEffect)
+    return {n: _placed(case, o) for n, o in contact.obstacles.items()} if contact else {}
+
+
+def _placed(case: Case, item: case_effects.Obstacle) -> Obstacle:
+    actuator = bridge.dimensions(case.actuator)
+    if isinstance(item, case_effects.Roof):
+        return Plane((0.0, actuator.outer_top + item.gap, 0.0), (0.0, -1.0, 0.0))
+    if isinstance(item, case_effects.Post):
+        return Plane((0.0, actuator.outer_bottom - item.gap, 0.0), (0.0, 1.0, 0.0))
+    if isinstance(item, case_effects.Plane):
+        return Plane(item.point, item.normal)
+    return Cylinder(item.center, item.radius)
+
+
+def stiffness(case: Case) -> float:
+    """Pressure per depth with which the obstacles of a case yield, MPa/mm.
+
+    What touches them, a layer of thickness h and Young's modulus E, yields by h/E of the pressure
+    at least where it can flow aside; the obstacle by a hundredth of that.
+    """
+    contact = case.find(ContactEffect)
+    if contact is not None and contact.stiffness is not None:
+        return contact.stiffness
+    wall = bridge.material(case.materials.wall)
+    return STIFFNESS * 3 * wall.initial_shear_modulus / _layer(case)
+
+
+def _layer(case: Case) -> float:
+    """Thickness of what touches, mm."""
+    actuator = case.actuator
+    return actuator.wall if actuator.sheath is None else actuator.sheath
+
+
+def effects(case: Case) -> list[Contact]:
+    """One effect for each obstacle of a case."""
+    k = stiffness(case)
+    return [
+        Contact(name, item, SURFACES.get(name, EVERYWHERE), k)
+        for name, item in obstacles(case).items()
+    ]
+
+
+def settings(case: Case, usual: Settings) -> Settings:
+    """More iterations where points of a surface have to find out whether they touch."""
+    if case.find(ContactEffect) is None:
+        return usual
+    return dataclasses.replace(usual, iterations=ITERATIONS)
+
+
+def memory(case: Case, usual: int) -> int:
+    """States that a predictor looks back to where a body may touch something."""
+    return usual if case.find(ContactEffect) is None else 2
+
+
+def pace(case: Case, usual: Rules) -> Rules:
+    """Rules of a march with obstacles.
+
+    What touches is found in some six iterations however short the step is: they do not shorten it.
+    A body that is held hardly turns from the start. Touch bends every curve, so that no volume is
+    unexpected. No step passes through a bar: the tip moves less than its radius.
+    """
+    contact = case.find(ContactEffect)
+    if contact is None:
+        return usual
+    turn = usual.turn
+    if contact.cylinder is not None:
+        actuator = case.actuator
+        turn = min(turn, contact.cylinder.radius / (_REACH * actuator.length + actuator.cap))
+    first = HELD_TURN if held(case) else turn
+    return dataclasses.replace(
+        usual,
+        easy=10,
+        slow=16,
+        grow=3.0,
+        turn=turn,
+        first_turn=min(usual.first_turn, first),
+        jump=math.inf,
+    )
