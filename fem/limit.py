@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from fem.predictor import lagrange
 from fem.program import MODES, Critical, State, measure
 
 Floats = npt.NDArray[np.float64]
@@ -151,12 +152,7 @@ def critical(states: Sequence[State], scalar: str) -> list[Critical]:
     found = []
     if _turned(states, scalar):
         at, top = extreme(states, scalar, 1 / rate)
-        share = (at - old[measure("conjugate", scalar)]) / (
-            new[measure("conjugate", scalar)] - old[measure("conjugate", scalar)]
-        )
-        angle = None
-        if "followed" in new:
-            angle = float((1 - share) * old["followed"] + share * new["followed"])
+        angle = _followed(states, scalar, at) if "followed" in new else None
         change = 1 if rate < 0 else -1
         found.append(Critical("limit", scalar, top, at, angle, before, before + change))
         before += change
@@ -165,3 +161,12 @@ def critical(states: Sequence[State], scalar: str) -> list[Critical]:
         angle = new.get("followed")
         found.append(Critical("bifurcation", scalar, value, conjugate, angle, before, after))
     return found
+
+
+def _followed(states: Sequence[State], scalar: str, at: float) -> float:
+    """The followed functional where the conjugate takes a value, by the last three states."""
+    v, _ = _curve(states[-3:], scalar)
+    if len(v) < 3 or not _apart(v):
+        states, v = states[-2:], v[-2:]
+    values = [state.measures["followed"] for state in states[-3:]]
+    return float(lagrange(v, at) @ values)

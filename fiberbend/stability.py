@@ -61,7 +61,7 @@ def remark(point: Critical) -> str:
         return f"limit point at {where}: beyond it {_beyond(point)}"
     if point.kind == "limit":
         load = "vacuum" if _vacuum(point) else point.scalar
-        return f"the {load} rises again from {where} on"
+        return f"the {load} rises again from {where} on; given the {load}, the body snaps there"
     if point.after > point.before:
         count = _COUNT[point.after] if point.after < len(_COUNT) else str(point.after)
         plural = "" if point.after == 1 else "s"
@@ -104,11 +104,10 @@ def rod(scene: Scene, frames: Frames | None, cap: float) -> Rod:
 
 def self_contact(measures: dict[str, float]) -> str:
     """A line on a body that begins to pass through itself."""
-    angle = np.rad2deg(measures["followed"])
     pressure = measures.get("value pressure")
     at = "" if pressure is None else f" ({1e3 * pressure:.4g} kPa)"
     return (
-        f"from {angle:.4g}°{at} on the body passes through itself: contact with itself is not "
+        f"from {_degrees(measures['followed'])}{at} on the body passes through itself: contact with itself is not "
         "modelled"
     )
 
@@ -129,4 +128,9 @@ def _where(point: Critical) -> str:
     value = f"{1e3 * point.value:.4g} kPa" if point.scalar == "pressure" else f"{point.value:.4g}"
     if point.followed is None:
         return value
-    return f"{value}, {np.rad2deg(point.followed):.4g}°"
+    return f"{value}, {_degrees(point.followed)}"
+
+
+def _degrees(angle: float) -> str:
+    # plus zero: no minus sign before what is rounded to nothing
+    return f"{round(float(np.rad2deg(angle)), 1) + 0.0:.1f}°"
