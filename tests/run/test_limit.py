@@ -102,7 +102,7 @@ def test_given_angle_passes_the_same_limit_point(balloon: RunResult) -> None:
     # the angle never meets a limit; interpolated between steps of 10°, the flat top's place less
     other = _soft(effects=[{"pressure": {"angle": "60 deg"}}])
     assert other.status == "converged"
-    for name, error in (("pressure_kPa", 1e-4), ("angle_deg", 2e-2)):
+    for name, error in (("pressure_kPa", 5e-4), ("angle_deg", 2e-2)):
         assert _limit(other)[name] == pytest.approx(_limit(balloon)[name], rel=error)
 
 
