@@ -23,6 +23,7 @@ class Predictor:
         frames: rod frames; None where the kinematics turns by itself.
 
     Attributes:
+        frames: rod frames, or None.
         guide: a cheaper model's shapes, from which the difference is extrapolated; None: without.
         astray: the last increment failed: the next one does without the guide, and goes straight
             on from the last two states.
@@ -31,7 +32,7 @@ class Predictor:
     """
 
     def __init__(self, scene: Scene, frames: Frames | None) -> None:
-        self._scene, self._frames = scene, frames
+        self._scene, self.frames = scene, frames
         self.guide: Guide | None = None
         self.astray = False
         self.memory = 3
@@ -52,11 +53,11 @@ class Predictor:
             values = [state.scalars[name] for state in states]
             scene.set_scalar(name, float(weights @ values))
         scene.set(np.tensordot(weights, [state.w for state in states], axes=1))
-        if self._frames is not None:
+        if self.frames is not None:
             shapes = [state.shape for state in states if state.shape is not None]
             guides = self._guides(key, [*t, target])
-            shape = self._frames.extrapolate(shapes, weights, guides)
-            body.set_displacement(self._frames.rebuild(shape))
+            shape = self.frames.extrapolate(shapes, weights, guides)
+            body.set_displacement(self.frames.rebuild(shape))
             scene.set(scene.w.copy())
         for name, discrete in scene.discrete.items():
             discrete.extrapolate([state.discrete[name] for state in states], weights)

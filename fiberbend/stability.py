@@ -48,10 +48,15 @@ def _values(point: Critical, copies: float) -> dict[str, float]:
 
 def remarks(report: Report) -> list[str]:
     """All lines on what happened so far."""
-    lines = [remark(point) for point in report.critical]
+    lines = [remark(point) for point in report.critical if _matters(point)]
     if report.self_contact is not None:
         lines.append(self_contact(report.self_contact))
     return lines
+
+
+def _matters(point: Critical) -> bool:
+    """Limits, lost stability, and stability regained; not one unstable mode less of several."""
+    return point.kind == "limit" or point.after > point.before or point.after == 0
 
 
 def remark(point: Critical) -> str:
@@ -69,7 +74,7 @@ def remark(point: Critical) -> str:
             f"{count} unstable mode{plural} from {where} on: the body can buckle, another branch "
             "starts here; the run stays on its own"
         )
-    return f"stable again from {where} on" if point.after == 0 else f"more stable from {where} on"
+    return f"stable again from {where} on"
 
 
 def stopped(report: Report, target: str, beyond: float) -> str:
@@ -107,8 +112,8 @@ def self_contact(measures: dict[str, float]) -> str:
     pressure = measures.get("value pressure")
     at = "" if pressure is None else f" ({1e3 * pressure:.4g} kPa)"
     return (
-        f"from {_degrees(measures['followed'])}{at} on the body passes through itself: contact with itself is not "
-        "modelled"
+        f"from {_degrees(measures['followed'])}{at} on the body passes through itself: contact "
+        "with itself is not modelled"
     )
 
 
