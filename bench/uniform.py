@@ -120,7 +120,7 @@ def section_mesh() -> list[str]:
         "## Section: refinement",
         "",
         "Refinement n has n elements through wall, floor and sheath and 4 n along a quarter arc. "
-        "The order is that between n = 4, 8 and 16; at n → ∞ is Richardson's value by it. Corners "
+        "The order is that between n = 4, 8 and 16; the last row but one is Richardson's value by it. Corners "
         "of the chamber and of the winding, where stiff floor, rubber and fibers meet, keep the "
         "order near 2, where smooth solutions would give 4.",
         "",
@@ -145,7 +145,7 @@ def _cell(n: int, layers: int, pitch: float = 3.0, **winding: Any) -> RunResult:
 def cell_mesh() -> list[str]:
     """Section, layers and lines."""
     meshes = {
-        5: ((1, 1), (1, 2), (2, 2), (2, 4), (2, 6), (3, 4), (3, 6), (4, 4)),
+        5: ((1, 1), (1, 2), (1, 4), (1, 8), (2, 2), (2, 4), (2, 6), (3, 4), (3, 6), (4, 4)),
         LINES: (
             *((1, 1), (1, 2), (1, 4), (1, 8), (2, 2), (2, 4), (2, 6), (2, 8), (2, 12)),
             *((2, 16), (3, 8), (3, 12)),
@@ -170,8 +170,9 @@ def cell_mesh() -> list[str]:
         "Half a pitch of 3 mm in layers of elements; the ribbon, 0.38 mm wide, as 5 or 9 lines. "
         "The last columns are differences from the finest mesh at 90 and 360°. Layers matter most, "
         "and the more the actuator bends: at 360° the crown is stretched by half, and the rubber "
-        "that bulges between the turns needs four layers and more a half pitch. Coarse cells, the "
-        "independent one among them, are 1 to 2 % too stiff there.",
+        "that bulges between the turns asks for four layers and more a half pitch. With fewer, as "
+        "in the independent cell, P is 1 to 2 % too high there. With nine lines all meshes of six "
+        "layers and more are within 0.1 % of the finest at every angle.",
         "",
         *table(
             ["lines", "n", "layers", "hexahedra", *COST, *DEGREES, "at 90°", "at 360°"],
@@ -275,8 +276,10 @@ def bodies() -> list[str]:
         "half makes. All with the same section mesh n; smeared bodies have elements 4 mm long.",
         "",
         *table(head, rows),
-        "Discrete winding: body and cell with the same elements, 1.5 mm long, and ribbons of five "
-        "lines.",
+        "Discrete winding: body and cell with elements 1.5 mm long and ribbons of five lines. 107 "
+        "elements fill the body's 160 mm, so that its layers meet the turns a little differently "
+        "from turn to turn, while those of the cell begin and end where the fibers cross: meshes "
+        "this coarse feel that.",
         "",
         *table(head, discrete),
     ]

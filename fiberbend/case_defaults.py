@@ -7,7 +7,7 @@ from typing import Any
 from fiberbend import bridge
 from fiberbend.case import Case, Mesh, Output
 from fiberbend.case_effects import WindingEffect
-from fiberbend.choice import UNIFORM, choose_model
+from fiberbend.choice import choose_model
 
 DEFAULT_LINES = 5
 WITHOUT_TURNS = ("analytic", "section")
@@ -31,14 +31,14 @@ def complete(case: Case) -> Case:
 
 
 def _complete_mesh(case: Case, model: str) -> Mesh:
-    """Finer sections where they are cheap, and two layers in a cell."""
+    """A finer section where it is cheap; four layers in a cell, where layers count most."""
     mesh = case.mesh
     update: dict[str, Any] = {}
-    if model in UNIFORM and "section" not in mesh.model_fields_set:
+    if model == "section" and "section" not in mesh.model_fields_set:
         update["section"] = 2
     winding = case.find(WindingEffect)
     if model == "cell" and "axial" not in mesh.model_fields_set and winding is not None:
-        update["axial"] = winding.pitch / 4
+        update["axial"] = winding.pitch / 8
     return mesh.model_copy(update=update)
 
 
