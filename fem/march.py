@@ -225,7 +225,7 @@ class March:
                 continue
             if not (self.report.detour and np.isfinite(way.end)):
                 failures = 0
-            self.states = [*self.states[-2:], new]
+            self.states = [*self.states[1 - self.rules.memory :], new]
             self.report.steps += 1
             self.report.per_step.append(outcome.iterations)
             self._note(ramp.scalar)
@@ -345,7 +345,7 @@ class March:
 
     def _turn_limit(self, drive: str) -> float:
         """Increment that turns the followed functional by `turn`, from the last two states."""
-        if self.followed is None or len(self.states) < 3:
+        if self.followed is None or len(self.states) < self.rules.memory:
             return np.inf
         a, b = (state.measures for state in self.states[-2:])
         turned = abs(b["followed"] - a["followed"])

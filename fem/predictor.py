@@ -27,15 +27,12 @@ class Predictor:
         guide: a cheaper model's shapes, from which the difference is extrapolated; None: without.
         astray: the last increment failed: the next one does without the guide, and goes straight
             on from the last two states.
-        memory: how many states it looks back, 3 for a smooth path; a touch is a kink, beyond
-            which two states point better than three.
     """
 
     def __init__(self, scene: Scene, frames: Frames | None) -> None:
         self._scene, self.frames = scene, frames
         self.guide: Guide | None = None
         self.astray = False
-        self.memory = 3
 
     def start(self, states: Sequence[State], key: str, target: float) -> Floats:
         """Set the scene to the state extrapolated to the value of a measure; its coefficients.
@@ -45,7 +42,7 @@ class Predictor:
             key: name of the measure.
             target: its value.
         """
-        states = states[-(2 if self.astray else self.memory) :]
+        states = states[-2:] if self.astray else states
         t = np.array([state.measures[key] for state in states])
         weights = lagrange(t, target)
         scene, body = self._scene, self._scene.body

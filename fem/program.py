@@ -97,6 +97,8 @@ class Rules:
             branch beyond a limit point, which only explains why a load is not reached, all of them.
         turn: greatest change of the followed functional an increment may aim at.
         first_turn: the same for an increment from the linear response.
+        memory: states from which the next is extrapolated: 3 on a smooth path; 2 where kinks are
+            to be expected, across which a parabola misleads and foresees limit points.
         least: least increment, relative to the whole ramp.
         jump: how much further, in units of the step that was expected, the conjugate may go in an
             increment of the value; beyond it Newton may have found another branch.
@@ -114,7 +116,8 @@ class Rules:
     cutbacks: int = 6
     turn: float = np.deg2rad(60.0)
     first_turn: float = np.deg2rad(20.0)
-    least: float = 1e-7
+    memory: int = 3
+    least: float = 1e-5
     jump: float = 2.0
     swell: float = 0.3
     beyond: float = 4.0

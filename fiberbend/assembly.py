@@ -71,6 +71,5 @@ def assemble(
     )
     rules = contact.pace(case, rules)
     march = March(scene, newton, reading.frames, reading.followed, rules, on_step, warn)
-    march.predictor.memory = contact.memory(case, march.predictor.memory)
     march.start()
     return Assembly(parts, scene, reading, newton, march, parts.ramps(scene.body.copies))

@@ -75,17 +75,13 @@ def settings(case: Case, usual: Settings) -> Settings:
     return dataclasses.replace(usual, iterations=ITERATIONS)
 
 
-def memory(case: Case, usual: int) -> int:
-    """States that a predictor looks back to where a body may touch something."""
-    return usual if case.find(ContactEffect) is None else 2
-
-
 def pace(case: Case, usual: Rules) -> Rules:
     """Rules of a march with obstacles.
 
     What touches is found in some six iterations however short the step is: they do not shorten it.
-    A body that is held hardly turns from the start. Touch bends every curve, so that no volume is
-    unexpected. No step passes through a bar: the tip moves less than its radius.
+    A body that is held hardly turns from the start. Touch bends every curve: two states point
+    better than three, and no volume is unexpected. No step passes through a bar: the tip moves
+    less than its radius.
     """
     contact = case.find(ContactEffect)
     if contact is None:
@@ -100,6 +96,7 @@ def pace(case: Case, usual: Rules) -> Rules:
         easy=10,
         slow=16,
         grow=3.0,
+        memory=2,
         turn=turn,
         first_turn=min(usual.first_turn, first),
         jump=math.inf,

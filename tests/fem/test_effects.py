@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from fem.domain import Domain
 from fem.effect import Effect
 from fem.effects.chamber_pressure import ChamberPressure
+from fem.effects.contact import Contact, Cylinder, Obstacle, Plane
 from fem.effects.incompressible import Incompressible
 from fem.scene import Scene
 from geometry.checks import region_volumes
@@ -20,6 +21,12 @@ from tests.fem.parts import CELLS, Floats, gravity, law, perturb, smeared, stub,
 REGIONS = ("wall", "floor")
 # The fibers' matrix lives in the sparsity of a solid: one so soft that it does not count.
 SOFT = law("neo-hooke", REGIONS, scale=1e-9)
+
+
+def obstacle(shape: Obstacle) -> Contact:
+    """Something that reaches into the stub at rest."""
+    return Contact("it", shape, ("outer", "tip"), 30.0)
+
 
 EFFECTS: dict[str, Callable[[Domain], list[Effect]]] = {
     "neo-hooke": lambda _: [law("neo-hooke", REGIONS)],
@@ -33,8 +40,12 @@ EFFECTS: dict[str, Callable[[Domain], list[Effect]]] = {
     "tension-only": lambda domain: [SOFT, winding(domain, 0.38, tension_only=True)],
     "smeared": lambda domain: [SOFT, smeared(domain)],
     "gravity": lambda _: [gravity(REGIONS)],
+    "plane": lambda _: [SOFT, obstacle(Plane((0.0, 3.0, 5.0), (0.2, 1.0, -0.5)))],
+    "bar": lambda _: [SOFT, obstacle(Cylinder((-2.0, 6.0), 7.0))],
 }
 LINEAR = {"gravity"}
+IN_PLACE = {"gravity", "plane", "bar"}
+"""What acts on the body depends on where it is."""
 AMPLITUDE = 0.03
 """Of the random displacements in mm: strains of some 5 %."""
 STENCIL = ((1, 2 / 3), (2, -1 / 12))
@@ -51,8 +62,8 @@ def _scene(name: str, cell: str) -> Scene:
 
 
 def _step(name: str) -> float:
-    """In mm; so small for slack fibers that none is caught between tension and slack."""
-    return 1e-7 if name == "tension-only" else 1e-4
+    """In mm; so small that no fiber is caught going slack, and no point touching."""
+    return 1e-7 if name in {"tension-only", "plane", "bar"} else 1e-4
 
 
 def _direction(scene: Scene, seed: int) -> Floats:
@@ -124,7 +135,7 @@ def test_second_derivative_is_symmetric(name: str, cell: str) -> None:
 
 
 @cells
-@pytest.mark.parametrize("name", [name for name in EFFECTS if name != "gravity"])
+@pytest.mark.parametrize("name", [name for name in EFFECTS if name not in IN_PLACE])
 def test_rigid_motion_changes_nothing(name: str, cell: str) -> None:
     # Π is objective, and forces turn with the body
     scene = _scene(name, cell)
