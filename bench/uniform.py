@@ -120,9 +120,9 @@ def section_mesh() -> list[str]:
         "## Section: refinement",
         "",
         "Refinement n has n elements through wall, floor and sheath and 4 n along a quarter arc. "
-        "The order is that between n = 4, 8 and 16; the last row but one is Richardson's value by it. Corners "
-        "of the chamber and of the winding, where stiff floor, rubber and fibers meet, keep the "
-        "order near 2, where smooth solutions would give 4.",
+        "The order is that between n = 4, 8 and 16; the last row but one is Richardson's value by "
+        "it. Corners of the chamber and of the winding, where stiff floor, rubber and fibers meet, "
+        "keep the order near 2, where smooth solutions would give 4.",
         "",
         *table(
             ["n", *COST, *DEGREES, "off by at most"],
