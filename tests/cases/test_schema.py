@@ -56,14 +56,15 @@ def test_baseline_in_internal_units() -> None:
 
 
 def test_defaults_appear_in_the_resolved_case(data: dict[str, Any]) -> None:
-    del data["mesh"], data["output"], data["actuator"]["cap"], data["model"]
+    data.pop("mesh", None)
+    del data["output"], data["actuator"]["cap"], data["model"]
     resolved = parse_case(data).resolved()
     assert resolved["actuator"]["cap"] == "15 mm"
-    # auto takes a cell here: a quarter of the pitch and a refined section are its defaults
+    # auto takes a cell here: four layers in half a pitch are its default
     assert resolved["mesh"] == {
         "element": "hexahedron",
-        "axial": "0.75 mm",
-        "section": 2,
+        "axial": "0.375 mm",
+        "section": 1,
         "symmetry": "auto",
     }
     assert resolved["model"] == "auto"

@@ -54,7 +54,8 @@ def test_one_file_is_answered_by_every_uniform_model() -> None:
     # docs/crosscheck.md: at 90° the closed form is 33 % above the section, and more below it;
     # the rubber between the turns of a cell takes 3.5 %
     assert 1.33 < kilopascal["analytic"] / kilopascal["section"] < 1.6
-    assert 1.02 < kilopascal["cell"] / kilopascal["section"] < 1.04
+    # and one layer of elements, as the file asks for, 1 % more
+    assert 1.02 < kilopascal["cell"] / kilopascal["section"] < 1.05
 
 
 def test_hoops_are_answered_by_the_closed_form(tmp_path: Path) -> None:
