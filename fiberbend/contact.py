@@ -19,7 +19,9 @@ EVERYWHERE = ("outer", "tip")
 
 STIFFNESS = 100.0
 ITERATIONS = 25
+SHARPER = 0.1
 HELD_TURN = 0.05
+HELD_GROWTH = 3.0
 _REACH = 0.5
 
 
@@ -69,10 +71,13 @@ def effects(case: Case) -> list[Contact]:
 
 
 def settings(case: Case, usual: Settings) -> Settings:
-    """More iterations where points of a surface have to find out whether they touch."""
+    """More iterations where points of a surface have to find out whether they touch.
+
+    Forces of contact are small beside those in the fibers, on which the tolerance is measured.
+    """
     if case.find(ContactEffect) is None:
         return usual
-    return dataclasses.replace(usual, iterations=ITERATIONS)
+    return dataclasses.replace(usual, iterations=ITERATIONS, tolerance=SHARPER * usual.tolerance)
 
 
 def pace(case: Case, usual: Rules) -> Rules:
@@ -90,12 +95,12 @@ def pace(case: Case, usual: Rules) -> Rules:
     if contact.cylinder is not None:
         actuator = case.actuator
         turn = min(turn, contact.cylinder.radius / (_REACH * actuator.length + actuator.cap))
-    first = HELD_TURN if held(case) else turn
+    first, grow = (HELD_TURN, HELD_GROWTH) if held(case) else (turn, usual.grow)
     return dataclasses.replace(
         usual,
         easy=10,
         slow=16,
-        grow=3.0,
+        grow=grow,
         memory=2,
         turn=turn,
         first_turn=min(usual.first_turn, first),
