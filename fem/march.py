@@ -355,7 +355,7 @@ class March:
         """First increment, by the linear response.
 
         It turns the followed functional by `first_turn`, a twentieth of the load where nothing
-        turns, and changes the conjugate by no more than `swell`.
+        turns, and changes the conjugate by no more than `swell`, unless a guide knows the way.
         """
         base = self.states[-1].measures
         change = {name: abs(value - base[name]) for name, value in seed.measures.items()}
@@ -364,6 +364,6 @@ class March:
         if driven < 1e-300:
             return span / 20
         size = span / 20 if turned < 1e-14 else driven / turned * self.rules.first_turn
-        if base[volume] and change[volume]:
+        if self.predictor.guide is None and base[volume] and change[volume]:
             size = min(size, driven * self.rules.swell * abs(base[volume]) / change[volume])
         return float(size)
