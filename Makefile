@@ -10,7 +10,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo sweep test verify speed tables check format schema clean
+.PHONY: help setup demo sweep test verify hard speed tables check format schema clean
 
 help: ## list the commands
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -30,6 +30,9 @@ test: setup ## run the tests, on one rank and on two
 
 verify: setup ## run the slow convergence ladders against exact solutions
 	$(BIN)/python -m pytest -m verify
+
+hard: setup ## run the hard cases in every model and write docs/stability.md
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/hard.py
 
 tables: setup ## make the accuracy tables in docs/ again; a quarter of an hour
 	$(MPIRUN) $(BIN)/python bench/tables.py

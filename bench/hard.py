@@ -1,0 +1,176 @@
+"""Hard cases in every model that holds them: docs/stability.md by `make hard`.
+
+Each case runs in a process of its own with a time limit, so that a crash or a hang is a line of the
+table and a failure, not the end of the run.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parent.parent
+if str(ROOT) not in sys.path:
+    sys.path.insert(0, str(ROOT))
+
+from tests.hard.cases import HARD, MODELS, Hard  # noqa: E402
+
+PAGE = ROOT / "docs" / "stability.md"
+LIMIT = 300
+"""Seconds after which a case hangs."""
+
+
+def one(hard: Hard, model: str) -> dict[str, Any]:
+    """The record of a case, or of its crash."""
+    start = time.monotonic()
+    command = [sys.executable, "-m", "tests.hard.solve", hard.name, model]
+    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
+    try:
+        done = subprocess.run(
+            command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=LIMIT
+        )
+        if done.returncode == 0:
+            record: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+            return record
+        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
+        fault = f"crashed with exit code {done.returncode}: {last}"
+    except subprocess.TimeoutExpired:
+        fault = f"hangs: no end after {LIMIT} s"
+    return {
+        "name": hard.name,
+        "model": model,
+        "status": "crashed",
+        "reason": fault,
+        "iterations": 0,
+        "faults": [fault],
+        "seconds": round(time.monotonic() - start, 1),
+    }
+
+
+def row(hard: Hard, record: dict[str, Any]) -> str:
+    """Line of the table."""
+    name, model, seconds = record["name"], record["model"], record["seconds"]
+    if record["status"] == "crashed":
+        return f"| {name} | {model} | **{record['reason']}** |" + " |" * 8 + f" {seconds:.0f} |"
+    end = "reached" if record["status"] == "converged" else "refused"
+    modes = "" if record["modes"] is None else record["modes"]
+    return (
+        f"| {name} | {model} | {end} | {record['angle_deg']:.1f} | {record['pressure_kpa']:.1f} "
+        f"| {record['steps']} | {record['cutbacks']} | {record['iterations']} "
+        f"| {record['least_det_f']:.2f} | {modes} | {record['gap']:.0e} | {seconds:.0f} |"
+    )
+
+
+HEAD = """\
+# Hard cases
+
+Made by `make hard` (`bench/hard.py`) from the table of cases in `tests/hard/cases.py`; each runs in
+a process of its own, at most {limit} s. What is fast is part of `make test`. The body is
+80 mm long unless the case says otherwise, so that 180° bend it as much as 360° the paper's
+actuator; bodies are coarse (elements of 8 mm) with their winding spread over its surface.
+
+**{count} runs: {reached} reached, {refused} refused with a physical reason, {bad} not as expected;
+{iterations} Newton iterations.**
+
+- *end*: reached, or refused; the reasons are below.
+- *modes*: unstable modes at the end (negative eigenvalues with all loads held, by inertia).
+- *gap*: of the work of the loads, ∫ P dV and the like by a spline through the steps, from the
+  stored energy, relative.
+- Times are wall times on the machine that made the page, beside whatever else it did.
+
+"""
+COLUMNS = (
+    "case",
+    "model",
+    "end",
+    "angle °",
+    "kPa",
+    "steps",
+    "cut-backs",
+    "iterations",
+    "least det F",
+    "modes",
+    "gap",
+    "s",
+)
+
+
+def write(records: Sequence[dict[str, Any]]) -> None:
+    """The page."""
+    known = {hard.name: hard for hard in HARD}
+    bad = [r for r in records if r["faults"]]
+    reached = [r for r in records if r["status"] == "converged"]
+    refused = [r for r in records if r["status"] in ("stopped", "failed")]
+    lines = [
+        HEAD.format(
+            limit=LIMIT,
+            count=len(records),
+            reached=len(reached),
+            refused=len(refused),
+            bad=len(bad),
+            iterations=sum(r["iterations"] for r in records),
+        )
+        + f"| {' | '.join(COLUMNS)} |\n|{'---|' * len(COLUMNS)}\n"
+        + "\n".join(row(known[r["name"]], r) for r in records),
+        "\n## What each is, and where it is not\n",
+        *(f"- **{h.name}**: {h.why}.{f' Not in {h.absent}.' if h.absent else ''}" for h in HARD),
+        "\n## Refused, and why\n",
+        *(f"- {r['name']}, {r['model']}: {r['reason']}" for r in refused),
+        "\n## Warnings\n",
+        *(f"- {r['name']}, {r['model']}: {w}" for r in records for w in r.get("warnings", [])),
+        "\n## Compared\n",
+        "| case | model | what | value | least | greatest |\n|---|---|---|---|---|---|",
+        *(
+            f"| {r['name']} | {r['model']} | {what} | {value:.4g} | {low:.4g} | {high:.4g} |"
+            for r in records
+            for what, value, low, high in r.get("checks", [])
+        ),
+    ]
+    if bad:
+        lines.append("\n## Not as expected\n")
+        lines += [f"- {r['name']}, {r['model']}: {fault}" for r in bad for fault in r["faults"]]
+    PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def main() -> int:
+    """Run all, or those named; write the page when all ran."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", help="cases; all unless said")
+    parser.add_argument("--model", choices=MODELS)
+    parser.add_argument("-j", type=int, default=os.cpu_count() or 1, help="at once")
+    options = parser.parse_args()
+    todo = [
+        (hard, model)
+        for hard in HARD
+        for model in hard.models
+        if (not options.names or hard.name in options.names)
+        and (options.model is None or options.model == model)
+    ]
+    records = []
+    with ThreadPoolExecutor(options.j) as pool:
+        for record in pool.map(lambda item: one(*item), todo):
+            records.append(record)
+            state = "; ".join(record["faults"]) or record["status"]
+            print(
+                f"{record['name']:18s} {record['model']:8s} {record['iterations']:4d} iterations "
+                f"{record['seconds']:6.1f} s  {state}",
+                flush=True,
+            )
+    total = sum(record["iterations"] for record in records)
+    bad = sum(bool(record["faults"]) for record in records)
+    print(f"{len(records)} runs, {total} Newton iterations, {bad} not as expected")
+    if not options.names and options.model is None:
+        write(records)
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
