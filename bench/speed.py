@@ -96,6 +96,7 @@ def process(limit: float) -> tuple[str, float, float]:
             *("--set", "output.pictures=false", "--set", "output.fields=false"),
         ]
         environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)  # a warm cache holds Python's too
 
         def run() -> None:
             subprocess.run(command, check=True, cwd=ROOT, env=environment, capture_output=True)

@@ -345,7 +345,7 @@ class March:
 
     def _turn_limit(self, drive: str) -> float:
         """Increment that turns the followed functional by `turn`, from the last two states."""
-        if self.followed is None or len(self.states) < self.rules.memory:
+        if self.followed is None or len(self.states) < min(self.rules.memory, 3):
             return np.inf
         a, b = (state.measures for state in self.states[-2:])
         turned = abs(b["followed"] - a["followed"])

@@ -216,8 +216,9 @@ class _Solve:
     def split(self, x: PETSc.Vec) -> tuple[Floats, Floats]:
         """Fields (owned part) and scalars (on every rank) of a bordered vector."""
         array = x.array_r
-        tail = array[self.owned :].copy() if self.last else None
-        scalars = self.comm.bcast(tail, root=self.comm.size - 1) if self.unknown else np.zeros(0)
+        scalars = array[self.owned :].copy()
+        if self.unknown and self.comm.size > 1:
+            scalars = self.comm.bcast(scalars if self.last else None, root=self.comm.size - 1)
         return array[: self.owned].copy(), scalars
 
     def join(self, x: PETSc.Vec, w: Floats, scalars: Floats) -> None:

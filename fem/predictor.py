@@ -79,13 +79,11 @@ def lagrange(t: Floats, target: float) -> Floats:
 
 
 def distinct(states: Sequence[State], key: str) -> list[State]:
-    """The last states with distinct values of a measure, at most three, oldest first."""
+    """Of states with the same value of a measure the last one; oldest first."""
     chosen: list[State] = []
     for state in reversed(states):
         value = state.measures[key]
         scale = 1e-9 * max(abs(value), 1e-30)
         if all(abs(value - other.measures[key]) > scale for other in chosen):
             chosen.insert(0, state)
-        if len(chosen) == 3:
-            break
     return chosen

@@ -70,6 +70,7 @@ class Scene:
         self.body = kinematics(domain, (name for effect in ordered for name in effect.fields))
         self.force_scale = 1.0
         self._corners: dict[tuple[str, str], float] = {}
+        self._loads: dict[str, Floats] = {}
         self.discrete: dict[str, Discrete] = {}
         potentials: dict[str, Any] = {}
         constraints: list[Constraint] = []
@@ -173,7 +174,7 @@ class Scene:
 
     def set(self, w: Floats) -> None:
         """Take the owned coefficients w as the state; held dofs take their values."""
-        self._corners.clear()
+        self._forget()
         self.w[:] = np.where(self.free[: self.body.owned], w, self._held_values[: self.body.owned])
         follow, lead = self.body.ties
         self.w[follow] = self.w[lead]
@@ -181,13 +182,17 @@ class Scene:
         for discrete in self.discrete.values():
             discrete.update(self.body.w.x.array)
 
+    def _forget(self) -> None:
+        self._corners.clear()
+        self._loads.clear()
+
     def scalar(self, name: str) -> float:
         """Value of a global scalar."""
         return float(self.body.scalars[name].value)
 
     def set_scalar(self, name: str, value: float) -> None:
         """Set a global scalar."""
-        self._corners.clear()
+        self._forget()
         self.body.scalars[name].value = value
 
     # --- the potential and its derivatives ---------------------------------------------------
@@ -275,14 +280,15 @@ class Scene:
 
     def load(self, name: str, constrained: bool = False) -> Floats:
         """∂R/∂q of a global scalar, owned part; zero on constrained dofs unless they are wanted."""
-        fills = [functools.partial(item.add_load, name) for item in self.discrete.values()]
-        vector, _ = self._sum(self._forms[f"load {name}"], fills)
-        if not constrained:
-            vector[~self.free[: self.body.owned]] = 0.0
-        return vector
+        if name not in self._loads:
+            fills = [functools.partial(item.add_load, name) for item in self.discrete.values()]
+            self._loads[name], _ = self._sum(self._forms[f"load {name}"], fills)
+        vector = self._loads[name]
+        return vector.copy() if constrained else np.where(self.free[: len(vector)], vector, 0.0)
 
     def assemble_tangent(self) -> PETSc.Mat:
         """K = ∂R/∂w at the present state; unit diagonal on constrained dofs."""
+        self._forget()  # fibers may predict other forces now
         self.matrix.zeroEntries()
         compat.assemble_matrix(self.matrix, self._forms["tangent"], self._dirichlet)
         self.matrix.assemble(PETSc.Mat.AssemblyType.FLUSH)

@@ -53,24 +53,35 @@ def _corners(reach: Floats) -> Floats:
     return corners
 
 
-def clearance(pose: Pose) -> float:
+def clearance(pose: Pose, most: float = np.inf) -> float:
     """Least distance of a body's sections from its slices elsewhere, mm; negative: inside.
 
     A slice lies between two neighbouring sections. Distances are those from planes: exact where
     bodies touch, too small far away; none is reported beyond the size of a section. Sections
     closer along the axis than one and a half times that size are neighbours, and not compared.
+
+    Args:
+        pose: the body.
+        most: mm; greater distances are reported as this one, and cost less.
     """
     corners = _corners(pose.reach)
     size = float(np.ptp(corners, axis=1).max())
     turned = np.einsum("nab,nmb->nma", pose.rotation[:, :, :2], corners)
-    points = (pose.centre[:, None] + turned).reshape(-1, 3)
-    here = np.repeat(pose.z, DIRECTIONS)
+    points = pose.centre[:, None] + turned
     radius = np.linalg.norm(corners, axis=2).max()
-    least = size
-    for j in range(len(pose.z) - 1):
-        far = np.abs(here - (pose.z[j] + pose.z[j + 1]) / 2) > 1.5 * size
-        below = (points[far] - pose.centre[j]) @ pose.rotation[j]
-        above = (points[far] - pose.centre[j + 1]) @ pose.rotation[j + 1]
+    middles = points.mean(axis=1)
+    wide = np.linalg.norm(points - middles[:, None], axis=2).max(axis=1)
+    slices, halves = (middles[1:] + middles[:-1]) / 2, np.maximum(wide[1:], wide[:-1])
+    halves = halves + np.linalg.norm(np.diff(middles, axis=0), axis=1) / 2
+    between = np.linalg.norm(middles[:, None] - slices, axis=2) - wide[:, None] - halves
+    far = np.abs(pose.z[:, None] - (pose.z[1:] + pose.z[:-1]) / 2) > 1.5 * size
+    least = min(size, most)
+    # balls around section and slice are apart: a bound that most pairs pass
+    candidates = far & (between < least)
+    for j in np.flatnonzero(candidates.any(axis=0)):
+        some = points[candidates[:, j]].reshape(-1, 3)
+        below = (some - pose.centre[j]) @ pose.rotation[j]
+        above = (some - pose.centre[j + 1]) @ pose.rotation[j + 1]
         axial = np.maximum(-below[:, 2], above[:, 2])
         middle = (below[:, :2] + above[:, :2]) / 2
         near = np.maximum(axial, np.linalg.norm(middle, axis=1) - radius) < least
@@ -183,12 +194,12 @@ def first_contact(rod: Rod, old: State, new: State) -> float | None:
         old: a state that does not touch itself.
         new: the next one.
     """
-    if clearance(rod.pose(old, new, 1.0)) >= 0:
+    if clearance(rod.pose(old, new, 1.0), 0.0) >= 0:
         return None
     low, high = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = (low + high) / 2
-        if clearance(rod.pose(old, new, middle)) < 0:
+        if clearance(rod.pose(old, new, middle), 0.0) < 0:
             high = middle
         else:
             low = middle

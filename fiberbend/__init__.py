@@ -34,8 +34,11 @@ def run(
     Raises:
         fiberbend.problems.CaseError: everything that is wrong with the case.
     """
+    from fiberbend import launch
     from fiberbend.progress import Progress
     from fiberbend.reader import as_case
+
+    launch.start_mpi()
     from fiberbend.runner import run_case
 
     progress = Progress(quiet=quiet)

@@ -14,7 +14,7 @@ from fem.program import Ramp, Rules, State
 from fem.scene import Scene
 from fiberbend import contact, models
 from fiberbend.case import Case
-from fiberbend.choice import FIRST_TURN, TURN
+from fiberbend.choice import FIRST_TURN, MEMORY, TURN
 from fiberbend.registry import Parts, build
 from geometry.mesh import MeshData
 
@@ -68,6 +68,7 @@ def assemble(
         cutbacks=case.solver.max_cutbacks,
         turn=turn or TURN[model],
         first_turn=min(turn or TURN[model], FIRST_TURN[model]),
+        memory=MEMORY[model],
     )
     rules = contact.pace(case, rules)
     march = March(scene, newton, reading.frames, reading.followed, rules, on_step, warn)

@@ -153,6 +153,7 @@ def _run(options: argparse.Namespace) -> int:
     out = options.out or Path("runs") / Path(options.case).stem
     progress = Progress(quiet=options.quiet)
     try:
+        launch.start_mpi()
         from fiberbend.runner import run_case
 
         result = run_case(

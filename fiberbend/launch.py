@@ -9,6 +9,12 @@ import time
 _RANK = ("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID")
 _PATIENCE = 20.0
 _SIZE = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_NTASKS")
+_ALONE = {
+    "OMPI_MCA_ess_singleton_isolated": "1",
+    "OMPI_MCA_pml": "ob1",
+    "OMPI_MCA_btl": "self",
+}
+"""Open MPI's settings for a process that talks to itself only."""
 
 
 def rank() -> int:
@@ -29,6 +35,20 @@ def set_threads() -> None:
     if size() > 1:
         for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
             os.environ.setdefault(name, "1")
+
+
+def start_mpi() -> None:
+    """Start MPI; without mpirun in a quarter of the time, by looking for no other process.
+
+    What is set for it is taken back: an mpirun that is launched from here must not find it.
+    """
+    alone = not any(name in os.environ for name in (*_RANK, *_SIZE))
+    new = [name for name in _ALONE if alone and name not in os.environ]
+    os.environ.update({name: _ALONE[name] for name in new})
+    import mpi4py.MPI  # noqa: F401
+
+    for name in new:
+        del os.environ[name]
 
 
 def let_rank_0_speak() -> None:

@@ -309,3 +309,14 @@ def test_resume_reads_the_same_case_only(
         f'actuator.wall: "3 mm", expected "2 mm" as in {tmp_path / "run"}\n'
     )
     assert read_case(tmp_path / "run" / "case.resolved.yaml") == read_case(BASELINE)
+
+
+def test_starting_mpi_leaves_the_environment_as_it_was() -> None:
+    # settings for a process that is alone would cut off the ranks of an mpirun launched from it
+    code = (
+        "import os; from fiberbend import launch; before = dict(os.environ); "
+        "launch.start_mpi(); from mpi4py import MPI; "
+        "assert MPI.COMM_WORLD.size == 1 and dict(os.environ) == before"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
