@@ -72,5 +72,6 @@ def assemble(
     )
     rules = contact.pace(case, rules)
     march = March(scene, newton, reading.frames, reading.followed, rules, on_step, warn)
+    contact.keep_touch(case, march)
     march.start()
     return Assembly(parts, scene, reading, newton, march, parts.ramps(scene.body.copies))

@@ -6,6 +6,7 @@ import dataclasses
 import math
 
 from fem.effects.contact import Contact, Cylinder, Obstacle, Plane
+from fem.march import March
 from fem.newton import Settings
 from fem.program import Rules
 from fiberbend import bridge, case_effects
@@ -18,9 +19,12 @@ EVERYWHERE = ("outer", "tip")
 """Surfaces that may touch an obstacle anywhere in space."""
 
 STIFFNESS = 100.0
+"""Obstacles are so many times as stiff as a layer of the wall's rubber."""
 ITERATIONS = 25
 SHARPER = 0.1
+"""Factor on the tolerance of forces."""
 HELD_TURN = 0.05
+"""Turn in the first step of a body between roof and post, rad."""
 HELD_GROWTH = 3.0
 _REACH = 0.5
 
@@ -84,9 +88,9 @@ def pace(case: Case, usual: Rules) -> Rules:
     """Rules of a march with obstacles.
 
     What touches is found in some six iterations however short the step is: they do not shorten it.
-    A body that is held hardly turns from the start. Touch bends every curve: two states point
-    better than three, and no volume is unexpected. No step passes through a bar: the tip moves
-    less than its radius.
+    A body that is held hardly turns from the start, and its steps may grow fast. Touch bends every
+    curve: two states point better than three, and no volume is unexpected. No step passes through
+    a bar: the tip moves less than its radius.
     """
     contact = case.find(ContactEffect)
     if contact is None:
@@ -106,3 +110,14 @@ def pace(case: Case, usual: Rules) -> Rules:
         first_turn=min(usual.first_turn, first),
         jump=math.inf,
     )
+
+
+def keep_touch(case: Case, march: March) -> None:
+    """Let a body between roof and post start its steps where it still touches them.
+
+    Displacements that are extrapolated as they are stay on a plane; in frames that turn with the
+    body they leave it by more than the depth at which it carries, and Newton starts from a body
+    that nothing holds.
+    """
+    if case.find(ContactEffect) is not None and held(case):
+        march.predictor.frames = None
