@@ -248,8 +248,8 @@ class FiberPotential:
         dofs = self._dofs[self._start]
         keep = free[dofs].astype(float)
         sums *= keep[:, :, None] * keep[:, None, :]
-        for rows, values in zip(dofs, sums, strict=True):
-            matrix.setValuesLocal(rows, rows, values, PETSc.InsertMode.ADD_VALUES)
+        rows = dofs.astype(PETSc.IntType)
+        matrix.setValuesLocalRCV(rows, rows, sums, PETSc.InsertMode.ADD_VALUES)
 
     # --- global scalars ------------------------------------------------------------------------
 

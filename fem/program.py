@@ -97,9 +97,9 @@ class Rules:
             branch beyond a limit point, which only explains why a load is not reached, all of them.
         turn: greatest change of the followed functional an increment may aim at.
         first_turn: the same for an increment from the linear response.
-        memory: states from which the next is extrapolated: 3 on a smooth path, 4 where it is short
-            enough for a cubic; 2 where kinks are to be expected, across which a parabola misleads
-            and foresees limit points.
+        memory: states from which the next is extrapolated: 3 on a smooth path, more where steps are
+            short; 2 where kinks are to be expected, across which a parabola misleads and foresees
+            limit points.
         least: least increment, relative to the whole ramp.
         jump: how much further, in units of the step that was expected, the conjugate may go in an
             increment of the value; beyond it Newton may have found another branch.

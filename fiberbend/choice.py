@@ -26,8 +26,8 @@ TURN = {"section": math.radians(10), "cell": math.radians(45), "body": math.radi
 """Greatest change of the angle in a step: fine curves where steps are cheap."""
 FIRST_TURN = {"section": math.radians(10), "cell": math.radians(10), "body": math.radians(20)}
 """The same for the first step."""
-MEMORY = {"section": 4, "cell": 4, "body": 3}
-"""States from which a step is extrapolated: a cubic where steps are short."""
+MEMORY = {"section": 5, "cell": 4, "body": 3}
+"""States from which a step is extrapolated: more where steps are short."""
 
 Objection = tuple[str, str]
 """A path within a case, and what a model has against it."""
