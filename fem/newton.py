@@ -21,6 +21,8 @@ NEAR, NEAR_RATIO, CHORD_RATIO = 1e-3, 0.02, 0.1
 """A factor is used again below this residual, after this reduction, and while it reduces so."""
 
 INVERTED = "an element turned inside out (least det F {:.3g})"
+FADED = 1e-3
+"""Forces count no less than so much of the greatest before: unloaded, nothing else is left."""
 PATIENCE = 6
 """Iterations after which a residual that grows makes Newton take the true tangent."""
 
@@ -33,6 +35,7 @@ class Problem(Protocol):
     volumetric: npt.NDArray[np.bool_]
     volume_scale: float
     force_noise: float
+    force_floor: float
     discrete: dict[str, Any]
     body: Any
 
@@ -66,8 +69,9 @@ class Settings:
     """Limits of one Newton solve.
 
     Attributes:
-        tolerance: of forces, relative to reactions and fiber forces but no finer than round-off,
-            and of volumes, relative to the volume of an element; each for itself.
+        tolerance: of forces, relative to reactions and fiber forces (a thousandth of the greatest
+            so far at least) but no finer than round-off, and of volumes, relative to the volume of
+            an element; each for itself.
         iterations: most iterations.
         hybrid: use the predicted fiber force in the geometric stiffness.
         reuse: take the last factor again where it converges fast; a solve costs a twentieth of
@@ -360,6 +364,8 @@ class _Solve:
             if not converged and not self.reason:
                 # SNES stops at a starting guess that is not a number without asking the test
                 self.reason = INVERTED.format(self.least)
+            if converged:
+                self.problem.force_floor = max(self.problem.force_floor, FADED * self.scale)
         except (PETSc.Error, ZeroDivisionError, np.linalg.LinAlgError) as error:
             self.reason = f"the linear solve failed ({error})"
             converged = False

@@ -46,6 +46,7 @@ class Scene:
         effects: the effects by these names.
         natural: global scalars in which the potential is stationary at an equilibrium.
         force_scale: scale of the forces in the last residual.
+        force_floor: the least that `force_scale` can be; Newton sets it by the states it has found.
         force_noise: norm of the forces that round-off in stiff discrete potentials makes.
         free: local dofs (owned and ghosts) that no constraint holds.
         discrete: by key, the potentials with own code.
@@ -69,6 +70,7 @@ class Scene:
         self.domain = domain
         self.body = kinematics(domain, (name for effect in ordered for name in effect.fields))
         self.force_scale = 1.0
+        self.force_floor = 1e-30
         self._corners: dict[tuple[str, str], float] = {}
         self._loads: dict[str, Floats] = {}
         self.discrete: dict[str, Discrete] = {}
@@ -267,7 +269,7 @@ class Scene:
 
         Returns:
             Its owned part (owned,), constrained dofs included: there it is the reaction; and a
-            scale for the forces in it: the larger of reactions and fiber forces.
+            scale for the forces in it: the larger of reactions and fiber forces, or the floor.
         """
         r, norm = self._sum(
             self._forms["residual"], [item.add_residual for item in self.discrete.values()]
@@ -275,7 +277,7 @@ class Scene:
         held = ~self.free[: self.body.owned]
         reaction = self.norm(r[held])
         total = float(np.sqrt(compat.total(self.domain.comm, norm**2)))
-        self.force_scale = max(reaction, total, 1e-30)
+        self.force_scale = max(reaction, total, self.force_floor)
         return r, self.force_scale
 
     def load(self, name: str, constrained: bool = False) -> Floats:
