@@ -17,8 +17,14 @@ from fiberbend.case_effects import (
     PressureEffect,
     WindingEffect,
 )
+from fiberbend.choice import choose_half
+from fiberbend.fineness import cell_slice
 
 _CLOSED_FORM = "pressure for an angle 33 % (90°) to 13 % (360°) above the section model"
+_SECTION = ((4, 0.03), (3, 0.06), (2, 0.13), (1, 0.3))
+"""By refinement."""
+_CELL = ((8, 0.2), (4, 0.4), (0, 1.9))
+"""By layers a half pitch."""
 _ENDS = "the whole body bends 0.6 to 1.4 % further than its middle (docs/accuracy_free.md)"
 
 
@@ -40,12 +46,22 @@ def errors_of(case: Case, model: str) -> Iterator[str]:
         if case.find(GravityEffect) is None:
             yield f"ends: {_ENDS}: see uniform_angle_deg"
     else:
-        mesh = "0.1 %" if model == "section" else "0.5 %"
-        yield f"mesh: moves P by about {mesh} (docs/accuracy_uniform.md)"
+        yield f"mesh: moves P by up to {_mesh(case, model)} % (docs/accuracy_uniform.md)"
         yield f"ends: left out; {_ENDS}"
     if case.mesh.element == "tetrahedron":
         yield "tetrahedra: too stiff beside hexahedra of the same length; refine once to see it"
     yield from _winding(case, model)
+
+
+def _mesh(case: Case, model: str) -> float:
+    """Error in percent of the pressure for an angle up to 360°, by the mesh of section or cell."""
+    if model == "section":
+        return next(error for n, error in _SECTION if case.mesh.section >= n)
+    if case.find(WindingEffect) is None:
+        return _CELL[-1][1]
+    half = choose_half(case)[0]
+    layers = cell_slice(case, half)[1] / (1 if half else 2)
+    return next(error for least, error in _CELL if layers >= least)
 
 
 def _closed_form(case: Case) -> Iterator[str]:
@@ -65,7 +81,7 @@ def _held(case: Case, model: str) -> Iterator[str]:
         yield "mesh: moves the tip force by 1 to 3 % (docs/accuracy_blocked.md)"
         yield "obstacles: yield a little, which costs 0.2 % of the force (docs/contact.md)"
         return
-    yield f"mesh: moves the moment by about {'0.1' if model == 'section' else '0.5'} %"
+    yield f"mesh: moves the moment by up to {_mesh(case, model)} %"
     yield "tip: a real one turns, its sheath yields: about half the force (docs/accuracy_causes.md)"
 
 

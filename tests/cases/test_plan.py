@@ -194,6 +194,9 @@ def test_expected_error_follows_the_winding() -> None:
     assert "1.4 % at 90° to 2.1 % at 360°" in finer
     assert "scaled from 3 mm" in finer
     assert "P too low" not in row(plan("model=cell"), "error")
+    # one layer a half pitch is too few where the crown is stretched by half
+    assert "up to 1.9 %" in row(plan("model=cell", "mesh.axial=1.5 mm"), "error")
+    assert "up to 0.4 %" in row(plan("model=cell", "mesh.axial=0.375 mm"), "error")
     assert "P too low" not in row(plan(), "error")
     assert "P too low by about 2.8 %" in row(plan("mesh.axial=4 mm"), "error")
     assert "tip force" in row(plan(BLOCKED), "error")
