@@ -13,6 +13,7 @@ from fem.newton import Newton, Outcome, Settings
 from fem.program import Ramp, Rules, State
 from fem.scene import Scene
 from fiberbend import contact, models
+from fiberbend.approach import Approach
 from fiberbend.case import Case
 from fiberbend.choice import FIRST_TURN, MEMORY, TURN
 from fiberbend.registry import Parts, build
@@ -72,6 +73,7 @@ def assemble(
     )
     rules = contact.pace(case, rules)
     march = March(scene, newton, reading.frames, reading.followed, rules, on_step, warn)
-    contact.keep_touch(case, march)
     march.start()
-    return Assembly(parts, scene, reading, newton, march, parts.ramps(scene.body.copies))
+    ramps = parts.ramps(scene.body.copies)
+    Approach(scene, march, ramps)
+    return Assembly(parts, scene, reading, newton, march, ramps)

@@ -6,7 +6,6 @@ import dataclasses
 import math
 
 from fem.effects.contact import Contact, Cylinder, Obstacle, Plane
-from fem.march import March
 from fem.newton import Settings
 from fem.program import Rules
 from fiberbend import bridge, case_effects
@@ -110,14 +109,3 @@ def pace(case: Case, usual: Rules) -> Rules:
         first_turn=min(usual.first_turn, first),
         jump=math.inf,
     )
-
-
-def keep_touch(case: Case, march: March) -> None:
-    """Let a body between roof and post start its steps where it still touches them.
-
-    Displacements that are extrapolated as they are stay on a plane; in frames that turn with the
-    body they leave it by more than the depth at which it carries, and Newton starts from a body
-    that nothing holds.
-    """
-    if case.find(ContactEffect) is not None and held(case):
-        march.predictor.frames = None
