@@ -24,7 +24,7 @@ from analytic.stress import effective
 BASE = Hemicircle(8, 2, 2, 160)
 DEGREES = np.linspace(0, 360, 37)
 QUARTERS = [0, 90, 180, 270, 360]
-# the baseline's section model: P of REFERENCE 4, V of `fiberbend.curves.section_curve`
+# the baseline: P of an independent section model, V of `fiberbend.curves.section_curve`
 SECTION = ArcCurve(
     pressure=1e-3 * CubicSpline(QUARTERS, [0, 45.1, 89.2, 134.3, 181.5])(DEGREES),
     angle=np.radians(DEGREES),

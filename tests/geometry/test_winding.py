@@ -49,7 +49,7 @@ def test_hands_are_geometric() -> None:
 
 
 def test_double_helix_crosses_on_the_mirror_plane() -> None:
-    # DESIGN's phase: the crossings are the mirror planes of the cell model
+    # the phase by convention: the crossings are the mirror planes of the cell model
     winding = Winding("double-helix", 4, 0.0)
     first, second = (winding.points(BODY, i, 21)[0] for i in range(2))
     assert first[:, 2] == pytest.approx(np.arange(21) * 2.0)

@@ -12,7 +12,7 @@ from materials.fiber import FIBERS, Fiber, energy, force, tangent
 
 
 def test_kevlar_stiffness() -> None:
-    # REFERENCE: 31 076 MPa, 0.38 mm with half the radius gives 881 N
+    # the paper: 31 076 MPa, 0.38 mm with half the radius gives 881 N
     assert FIBERS["kevlar"].stiffness == pytest.approx(881, abs=0.5)
 
 

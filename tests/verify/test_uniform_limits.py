@@ -39,7 +39,7 @@ def test_baseline_without_winding_does_not_bend_at_first_order() -> None:
 
 
 def test_closed_tube_without_winding() -> None:
-    # REFERENCE 5: p = 0.01347609 and λz = 1.00417997 at a/A = 1.1
+    # exact, by quadrature: p = 0.01347609 and λz = 1.00417997 at a/A = 1.1
     pressure, stretch = limits.free_tube(2)
     assert pressure.found == pytest.approx(0.01347609, rel=1e-5)
     assert stretch.found == pytest.approx(1.00417997, rel=1e-6)
@@ -52,7 +52,7 @@ def test_wound_tube_of_a_finite_pitch() -> None:
 
 @pytest.mark.parametrize(("stretch", "reference"), [(1.1, 0.03107830), (1.5, 0.12667995)])
 def test_wound_tube_tends_to_inextensible_hoops(stretch: float, reference: float) -> None:
-    # REFERENCE 5; a pitch of 0.1 mm leaves 5e-5 and 7e-5, by the exact tube of that pitch
+    # exact, by quadrature; a pitch of 0.1 mm leaves 5e-5 and 7e-5, by the exact tube of that pitch
     errors = [limits.extending_tube(1, p, stretch) / reference - 1 for p in (1.0, 0.1)]
     assert abs(errors[1]) < 1e-4
     assert abs(errors[1]) < abs(errors[0])
