@@ -1,0 +1,380 @@
+"""Tip force by contact: Fig. 11 of Polygerinos et al. 2015, what it rests on, and grasping.
+
+Writes docs/contact.md and its pictures. Finished runs are kept in runs/contact and taken again
+while their cases stay the same. On one rank.
+"""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import json
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from analytic.bending import Hemicircle
+from bench import contact_pictures
+from bench.tables import ROOT, table
+from fiberbend import run
+
+PAGE = ROOT / "docs" / "contact.md"
+RUNS = ROOT / "runs" / "contact"
+PRESSURES = (50, 100, 150, 200, 250)
+ACTUATORS = ((8, 160), (8, 130), (6, 160))
+LEVER = 14.0
+"""From the end of the chamber to the middle of a post of 2 mm, mm."""
+CAP = 15.0
+SHORT: dict[str, Any] = {"length": "24 mm", "cap": "6 mm"}
+LEVEL: dict[str, Any] = {"section": "rectangle", "width": "16 mm", "height": "8 mm"}
+STIFFNESS = 66.0
+"""MPa/mm: what a case takes for these materials unless told."""
+HEAD = """# Tip force by contact
+
+`OPENBLAS_NUM_THREADS=1 python bench/contact.py` makes this page. Obstacles are rigid, without
+friction, and only push. Winding smeared, elements of 4 mm; floor 2 mm, pitch 3 mm and caps of
+15 mm, of which the paper states the last only.
+"""
+
+
+@dataclasses.dataclass(frozen=True)
+class Solved:
+    """A finished run.
+
+    Attributes:
+        rows: of its history.
+        run: its run.json.
+        folder: where its states are.
+    """
+
+    rows: list[dict[str, Any]]
+    run: dict[str, Any]
+    folder: Path
+
+    def at(self, kpa: float) -> dict[str, Any]:
+        """The row at a pressure that was asked for, kPa."""
+        return min(self.rows, key=lambda row: abs(row["pressure_kPa"] - kpa))
+
+    def column(self, name: str) -> list[float]:
+        """Values at all pressures of Fig. 11."""
+        return [float(self.at(kpa)[name]) for kpa in PRESSURES]
+
+
+def solve(name: str, case: dict[str, Any], states: bool = False) -> Solved:
+    """Run a case, or take the run of the same case again.
+
+    Args:
+        name: of its folder.
+        case: the case.
+        states: keep the states for pictures.
+    """
+    output = case.get("output", {}) | {"pictures": False, "fields": states}
+    case = copy.deepcopy(case) | {"output": output}
+    folder = RUNS / name
+    note = folder / "bench.json"
+    if note.exists():
+        kept = json.loads(note.read_text(encoding="utf-8"))
+        if kept["case"] == case:
+            return Solved(kept["rows"], kept["run"], folder)
+    result = run(case, folder, overwrite=True)
+    print(name, result.status, result.run["wall_s"]["solve"], result.run["cutbacks"], flush=True)
+    if result.status != "converged":
+        raise RuntimeError(f"{name}: {result.reason}")
+    kept = {"case": case, "rows": result.rows, "run": result.run}
+    note.write_text(json.dumps(kept), encoding="utf-8")
+    return Solved(result.rows, result.run, folder)
+
+
+def read(path: str) -> dict[str, Any]:
+    """A case file."""
+    case: dict[str, Any] = yaml.safe_load((ROOT / "cases" / path).read_text(encoding="utf-8"))
+    return case
+
+
+def fixed(values: Sequence[float], digits: int = 2) -> list[str]:
+    """With the same number of decimals."""
+    return [f"{value:.{digits}f}" for value in values]
+
+
+def percent(found: Sequence[float], true: Sequence[float]) -> list[str]:
+    """Differences, %."""
+    return [f"{100 * (a / b - 1):+.2f}" for a, b in zip(found, true, strict=True)]
+
+
+@dataclasses.dataclass(frozen=True)
+class Fig11:
+    """An actuator of Fig. 11 in every model.
+
+    Attributes:
+        radius: of the chamber, mm.
+        length: of the chamber, mm.
+        guided: body held by strips.
+        contact: body between obstacles.
+        section: section held straight, its axis free to stretch.
+        cell: the same of a cell with every fiber.
+    """
+
+    radius: int
+    length: int
+    guided: Solved
+    contact: Solved
+    section: Solved
+    cell: Solved
+
+    @classmethod
+    def solve(cls, radius: int, length: int) -> Fig11:
+        """Run the four models."""
+        name = f"radius{radius}_length{length}"
+        guided, contact = (read(f"fig11/{name}_{way}.yaml") for way in ("guided", "contact"))
+        straight = copy.deepcopy(guided) | {"mesh": {}}
+        straight["effects"][2] = {"straight": {"stretch": "free"}}
+        discrete = copy.deepcopy(straight) | {"model": "cell"}
+        discrete["effects"][1]["winding"]["as"] = "discrete"
+        return cls(
+            radius,
+            length,
+            solve(f"{name}_guided", guided),
+            solve(f"{name}_contact", contact, states=True),
+            solve(f"{name}_section", straight | {"model": "section"}),
+            solve(f"{name}_cell", discrete),
+        )
+
+    def kappa(self, acts: Any = "chamber") -> float:
+        """κ of eq. (21), or that of all inside the winding, mm³."""
+        return Hemicircle(self.radius, 2.0, 2.0, self.length, acts=acts).kappa
+
+    def rows(self) -> list[list[str]]:
+        """One for each quantity."""
+        held, pushed = (s.column("tip_force_N") for s in (self.guided, self.contact))
+        pressures = np.array(PRESSURES) * 1e-3
+        return [
+            ["F held, N", *fixed(held, 3)],
+            ["F pushed, N", *fixed(pushed, 3)],
+            ["… against held, %", *percent(pushed, held)],
+            ["F pushed · L_f, N mm", *fixed([LEVER * f for f in pushed], 1)],
+            ["κ P, eq. (21), N mm", *fixed(list(self.kappa() * pressures), 1)],
+            ["κ P, area up to the winding", *fixed(list(self.kappa("winding") * pressures), 1)],
+            ["M of the straight section, N mm", *fixed(self.section.column(MOMENT), 1)],
+            ["M of the straight cell, N mm", *fixed(self.cell.column(MOMENT), 1)],
+            ["force on the roof, held, N", *fixed(self.guided.column("roof_force_N"), 3)],
+            ["force on the roof, pushed, N", *fixed(self.contact.column("roof_force_N"), 3)],
+            ["rotation of z = L, pushed, °", *fixed(self.contact.column("angle_deg"), 1)],
+            ["touching of the roof's strip, mm²", *fixed(self.contact.column(ROOF_AREA), 0)],
+            ["depth in the post, µm", *fixed([-1e3 * g for g in self.contact.column(POST_GAP)], 1)],
+        ]
+
+    def cost(self) -> list[Any]:
+        """Of the two bodies: steps; iterations; cut-backs; worst balance; seconds."""
+        row: list[Any] = [f"{self.radius}, {self.length}"]
+        for found in (self.guided, self.contact):
+            data = found.run
+            worst = max(max(r["balance_force"], r["balance_moment"]) for r in found.rows[1:])
+            steps = f"{data['load_steps']}; {data['newton_iterations']}; {data['cutbacks']}"
+            row += [steps, f"{worst:.0e}", f"{data['wall_s']['solve']:.0f}"]
+        return row
+
+
+MOMENT, ROOF_AREA, POST_GAP = (
+    "blocked_moment_Nmm",
+    "contact_roof_area_mm2",
+    "contact_post_gap_mm",
+)
+KPA = [f"{kpa} kPa" for kpa in PRESSURES]
+
+
+def fig11(actuators: Sequence[Fig11]) -> list[str]:
+    """The tables of Fig. 11."""
+    lines = [
+        "## Fig. 11",
+        "",
+        "'Held': strips of roof (4 mm wide) and post (2 mm long) keep their height, as in "
+        "docs/accuracy_blocked.md. 'Pushed': a level roof and a post that the body can leave. "
+        "L_f = 14 mm reaches to the middle of the post.",
+        "",
+        "![tip force of the three actuators](images/contact_force.png)",
+        "",
+    ]
+    for found in actuators:
+        lines += [f"Radius {found.radius} mm, length {found.length} mm:", ""]
+        lines += table(["", *KPA], found.rows())
+    lines += table(
+        [
+            "radius, length, mm",
+            *[
+                f"{way}: {what}"
+                for way in ("held", "pushed")
+                for what in ("steps; iterations; cut-backs", "balance missed by", "s")
+            ],
+        ],
+        [found.cost() for found in actuators],
+    )
+    return lines
+
+
+def ratios(actuators: Sequence[Fig11]) -> list[str]:
+    """Of forces at 200 kPa."""
+    base, shorter, thinner = actuators
+    rows = []
+    for name, column, runs in (
+        ("body, held", "tip_force_N", "guided"),
+        ("body, pushed", "tip_force_N", "contact"),
+        ("section held straight", MOMENT, "section"),
+        ("cell held straight", MOMENT, "cell"),
+    ):
+        forces = [getattr(a, runs).at(200)[column] for a in (base, thinner, shorter)]
+        rows.append([name, *fixed([forces[0] / forces[1], forces[0] / forces[2]], 3)])
+    for name, acts in (("κ of eq. (21)", "chamber"), ("κ, area up to the winding", "winding")):
+        rows.append([name, f"{base.kappa(acts) / thinner.kappa(acts):.3f}", "1.000"])
+    return [
+        "## What radius and length do, at 200 kPa",
+        "",
+        "The paper gives curves without numbers: 'the actuator length has small influence on "
+        "force generation, whereas changes in radius have a more significant role' (V-C), and by "
+        "its eq. (21) the ratios are those of κ.",
+        "",
+        *table(["", "radius 8 to 6", "length 160 to 130"], rows),
+    ]
+
+
+def _short(name: str, actuator: dict[str, Any], tip: dict[str, Any]) -> Solved:
+    """An actuator with a chamber of 24 mm, to 60 kPa."""
+    case = read("fig11/radius8_length160_guided.yaml")
+    size = case["actuator"] | SHORT | actuator
+    if "width" in actuator:
+        del size["radius"]
+    case |= {"actuator": size, "output": {"at_pressures": ["20 kPa"]}}
+    case["effects"] = [{"pressure": {"to": "60 kPa"}}, case["effects"][1], tip]
+    return solve(f"short_{name}", case)
+
+
+def causes() -> list[str]:
+    """Where held and pushed differ."""
+    rows = []
+    for label, actuator, width, factor in (
+        ("round, roof 4 mm", {}, 4, 1),
+        ("round, roof 2 mm", {}, 2, 1),
+        ("round, roof 1 mm", {}, 1, 1),
+        ("level, roof 4 mm", LEVEL, 4, 1),
+        ("level, roof 4 mm, obstacles 4 times as stiff", LEVEL, 4, 4),
+    ):
+        shape = "level" if actuator else "round"
+        strip = f"{width} mm"
+        held = _short(f"{shape}{width}_held", actuator, {"blocked-tip": {"roof_width": strip}})
+        push: dict[str, Any] = {"roof": {"width": strip}, "post": {}}
+        if factor > 1:
+            push["stiffness"] = f"{factor * STIFFNESS} MPa/mm"
+        pushed = _short(f"{shape}{width}_pushed{factor}", actuator, {"contact": push})
+        row = [label]
+        for kpa in (20, 60):
+            forces = [s.at(kpa)["tip_force_N"] for s in (held, pushed)]
+            row += [*fixed(forces, 4), *percent(forces[1:], forces[:1])]
+        rows.append(row)
+    return [
+        "## Why pushed is less than held",
+        "",
+        "The crown is round. A strip keeps its rims where they are, w²/(8 r) under the highest "
+        "line (0.18 mm for w = 4 mm and r = 11 mm); a level roof has to squeeze the soft sheath "
+        "so far before it carries across the strip. The loss is a force, nearly the same at every "
+        "pressure (0.03 N for a length of 160 mm), and so a share that falls as the roof fills. "
+        "Narrower strips, and a level top, take it away; what is left there is the softness of "
+        "the obstacles. Chamber of 24 mm with caps of 6 mm, where the share is greatest, N and %:",
+        "",
+        *table(
+            [
+                "top",
+                *[f"{k} kPa {w}" for k in (20, 60) for w in ("held", "pushed", "differ")],
+            ],
+            rows,
+        ),
+    ]
+
+
+def stiffness() -> list[str]:
+    """The error of the penalty."""
+    forces: dict[float, list[float]] = {}
+    for factor in (0.25, 0.5, 1, 2, 4):
+        push = {"roof": {}, "post": {}, "stiffness": f"{factor * STIFFNESS} MPa/mm"}
+        found = _short(f"stiffness{factor}", {}, {"contact": push})
+        forces[factor] = [found.at(60)[c] for c in ("tip_force_N", "roof_force_N")]
+    # error ~ 1/k: what two stiffnesses leave, extrapolated
+    limit = [2 * b - a for a, b in zip(forces[2], forces[4], strict=True)]
+    rows = [
+        [
+            f"{factor:g}",
+            f"{factor * STIFFNESS:g}",
+            *[f"{v:.4f}" for v in found],
+            *[f"{100 * (v / w - 1):+.3f} %" for v, w in zip(found, limit, strict=True)],
+        ]
+        for factor, found in forces.items()
+    ]
+    return [
+        "## What the obstacles' stiffness costs",
+        "",
+        "A penalty: under a pressure p an obstacle yields by p/k. Unless a case says otherwise, k "
+        "is a hundred times the wall's modulus by the thickness of what touches. The same short "
+        "actuator at 60 kPa; off against the value for k → ∞ (error in 1/k, from the last two):",
+        "",
+        *table(
+            ["factor", "k, MPa/mm", "F, N", "roof, N", "F off", "roof off"],
+            rows,
+        ),
+    ]
+
+
+def grasps() -> tuple[list[str], Solved, Solved]:
+    """A bar and a table; the lines and the two runs."""
+    bar, plane = (solve(n, read(f"{n}.yaml"), states=True) for n in ("grasp", "grasp_table"))
+    lines = [
+        "## Meeting an object",
+        "",
+        "`cases/grasp.yaml`: a bar of 50 mm across the way of the tip; `cases/grasp_table.yaml`: a "
+        "table 40 mm under the floor. Force on the body, N; nothing before touch. A march sees a "
+        "touch coming and ends its step there; touch and lift-off need no failed steps.",
+        "",
+        "![an actuator around a bar and on a table](images/contact_grasp.png)",
+        "",
+    ]
+    for label, name, found in (("Bar", "cylinder", bar), ("Table", "plane", plane)):
+        data = found.run
+        touched = data["contact"][name]["touched_at_kPa"]
+        lines += [
+            f"{label}: touched before {touched[0]:.1f} kPa; {data['load_steps']} steps, "
+            f"{data['newton_iterations']} iterations, {data['cutbacks']} cut-backs, "
+            f"{data['wall_s']['solve']:.0f} s:",
+            "",
+        ]
+        columns = [f"contact_{name}_{c}" for c in ("y_N", "z_N", "area_mm2", "gap_mm")]
+        keep = [r for r in found.rows[1:] if abs(r["pressure_kPa"] % 12.5) < 1e-6]
+        lines += table(
+            ["P, kPa", "angle, °", "upward, N", "along z, N", "touching, mm²", "gap, mm"],
+            [
+                [
+                    f"{r['pressure_kPa']:g}",
+                    f"{r['angle_deg']:.1f}",
+                    *[f"{r[c]:.4g}" for c in columns],
+                ]
+                for r in keep
+            ],
+        )
+    return lines, bar, plane
+
+
+def main() -> None:
+    """Run everything, write the page and its pictures."""
+    actuators = [Fig11.solve(*size) for size in ACTUATORS]
+    lines = [HEAD, *fig11(actuators), *ratios(actuators), *causes(), *stiffness()]
+    grasp, bar, plane = grasps()
+    lines += grasp
+    images = ROOT / "docs" / "images"
+    contact_pictures.forces(actuators, LEVER, PRESSURES, images / "contact_force.png")
+    contact_pictures.blocked(actuators[0].contact, images / "contact_blocked.png")
+    contact_pictures.grasps(bar, plane, images / "contact_grasp.png")
+    PAGE.write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
