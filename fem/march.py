@@ -19,6 +19,7 @@ from fem.selfcontact import Rod, first_contact
 
 JUMPED = "Newton went to another branch"
 BEYOND = "the load falls from here on"
+CREEPS = "increments shrink to nothing, each of them converging slowly"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -178,6 +179,7 @@ class March:
             self.increment = min(size, abs(ramp.largest or np.inf), abs(span))
         requests = _Requests(ramp)
         failures = 0
+        slow: Outcome | None = None
         while True:
             state = self.states[-1]
             if abs(ramp.target - state.measures[ramp.key]) <= 1e-9 * abs(span):
@@ -186,6 +188,8 @@ class March:
             now = state.measures[way.key]
             if self.report.detour and way.sign * (way.end - now) <= 1e-9 * way.span:
                 return self._end("")
+            if slow and self.increment < self.rules.least * way.span:
+                return self._give_up(dataclasses.replace(slow, reason=CREEPS), "")
             size = min(self.increment, self._turn_limit(way.key), way.largest)
             target = way.next(now, size)
             if way.kind == "value" and limit_ahead(self.states, ramp.scalar, target):
@@ -211,10 +215,7 @@ class March:
                 self.equilibrium.restore(state)
                 self.warn(f"increment cut back: {outcome.reason}")
                 if hopeless:
-                    critical = self.report.critical
-                    return self._end(
-                        self.diagnosis.explain(self.states, self.rest, critical, outcome, inverted)
-                    )
+                    return self._give_up(outcome, inverted)
                 if way.kind == kind == "value" and (
                     outcome.reason == BEYOND or softens(self.states, ramp.scalar)
                 ):
@@ -229,9 +230,10 @@ class March:
             self.report.steps += 1
             self.report.per_step.append(outcome.iterations)
             self._note(ramp.scalar)
+            slow = outcome if outcome.iterations >= self.rules.slow else None
             if outcome.iterations <= self.rules.easy:
                 size = min(size * self.rules.grow, way.largest)
-            elif outcome.iterations >= self.rules.slow:
+            elif slow:
                 size *= self.rules.shrink
             self.increment = size
             self.on_step(new, outcome)
@@ -327,6 +329,13 @@ class March:
                 name: (1 - share) * value + share * new.measures[name]
                 for name, value in old.measures.items()
             }
+
+    def _give_up(self, outcome: Outcome, inverted: str) -> bool:
+        """No increment leads on from the last state."""
+        critical = self.report.critical
+        return self._end(
+            self.diagnosis.explain(self.states, self.rest, critical, outcome, inverted)
+        )
 
     def _end(self, reason: str) -> bool:
         """The load cannot be reached."""

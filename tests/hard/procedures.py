@@ -57,23 +57,27 @@ def plain(hard: Hard, model: str) -> Done:
     done = Done(result.rows, result.run)
     if result.status != "converged":
         return done
-    if model in hard.beside or (hard.beside is not None and model != "section"):
-        done.checks += _beside(hard, model, result)
+    bounds = hard.beside.get(model, BESIDE.get(model))
+    if bounds is not None:
+        done.checks.append(_beside(hard, model, result, bounds))
     if hard.against is not None:
         done.checks.append(_against(hard, model, result))
     return done
 
 
-def _beside(hard: Hard, model: str, result: RunResult) -> list[Check]:
+def _beside(hard: Hard, model: str, result: RunResult, bounds: tuple[float, float]) -> Check:
     """Pressure over that of the section that bends as much."""
-    low, high = hard.beside.get(model, BESIDE[model])
     angle = result.last("uniform_angle_deg" if model == "body" else "angle_deg")
     case = as_section(parse_case(hard.case(model)), load(angle=float(np.deg2rad(angle))))
     section = run_case(case, None)
-    if section.status != "converged":
-        return [("the section beside it is reached", 0.0, 1.0, 1.0)]
-    ratio = result.last("pressure_kPa") / section.last("pressure_kPa")
-    return [("pressure over the section's", ratio, low, high)]
+    if section.status == "converged":
+        ratio = result.last("pressure_kPa") / section.last("pressure_kPa")
+        return ("pressure over the section's", ratio, *bounds)
+    # a body that bends to and fro has no pressure for an angle
+    pressure = result.last("pressure_kPa") * 1e-3
+    section = run_case(as_section(parse_case(hard.case(model)), load(to=pressure)), None)
+    off = angle / section.last("angle_deg") if section.status == "converged" else np.nan
+    return ("angle over the section's", off, *bounds)
 
 
 def _against(hard: Hard, model: str, result: RunResult) -> Check:
