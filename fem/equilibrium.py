@@ -42,7 +42,9 @@ class Equilibrium:
         scene = self.scene
         scalars = {name: scene.scalar(name) for name in scene.body.scalars}
         measures = {measure("value", name): value for name, value in scalars.items()}
-        measures |= {measure("conjugate", name): scene.conjugate(name) for name in scalars}
+        for name in scalars:
+            if name not in scene.natural:  # there it is zero
+                measures[measure("conjugate", name)] = scene.conjugate(name)
         if self.followed is not None:
             measures["followed"] = self.followed.value()
         return State(

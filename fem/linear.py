@@ -13,9 +13,9 @@ from fem import compat
 
 Floats = npt.NDArray[np.float64]
 
-ORDERING_PORD = 4
+ORDERING_AMD, ORDERING_PORD = 0, 4
 SMALL = 10_000
-"""Unknowns below which MUMPS takes an ordering of its own, and may."""
+"""Unknowns below which a simple ordering is done sooner than a better one pays."""
 
 
 class Factor:
@@ -46,8 +46,11 @@ class Factor:
         pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
         pc.setFactorSetUpSolverType()
         factor = pc.getFactorMatrix()
-        factor.setMumpsIcntl(7, ORDERING_PORD)
-        factor.setMumpsIcntl(12, 1)  # else a serial LDLᵀ silently takes another ordering
+        if self._matrix.getSize()[0] < SMALL:
+            factor.setMumpsIcntl(7, ORDERING_AMD)
+        else:
+            factor.setMumpsIcntl(7, ORDERING_PORD)
+            factor.setMumpsIcntl(12, 1)  # else a serial LDLᵀ silently takes another ordering
         factor.setMumpsIcntl(13, 1)  # else the root front hides negative pivots from the count
         factor.setMumpsIcntl(14, 60)
         factor.setMumpsIcntl(24, 0)
