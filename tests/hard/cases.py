@@ -261,6 +261,8 @@ HARD: tuple[Hard, ...] = (
         "vacuum-100",
         "a vacuum far beyond the collapse",
         {TO: "-100 kPa"},
+        models=("section", "cell"),
+        absent="body: with vacuum-20 it ends at the same limit point",
         refused=dict.fromkeys(MODELS, "collapses"),
         warns=("collapses",),
     ),
@@ -327,6 +329,18 @@ HARD: tuple[Hard, ...] = (
         warns=("limit point",),
     ),
 )
+
+
+ORDERS: tuple[tuple[str, ...], ...] = (
+    ("base", "wall-1", "wall-0.5"),
+    ("floor-100", "base"),
+    ("base", "sheath-soft", "sheath-none"),
+    ("fiber-0.1", "base", "fiber-10"),
+    ("pitch-20", "base", "pitch-1"),
+    ("base", "bulk-1000", "bulk-10"),
+)
+"""Cases at the same pressure, each of which bends further than the one before, in every model: a
+softer wall, floor or sheath; a stiffer winding; a rubber that gives in volume too."""
 
 
 def find(name: str) -> Hard:

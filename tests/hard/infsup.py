@@ -8,6 +8,8 @@ B the rate of volume with the displacements at some state, and M = ∫ p q / μ 
 from __future__ import annotations
 
 import dataclasses
+import json
+import sys
 from typing import Any
 
 import numpy as np
@@ -52,6 +54,12 @@ def _finer(*pairs: tuple[int, float]) -> tuple[dict[str, Any], ...]:
 
 
 SECTIONS = tuple({"mesh.section": n} for n in (1, 2, 4))
+STAYS = 0.8
+"""β over that of the mesh before. The last step of a ladder takes h to a half or two thirds: the
+constant of a pair that locks falls as h, that is by as much."""
+LEAST = 0.25
+"""β on the finest mesh: half of what the coarsest has, far from a zero by round-off."""
+
 LADDERS = (
     Ladder("quadrilateral", "section", 0.0, {}, SECTIONS),
     Ladder("quadrilateral", "section", 180.0, {}, SECTIONS),
@@ -83,6 +91,13 @@ def _assemble(changes: dict[str, Any], model: str, mesh: Any = None) -> tuple[Ca
     case = parse_case(Hard("infsup", "", changes).case(model))
     mesh = mesh or make_mesh(case, model)
     return case, assemble(case, model, mesh, MPI.COMM_SELF, lambda *_: None, lambda _: None)
+
+
+def fault(betas: list[float]) -> str:
+    """What a ladder has against it; empty where the constant stays away from zero."""
+    if betas[-1] > LEAST and betas[-1] > STAYS * betas[-2]:
+        return ""
+    return f"the inf-sup constant falls: {', '.join(f'{beta:.3f}' for beta in betas)}"
 
 
 def _constant(changes: dict[str, Any], ladder: Ladder) -> tuple[int, float]:
@@ -140,3 +155,7 @@ def least(stiffness: Any, rate: Any, mass: Any) -> float:
         v0=np.ones(m),
     )
     return float(np.sqrt(values[0]))
+
+
+if __name__ == "__main__":
+    print(json.dumps(constants(LADDERS[int(sys.argv[1])])))

@@ -5,11 +5,7 @@ from __future__ import annotations
 import pytest
 import scipy.sparse as sp
 
-from tests.hard.infsup import LADDERS, Ladder, constants, least
-
-STAYS = 0.8
-"""β over that of the mesh before. The last step of a ladder takes h to a half or two thirds: the
-constant of a pair that locks falls as h, that is by as much."""
+from tests.hard.infsup import LADDERS, Ladder, constants, fault, least
 
 
 @pytest.mark.parametrize(
@@ -24,9 +20,12 @@ constant of a pair that locks falls as h, that is by as much."""
     ],
 )
 def test_the_inf_sup_constant_stays_away_from_zero(ladder: Ladder) -> None:
-    betas = [beta for _, beta in constants(ladder)]
-    assert betas[-1] > 0.25
-    assert betas[-1] > STAYS * betas[-2]
+    assert fault([beta for _, beta in constants(ladder)]) == ""
+
+
+@pytest.mark.parametrize("betas", [[0.5, 0.3, 0.2], [0.5, 0.4, 0.3], [0.6, 1e-9, 1e-9]])
+def test_a_constant_that_falls_is_a_fault(betas: list[float]) -> None:
+    assert fault(betas)
 
 
 def test_a_known_constant() -> None:
