@@ -9,7 +9,6 @@ from __future__ import annotations
 import copy
 import dataclasses
 import json
-import shutil
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -46,11 +45,13 @@ class Solved:
     """A finished run.
 
     Attributes:
+        case: the case.
         rows: of its history.
         run: its run.json.
         folder: where its states are.
     """
 
+    case: dict[str, Any]
     rows: list[dict[str, Any]]
     run: dict[str, Any]
     folder: Path
@@ -79,14 +80,14 @@ def solve(name: str, case: dict[str, Any], states: bool = False) -> Solved:
     if note.exists():
         kept = json.loads(note.read_text(encoding="utf-8"))
         if kept["case"] == case:
-            return Solved(kept["rows"], kept["run"], folder)
+            return Solved(case, kept["rows"], kept["run"], folder)
     result = run(case, folder, overwrite=True)
     print(name, result.status, result.run["wall_s"]["solve"], result.run["cutbacks"], flush=True)
     if result.status != "converged":
         raise RuntimeError(f"{name}: {result.reason}")
     kept = {"case": case, "rows": result.rows, "run": result.run}
     note.write_text(json.dumps(kept), encoding="utf-8")
-    return Solved(result.rows, result.run, folder)
+    return Solved(case, result.rows, result.run, folder)
 
 
 def read(path: str) -> dict[str, Any]:

@@ -18,9 +18,9 @@ EVERYWHERE = ("outer", "tip")
 """Surfaces that may touch an obstacle anywhere in space."""
 
 STIFFNESS = 100.0
-"""Obstacles are so many times as stiff as a layer of the wall's rubber."""
+"""Obstacles are so many times as stiff as what touches them."""
 ITERATIONS = 25
-SHARPER = 0.1
+SHARPER = 0.01
 """Factor on the tolerance of forces."""
 HELD_TURN = 0.05
 """Turn in the first step of a body between roof and post, rad."""
@@ -48,20 +48,20 @@ def _placed(case: Case, item: case_effects.Obstacle) -> Obstacle:
 def stiffness(case: Case) -> float:
     """Pressure per depth with which the obstacles of a case yield, MPa/mm.
 
-    What touches them, a layer of thickness h and Young's modulus E, yields by h/E of the pressure
-    at least where it can flow aside; the obstacle by a hundredth of that.
+    What touches them, a layer of thickness h and Young's modulus E, yields by h/E of the pressure;
+    the obstacle by a hundredth of that. Between roof and post, where nothing else yields, E is the
+    wall's, also under a softer sheath.
     """
     contact = case.find(ContactEffect)
     if contact is not None and contact.stiffness is not None:
         return contact.stiffness
-    wall = bridge.material(case.materials.wall)
-    return STIFFNESS * 3 * wall.initial_shear_modulus / _layer(case)
-
-
-def _layer(case: Case) -> float:
-    """Thickness of what touches, mm."""
-    actuator = case.actuator
-    return actuator.wall if actuator.sheath is None else actuator.sheath
+    actuator, materials = case.actuator, case.materials
+    thickness, spec = actuator.wall, materials.wall
+    if actuator.sheath is not None:
+        thickness = actuator.sheath
+        if materials.sheath is not None and not held(case):
+            spec = materials.sheath
+    return STIFFNESS * 3 * bridge.material(spec).initial_shear_modulus / thickness
 
 
 def effects(case: Case) -> list[Contact]:
