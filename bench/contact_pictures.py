@@ -16,7 +16,8 @@ from fiberbend.reader import as_case
 from geometry.mesh import FACET_VERTICES, vertex_positions
 
 if TYPE_CHECKING:
-    from bench.contact import Fig11, Solved
+    from bench.contact import Fig11
+    from bench.contact_runs import Solved
 
 Floats = npt.NDArray[np.float64]
 

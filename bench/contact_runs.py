@@ -1,0 +1,143 @@
+"""Runs behind docs/contact.md, kept in runs/contact and taken again while their cases stay."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+from mpi4py import MPI
+
+from bench.tables import ROOT
+from fiberbend import run
+from fiberbend.assembly import assemble
+from fiberbend.models import make_mesh
+from fiberbend.reader import as_case
+
+RUNS = ROOT / "runs" / "contact"
+PRESSURES = (50, 100, 150, 200, 250)
+"""Of Fig. 11, kPa."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Solved:
+    """A finished run.
+
+    Attributes:
+        case: the case.
+        rows: of its history.
+        run: its run.json.
+        folder: where its states are.
+    """
+
+    case: dict[str, Any]
+    rows: list[dict[str, Any]]
+    run: dict[str, Any]
+    folder: Path
+
+    def at(self, kpa: float) -> dict[str, Any]:
+        """The row at a pressure that was asked for, kPa."""
+        return min(self.rows, key=lambda row: abs(row["pressure_kPa"] - kpa))
+
+    def column(self, name: str) -> list[float]:
+        """Values at all pressures of Fig. 11."""
+        return [float(self.at(kpa)[name]) for kpa in PRESSURES]
+
+
+def solve(name: str, case: dict[str, Any], states: bool = False) -> Solved:
+    """Run a case, or take the run of the same case again.
+
+    Args:
+        name: of its folder.
+        case: the case.
+        states: keep the states for pictures.
+    """
+    output = case.get("output", {}) | {"pictures": False, "fields": states}
+    case = copy.deepcopy(case) | {"output": output}
+    folder = RUNS / name
+    note = folder / "bench.json"
+    if note.exists():
+        kept = json.loads(note.read_text(encoding="utf-8"))
+        if kept["case"] == case:
+            return Solved(case, kept["rows"], kept["run"], folder)
+    result = run(case, folder, overwrite=True)
+    print(name, result.status, result.run["wall_s"]["solve"], result.run["cutbacks"], flush=True)
+    if result.status != "converged":
+        raise RuntimeError(f"{name}: {result.reason}")
+    kept = {"case": case, "rows": result.rows, "run": result.run}
+    note.write_text(json.dumps(kept), encoding="utf-8")
+    return Solved(case, result.rows, result.run, folder)
+
+
+def read(path: str) -> dict[str, Any]:
+    """A case file."""
+    case: dict[str, Any] = yaml.safe_load((ROOT / "cases" / path).read_text(encoding="utf-8"))
+    return case
+
+
+def fixed(values: Sequence[float], digits: int = 2) -> list[str]:
+    """With the same number of decimals."""
+    return [f"{value:.{digits}f}" for value in values]
+
+
+def percent(found: Sequence[float], true: Sequence[float]) -> list[str]:
+    """Differences, %."""
+    return [f"{100 * (a / b - 1):+.2f}" for a, b in zip(found, true, strict=True)]
+
+
+def carried(way: str) -> dict[str, float]:
+    """What the roof does to the baseline at 100 kPa.
+
+    Args:
+        way: "guided" or "contact".
+
+    Returns:
+        Its upward force, on all, on the rims of its strip and on the middle half of the length, N;
+        the moment in the body at half its length, of roof and post beyond, N mm.
+    """
+    note = RUNS / f"carried_{way}.json"
+    case = read(f"fig11/radius8_length160_{way}.yaml")
+    case["effects"][0] = {"pressure": {"to": "100 kPa"}}
+    case["output"] = {}
+    if note.exists():
+        kept = json.loads(note.read_text(encoding="utf-8"))
+        if kept["case"] == case:
+            return dict(kept["found"])
+    checked = as_case(case)
+    mesh = make_mesh(checked, "body")
+    built = assemble(checked, "body", mesh, MPI.COMM_SELF, lambda _s, _o: None, print)
+    report = built.march.run(built.ramps)
+    if report.status != "converged":
+        raise RuntimeError(report.reason)
+    scene, body = built.scene, built.scene.body
+    up = body.node_dofs[:, 1]
+
+    def push(name: str) -> Any:
+        """Upward forces of roof or post on the nodes."""
+        if way == "contact":
+            return body.copies * scene.force(f"Contact[{name}]")[up]
+        held = np.zeros(body.local)
+        held[scene.held(name)] = scene.residual()[0][scene.held(name)]
+        return body.copies * held[up]
+
+    roof, both = push("roof"), push("roof") + push("post")
+    x, _, z = mesh.nodes.T
+    length = checked.actuator.length
+    half = z[np.argmin(np.abs(z - length / 2))]
+    here = z + body.w.x.array[body.node_dofs[:, 2]]
+    lever = here - here[np.abs(z - half) < 1e-6].mean()
+    beyond = z > half
+    found = {
+        "all": roof.sum(),
+        "rims": roof[x > x[np.abs(roof) > 0].max() - 1e-6].sum(),
+        "middle": roof[np.abs(z - length / 2) < length / 4].sum(),
+        "moment": both[beyond] @ lever[beyond],
+    }
+    found = {name: float(value) for name, value in found.items()}
+    note.write_text(json.dumps({"case": case, "found": found}), encoding="utf-8")
+    return found
