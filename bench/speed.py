@@ -27,7 +27,7 @@ SPAN = 5.0
 def least(action: Callable[[], object], repeats: int = REPEATS) -> float:
     """Least wall time of an action, s, after one call that does not count."""
     action()
-    times = []
+    times: list[float] = []
     while len(times) < repeats or sum(times) < SPAN:
         start = time.perf_counter()
         action()
