@@ -37,6 +37,7 @@ hard: setup ## run the hard cases in every model and write docs/stability.md
 
 tables: setup ## make the accuracy tables in docs/ again; a quarter of an hour
 	$(MPIRUN) $(BIN)/python bench/tables.py
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/contact.py
 
 speed: setup ## measure what an answer costs in each model; a minute on an idle machine
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/speed.py
