@@ -142,6 +142,30 @@ def test_a_force_starts_from_zero_at_touch(name: str, request: pytest.FixtureReq
     assert left == pytest.approx(met, abs=0.3)
 
 
+def test_a_march_sees_a_touch_coming(table: RunResult) -> None:
+    # 20 kPa are asked for, then 40 kPa: a step to there would run 5 mm into the table, flatten the
+    # cap onto it and fail; it ends 5 % beyond the way that is left, by a line through two gaps
+    pressures = [row["pressure_kPa"] for row in table.rows]
+    gaps = [row.get("contact_plane_gap_mm", 7.0) for row in table.rows]
+    first = next(i for i, gap in enumerate(gaps) if gap < 0)
+    way = gaps[first - 1] / (gaps[first - 2] - gaps[first - 1])
+    way *= pressures[first - 1] - pressures[first - 2]
+    assert pressures[first] - pressures[first - 1] == pytest.approx(1.05 * way, rel=1e-6)
+    assert table.run["cutbacks"] == 0
+
+
+def test_without_obstacles_a_march_is_left_alone() -> None:
+    case = as_case(small(effects=[{"pressure": {"to": "60 kPa"}}, WINDING]))
+    seen: list[State] = []
+
+    def keep(state: State, _: Outcome) -> None:
+        seen.append(state)
+
+    built = assemble(case, "body", make_mesh(case, "body"), MPI.COMM_SELF, keep, lambda _: None)
+    assert built.march.on_step is keep
+    assert built.march.predictor.frames is built.reading.frames
+
+
 @pytest.mark.parametrize("contact", [GAPS, TABLE], ids=["gaps", "table"])
 def test_touch_and_lift_off(contact: dict[str, Any]) -> None:
     """Loaded and unloaded in one march, without a failed step.
