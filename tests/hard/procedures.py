@@ -60,7 +60,7 @@ def plain(hard: Hard, model: str) -> Done:
     bounds = hard.beside.get(model, BESIDE.get(model))
     if bounds is not None:
         done.checks.append(_beside(hard, model, result, bounds))
-    if hard.against is not None:
+    if model in hard.against:
         done.checks.append(_against(hard, model, result))
     return done
 
@@ -82,11 +82,10 @@ def _beside(hard: Hard, model: str, result: RunResult, bounds: tuple[float, floa
 
 def _against(hard: Hard, model: str, result: RunResult) -> Check:
     """Angle over that of another case at the same load."""
-    assert hard.against is not None
-    name, within = hard.against
-    other = run_case(parse_case(hard.other(name).case(model)), None)
+    name, measure, within = hard.against[model]
+    other = run_case(parse_case(hard.other(name).case(measure)), None)
     off = result.last("angle_deg") / other.last("angle_deg") - 1
-    return f"angle over that of {name}, less one", off, -within, within
+    return f"angle over that of {name}, {measure}, less one", off, -within, within
 
 
 # --- what no case file can say ------------------------------------------------------------------
