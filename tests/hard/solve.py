@@ -78,11 +78,11 @@ def solve(hard: Hard, model: str) -> Record:
         seconds=round(time.monotonic() - start, 1),
         faults=[],
     )
-    record.faults = list(_faults(hard, record))
+    record.faults = faults(hard, record)
     return record
 
 
-def _faults(hard: Hard, record: Record) -> list[str]:
+def faults(hard: Hard, record: Record) -> list[str]:
     """What a record has against the expectation of its case."""
     found = []
     word = hard.refused.get(record.model)
