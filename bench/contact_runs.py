@@ -14,6 +14,7 @@ import yaml
 from mpi4py import MPI
 
 from bench.tables import ROOT
+from fem.measures import UniformAngle
 from fiberbend import run
 from fiberbend.assembly import assemble
 from fiberbend.models import make_mesh
@@ -90,19 +91,22 @@ def percent(found: Sequence[float], true: Sequence[float]) -> list[str]:
     return [f"{100 * (a / b - 1):+.2f}" for a, b in zip(found, true, strict=True)]
 
 
-def carried(way: str) -> dict[str, float]:
-    """What the roof does to the baseline at 100 kPa.
+def carried(name: str, way: str, kpa: int) -> dict[str, float]:
+    """What the roof does to an actuator of Fig. 11.
 
     Args:
+        name: its dimensions, as in the name of its case.
         way: "guided" or "contact".
+        kpa: the pressure, kPa.
 
     Returns:
-        Its upward force, on all, on the rims of its strip and on the middle half of the length, N;
-        the moment in the body at half its length, of roof and post beyond, N mm.
+        The upward force of the roof, on all, on the rims of its strip and on the middle half of
+        the length, N; the moment in the body at half its length, of roof and post beyond, N mm;
+        the angle to which the curvature of the middle half adds up along the length, °.
     """
-    note = RUNS / f"carried_{way}.json"
-    case = read(f"fig11/radius8_length160_{way}.yaml")
-    case["effects"][0] = {"pressure": {"to": "100 kPa"}}
+    note = RUNS / f"carried_{name}_{way}_{kpa}.json"
+    case = read(f"fig11/{name}_{way}.yaml")
+    case["effects"][0] = {"pressure": {"to": f"{kpa} kPa"}}
     case["output"] = {}
     if note.exists():
         kept = json.loads(note.read_text(encoding="utf-8"))
@@ -125,6 +129,9 @@ def carried(way: str) -> dict[str, float]:
         held[scene.held(name)] = scene.residual()[0][scene.held(name)]
         return body.copies * held[up]
 
+    frames, shape = built.reading.frames, built.march.states[-1].shape
+    assert frames is not None
+    assert shape is not None
     roof, both = push("roof"), push("roof") + push("post")
     x, _, z = mesh.nodes.T
     length = checked.actuator.length
@@ -137,6 +144,7 @@ def carried(way: str) -> dict[str, float]:
         "rims": roof[x > x[np.abs(roof) > 0].max() - 1e-6].sum(),
         "middle": roof[np.abs(z - length / 2) < length / 4].sum(),
         "moment": both[beyond] @ lever[beyond],
+        "angle": np.degrees(UniformAngle(body, frames).value(shape)),
     }
     found = {name: float(value) for name, value in found.items()}
     note.write_text(json.dumps({"case": case, "found": found}), encoding="utf-8")
