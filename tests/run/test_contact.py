@@ -199,7 +199,8 @@ def test_touch_and_lift_off(contact: dict[str, Any]) -> None:
         assert (loaded > 0) == (contact is GAPS or stop > 0.0225)
     _, force, w = met[-1]
     assert force == 0
-    assert np.abs(w).max() < 1e-8
+    # as exactly as the convergence test asks of forces and volumes
+    assert np.abs(w).max() < 1e-8 * case.actuator.length
 
 
 @pytest.mark.mpi
