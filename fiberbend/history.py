@@ -93,24 +93,35 @@ class Recorder:
 
     def _work(self) -> Floats:
         """Σ ∫ q d(conjugate of q) over the loads up to every row, N mm."""
-        from scipy.interpolate import make_interp_spline
-
+        names = [n for n in self._scene.body.scalars if n not in self._scene.body.natural]
         total = np.zeros(len(self.rows))
-        for name in self._scene.body.scalars:
-            if name in self._scene.body.natural or len(self.rows) < 2:
-                continue
-            value = np.array([row[f"load {name}"] for row in self.rows])
-            conjugate = np.array([row[f"conjugate {name}"] for row in self.rows])
-            # a load that is held does work at a constant value: no curve to fit
-            parameter = np.arange(len(value), dtype=float)
-            if np.all(np.diff(conjugate) > 0):
-                parameter = conjugate
-            degree = min(3, len(value) - 1)
-            q = make_interp_spline(parameter, value, degree)
-            v = make_interp_spline(parameter, conjugate, degree)
-            points, weights = np.polynomial.legendre.leggauss(6)
-            low, high = parameter[:-1, None], parameter[1:, None]
-            t = (low + high) / 2 + (high - low) / 2 * points
-            parts = np.sum((high - low) / 2 * weights * q(t) * v(t, 1), axis=1)
-            total[1:] += np.cumsum(parts)
-        return total
+        if len(self.rows) < 2 or not names:
+            return total
+        values = np.array([[row[f"load {name}"] for name in names] for row in self.rows])
+        conjugates = np.array([[row[f"conjugate {name}"] for name in names] for row in self.rows])
+        # where another load begins to move the curves have a kink
+        moving = np.diff(values, axis=0) != 0
+        kinks = np.flatnonzero(np.any(moving[1:] != moving[:-1], axis=1)) + 1
+        for rows in np.split(np.arange(1, len(values)), kinks):
+            piece = np.r_[rows[0] - 1, rows]
+            for value, conjugate in zip(values[piece].T, conjugates[piece].T, strict=True):
+                total[rows] += _parts(value, conjugate)
+        return np.cumsum(total)
+
+
+def _parts(value: Floats, conjugate: Floats) -> Floats:
+    """∫ q d(conjugate of q) between n states of one ramp by a spline through them, (n - 1,)."""
+    from scipy.interpolate import make_interp_spline
+
+    # a load that is held does work at a constant value: no curve to fit
+    parameter = np.arange(len(value), dtype=float)
+    if np.all(np.diff(conjugate) > 0):
+        parameter = conjugate
+    degree = min(3, len(value) - 1)
+    q = make_interp_spline(parameter, value, degree)
+    v = make_interp_spline(parameter, conjugate, degree)
+    points, weights = np.polynomial.legendre.leggauss(6)
+    low, high = parameter[:-1, None], parameter[1:, None]
+    t = (low + high) / 2 + (high - low) / 2 * points
+    parts: Floats = np.sum((high - low) / 2 * weights * q(t) * v(t, 1), axis=1)
+    return parts
