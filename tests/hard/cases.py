@@ -108,7 +108,7 @@ class Hard:
     beside: Mapping[str, tuple[float, float] | None] = dataclasses.field(default_factory=dict)
     against: Mapping[str, tuple[str, str, float]] = dataclasses.field(default_factory=dict)
     procedure: str = "plain"
-    fast: tuple[str, ...] = ("section",)
+    fast: tuple[str, ...] = ("section", "cell")
     stable: bool = True
     balance: float = 3e-3
 
@@ -198,7 +198,12 @@ HARD: tuple[Hard, ...] = (
     Hard("fiber-0.001", "fibers that are hardly there", {FIBER: thread(1e-3)}),
     Hard("fiber-0.1", "soft fibers", {FIBER: thread(0.1)}),
     Hard("fiber-10", "stiff fibers", {FIBER: thread(10)}),
-    Hard("fiber-1000", "fibers 1e8 times as stiff as the rubber", {FIBER: thread(1000)}),
+    Hard(
+        "fiber-1000",
+        "fibers 1e8 times as stiff as the rubber",
+        {FIBER: thread(1000)},
+        fast=("section",),
+    ),
     Hard("pitch-1", "turns closer to each other than elements", {f"{WINDING}.pitch": "1 mm"}),
     Hard(
         "pitch-20",
@@ -235,6 +240,7 @@ HARD: tuple[Hard, ...] = (
         "a floor softer than the wall: it bends the other way",
         {"materials.floor": {"law": "yeoh", "c1": "0.079 MPa"}},
         refused={"cell": "balloons"},
+        fast=("section",),
     ),
     Hard(
         "floor-100",
@@ -264,6 +270,7 @@ HARD: tuple[Hard, ...] = (
         {TO: "-20 kPa"},
         refused=dict.fromkeys(MODELS, "collapses"),
         warns=("collapses",),
+        fast=("section",),
     ),
     Hard(
         "vacuum-100",
@@ -273,6 +280,7 @@ HARD: tuple[Hard, ...] = (
         absent="body: with vacuum-20 it ends at the same limit point",
         refused=dict.fromkeys(MODELS, "collapses"),
         warns=("collapses",),
+        fast=("section",),
     ),
     *(
         Hard(
@@ -312,6 +320,7 @@ HARD: tuple[Hard, ...] = (
         {"mesh.section": 2},
         own={"body": {TO: "90 kPa"}},
         procedure="distorted",
+        fast=("section",),
     ),
     Hard(
         "tetrahedra",
@@ -328,8 +337,14 @@ HARD: tuple[Hard, ...] = (
         models=("cell", "body"),
         absent="section: half of it is all there is",
         against=like("base", 1e-7),
+        fast=("section",),
     ),
-    Hard("unloaded", "to 180 kPa and back to zero", procedure="unloaded", balance=1.0),
+    Hard(
+        "unloaded",
+        "to 180 kPa and back to zero",
+        procedure="unloaded",
+        balance=1.0,
+    ),
     Hard("perturbed", "a start that is off at random", procedure="perturbed"),
     Hard(
         "resumed",
