@@ -35,7 +35,7 @@ hard: setup ## run the hard cases in every model and write docs/stability.md
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/hard.py
 	$(BIN)/python -m pytest -m hard tests/hard/test_machinery.py
 
-tables: setup ## make the accuracy tables in docs/ again; a quarter of an hour
+tables: setup ## make the accuracy tables in docs/ again; half an hour
 	$(MPIRUN) $(BIN)/python bench/tables.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/contact.py
 

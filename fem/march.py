@@ -207,7 +207,8 @@ class March:
             if new is None:
                 failures += 1
                 self.report.cutbacks += 1
-                self.increment = size * self.rules.cut
+                # what was tried: a stop may have clipped it, and the next try would be the same
+                self.increment = min(size, abs(target - now)) * self.rules.cut
                 hopeless = (
                     failures > self.rules.cutbacks or self.increment < self.rules.least * way.span
                 )

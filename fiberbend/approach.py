@@ -18,7 +18,7 @@ DEPTH = 0.05
 
 
 class Approach:
-    """Leads a march to its obstacles and along them; does nothing without obstacles.
+    """Leads a march to its obstacles and along them.
 
     - A step that would run into an obstacle ends where touch is foreseen: deep inside, a step of
       Newton's method flattens all that lies there onto the surface.
@@ -41,8 +41,7 @@ class Approach:
         self._before = march.states[-1], self._gaps()
         self._usual: float | None = None
         self._next = march.on_step
-        if contacts:
-            march.on_step = self._after
+        march.on_step = self._after
 
     def _gaps(self) -> dict[str, float]:
         """Least gap to each obstacle, mm."""

@@ -15,7 +15,8 @@ from fem.scene import Scene
 from fiberbend import contact, models
 from fiberbend.approach import Approach
 from fiberbend.case import Case
-from fiberbend.choice import FIRST_TURN, MEMORY, TURN
+from fiberbend.case_effects import ContactEffect
+from fiberbend.choice import FIRST_TURN, MEMORY, turn_of
 from fiberbend.registry import Parts, build
 from geometry.mesh import MeshData
 
@@ -64,16 +65,17 @@ def assemble(
     reading = models.reading(case, scene)
     settings = contact.settings(case, Settings(tolerance=case.solver.tolerance))
     newton = Newton(scene, comm, settings)
-    turn = case.solver.max_turn
+    turn = turn_of(case, model)
     rules = Rules(
         cutbacks=case.solver.max_cutbacks,
-        turn=turn or TURN[model],
-        first_turn=min(turn or TURN[model], FIRST_TURN[model]),
+        turn=turn,
+        first_turn=min(turn, FIRST_TURN[model]),
         memory=MEMORY[model],
     )
     rules = contact.pace(case, rules)
     march = March(scene, newton, reading.frames, reading.followed, rules, on_step, warn)
     march.start()
     ramps = parts.ramps(scene.body.copies)
-    Approach(scene, march, ramps)
+    if case.find(ContactEffect) is not None:
+        Approach(scene, march, ramps)
     return Assembly(parts, scene, reading, newton, march, ramps)

@@ -28,6 +28,7 @@ FIRST_TURN = {"section": math.radians(10), "cell": math.radians(10), "body": mat
 """The same for the first step."""
 MEMORY = {"section": 5, "cell": 4, "body": 3}
 """States from which a step is extrapolated: more where steps are short."""
+_REACH = 0.5
 
 Objection = tuple[str, str]
 """A path within a case, and what a model has against it."""
@@ -155,6 +156,19 @@ def omissions(case: Case, model: str) -> Iterator[Objection]:
     for part, material in dict(case.materials).items():
         if material is not None and material.bulk is not None:
             yield f"materials.{part}.bulk", "in closed forms every material is incompressible"
+
+
+def turn_of(case: Case, model: str) -> float:
+    """Greatest change of the angle in a step, rad.
+
+    No step passes through a bar: the tip moves less than its radius.
+    """
+    turn = case.solver.max_turn or TURN[model]
+    contact = case.find(ContactEffect)
+    if contact is None or contact.cylinder is None:
+        return turn
+    actuator = case.actuator
+    return min(turn, contact.cylinder.radius / (_REACH * actuator.length + actuator.cap))
 
 
 def choose_half(case: Case) -> tuple[bool, str]:

@@ -25,7 +25,6 @@ SHARPER = 0.01
 HELD_TURN = 0.05
 """Turn in the first step of a body between roof and post, rad."""
 HELD_GROWTH = 3.0
-_REACH = 0.5
 
 
 def obstacles(case: Case) -> dict[str, Obstacle]:
@@ -88,24 +87,18 @@ def pace(case: Case, usual: Rules) -> Rules:
 
     What touches is found in some six iterations however short the step is: they do not shorten it.
     A body that is held hardly turns from the start, and its steps may grow fast. Touch bends every
-    curve: two states point better than three, and no volume is unexpected. No step passes through
-    a bar: the tip moves less than its radius.
+    curve: two states point better than three, and no volume is unexpected.
     """
     contact = case.find(ContactEffect)
     if contact is None:
         return usual
-    turn = usual.turn
-    if contact.cylinder is not None:
-        actuator = case.actuator
-        turn = min(turn, contact.cylinder.radius / (_REACH * actuator.length + actuator.cap))
-    first, grow = (HELD_TURN, HELD_GROWTH) if held(case) else (turn, usual.grow)
+    first, grow = (HELD_TURN, HELD_GROWTH) if held(case) else (usual.turn, usual.grow)
     return dataclasses.replace(
         usual,
         easy=10,
         slow=16,
         grow=grow,
         memory=2,
-        turn=turn,
         first_turn=min(usual.first_turn, first),
         jump=math.inf,
     )

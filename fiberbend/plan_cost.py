@@ -20,7 +20,7 @@ from fiberbend.case_effects import (
     StraightEffect,
     hold_straight,
 )
-from fiberbend.choice import FIRST_TURN, TURN
+from fiberbend.choice import FIRST_TURN, turn_of
 from fiberbend.plan_size import Size
 
 MACHINE = "two 2 GHz Xeon cores"
@@ -63,8 +63,8 @@ class Cost:
 
     def rows(self, case: Case, model: str) -> dict[str, list[str]]:
         """Steps, time and memory in words."""
-        turn = math.degrees(case.solver.max_turn or TURN[model])
-        pace = f"at most {turn:g}° each"
+        turn = math.degrees(turn_of(case, model))
+        pace = f"at most {turn:.3g}° each"
         whole = self.seconds()
         if self.steps is None or whole is None:
             steps, time = pace, f"about {_rounded(self.step_s)} s a step"
@@ -181,7 +181,7 @@ def steps_of(case: Case, model: str) -> int | None:
     end = expected_angle(case)
     if end is None:
         return None
-    turn = case.solver.max_turn or TURN[model]
+    turn = turn_of(case, model)
     goals = [angle for angle in output.at_angles if 0 < angle / end < 1]
     goals = [*map(abs, goals), abs(end)]
     counted = count_steps(min(turn, FIRST_TURN[model]), turn, goals)

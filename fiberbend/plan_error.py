@@ -43,7 +43,9 @@ def errors_of(case: Case, model: str) -> Iterator[str]:
         yield from _held(case, model)
     elif model == "body":
         yield "mesh: finer elements move P by 0.1 to 0.3 % (docs/accuracy_free.md)"
-        if case.find(GravityEffect) is None:
+        if case.find(ContactEffect) is not None:
+            yield "obstacles: yield a little: up to 0.3 % of their force (docs/contact.md)"
+        elif case.find(GravityEffect) is None:
             yield f"ends: {_ENDS}: see uniform_angle_deg"
     else:
         yield f"mesh: moves P by up to {_mesh(case, model)} % (docs/accuracy_uniform.md)"
