@@ -291,9 +291,12 @@ class March:
         """Whether the conjugate is far from where the last states point to."""
         name = measure("conjugate", scalar)
         now = self.states[-1].measures[name]
-        expected = self._guess(measure("value", scalar), aim, name)
-        off = abs(new.measures[name] - expected)
-        return bool(off > self.rules.jump * abs(expected - now) + 1e-6 * abs(now))
+        key = measure("value", scalar)
+        expected = self._guess(key, aim, name)
+        # a curve through states around a kink may be flat here: the chord tells the size of a step
+        (p, v), (q, w) = ((state.measures[key], state.measures[name]) for state in self.states[-2:])
+        step = max(abs(expected - now), abs((w - v) / (q - p) * (aim - q)) if q != p else 0.0)
+        return bool(abs(new.measures[name] - expected) > self.rules.jump * step + 1e-6 * abs(now))
 
     # --- limit points --------------------------------------------------------------------------
 

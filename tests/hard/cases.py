@@ -234,8 +234,6 @@ HARD: tuple[Hard, ...] = (
         "tension-only",
         "fibers that may go slack under pressure",
         {f"{WINDING}.tension_only": True},
-        # the cell hangs on round-off: with two BLAS threads its second step is not found
-        fast=("section",),
     ),
     Hard(
         "floor-0.01",
