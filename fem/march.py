@@ -178,6 +178,8 @@ class March:
             self.states = [seed, base]
             self.increment = min(size, abs(ramp.largest or np.inf), abs(span))
         requests = _Requests(ramp)
+        # a load that hardly bends begins with tiny increments of the angle
+        first = self.increment
         failures = 0
         slow: Outcome | None = None
         while True:
@@ -188,7 +190,7 @@ class March:
             now = state.measures[way.key]
             if self.report.detour and way.sign * (way.end - now) <= 1e-9 * way.span:
                 return self._end("")
-            if slow and self.increment < self.rules.least * way.span:
+            if slow and self.increment < self.rules.least * min(way.span, first):
                 return self._give_up(dataclasses.replace(slow, reason=CREEPS), "")
             size = min(self.increment, self._turn_limit(way.key), way.largest)
             target = way.next(now, size)

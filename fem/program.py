@@ -100,7 +100,8 @@ class Rules:
         memory: states from which the next is extrapolated: 3 on a smooth path, more where steps are
             short; 2 where kinks are to be expected, across which a parabola misleads and foresees
             limit points.
-        least: least increment, relative to the whole ramp, after a failure or slow convergence.
+        least: least increment after a failure, relative to the whole ramp; after slow convergence
+            also to the ramp's first.
         jump: how much further, in units of the step that was expected, the conjugate may go in an
             increment of the value; beyond it Newton may have found another branch.
         swell: greatest relative change of the conjugate in an increment that drives it in place
