@@ -33,7 +33,7 @@ verify: setup ## run the slow convergence ladders against exact solutions
 
 hard: setup ## run the hard cases in every model and write docs/stability.md
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/hard.py
-	$(BIN)/python -m pytest -m hard tests/hard/test_machinery.py
+	$(BIN)/python -m pytest -m hard tests/hard/test_machinery.py tests/run/test_jumps.py
 
 tables: setup ## make the accuracy tables in docs/ again; half an hour
 	$(MPIRUN) $(BIN)/python bench/tables.py

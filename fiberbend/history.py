@@ -14,6 +14,11 @@ from fem.scene import Scene
 
 Floats = npt.NDArray[np.float64]
 
+DEGREE = 3
+"""Of the spline through the steps."""
+DOUBTS, NOTHING = 2.0, 2e-5
+"""Energy out of nowhere: more than so many doubts, and than this part of the greatest."""
+
 
 class Gauge(Protocol):
     """What a model reads off a state beside pressure, angle and energies."""
@@ -54,8 +59,18 @@ class Recorder:
 
     def integrate(self) -> None:
         """Fill in the work of the loads since rest, by a spline through all steps."""
-        for row, work in zip(self.rows, self._work(), strict=True):
-            row["work_mJ"] = float(work)
+        work, _ = self._work()
+        for row, value in zip(self.rows, np.cumsum(work), strict=True):
+            row["work_mJ"] = float(value)
+
+    def jumps(self) -> list[int]:
+        """Steps in which the stored energy changed by what no load has done.
+
+        A state that is not on the branch of the one before, as stable and as well converged as any,
+        shows nowhere else.
+        """
+        work, doubt = self._work()
+        return departures(work, doubt, np.array([row["stored_mJ"] for row in self.rows]))
 
     def _row(self, step: int, state: State, outcome: Outcome | None) -> dict[str, Any]:
         scene = self._scene
@@ -91,22 +106,53 @@ class Recorder:
             row |= self._gauge.last_columns(state)
         return row
 
-    def _work(self) -> Floats:
-        """Σ ∫ q d(conjugate of q) over the loads up to every row, N mm."""
+    def _work(self) -> tuple[Floats, Floats]:
+        """Σ ∫ q d(conjugate of q) over the loads in the step to every row, and its doubt, N mm."""
         names = [n for n in self._scene.body.scalars if n not in self._scene.body.natural]
-        total = np.zeros(len(self.rows))
         if len(self.rows) < 2 or not names:
-            return total
+            return np.zeros(len(self.rows)), np.zeros(len(self.rows))
         values = np.array([[row[f"load {name}"] for name in names] for row in self.rows])
         conjugates = np.array([[row[f"conjugate {name}"] for name in names] for row in self.rows])
-        # where another load begins to move the curves have a kink
-        moving = np.diff(values, axis=0) != 0
-        kinks = np.flatnonzero(np.any(moving[1:] != moving[:-1], axis=1)) + 1
-        for rows in np.split(np.arange(1, len(values)), kinks):
-            piece = np.r_[rows[0] - 1, rows]
-            for value, conjugate in zip(values[piece].T, conjugates[piece].T, strict=True):
-                total[rows] += _parts(value, conjugate)
-        return np.cumsum(total)
+        return work_of(values, conjugates)
+
+
+def work_of(values: Floats, conjugates: Floats) -> tuple[Floats, Floats]:
+    """Σ ∫ q d(conjugate of q) in the step to each of n states, and its doubt, N mm, (n,) both.
+
+    Args:
+        values: of m loads, (n, m).
+        conjugates: theirs, (n, m).
+    """
+    total, doubt = np.zeros(len(values)), np.zeros(len(values))
+    # where another load begins to move the curves have a kink
+    moving = np.diff(values, axis=0) != 0
+    kinks = np.flatnonzero(np.any(moving[1:] != moving[:-1], axis=1)) + 1
+    for rows in np.split(np.arange(1, len(values)), kinks):
+        piece = np.r_[rows[0] - 1, rows]
+        for value, conjugate in zip(values[piece].T, conjugates[piece].T, strict=True):
+            parts = _parts(value, conjugate)
+            chord = (value[1:] + value[:-1]) / 2 * np.diff(conjugate)
+            total[rows] += parts
+            doubt[rows] += np.abs(parts - chord)
+        # a spline knows least where it has states on one side only
+        doubt[[rows[0], rows[-1]]] = np.inf
+    return total, doubt
+
+
+def departures(work: Floats, doubt: Floats, stored: Floats) -> list[int]:
+    """Steps in which the stored energy changes by what no load has done.
+
+    What the spline leaves in doubt is its distance from a chord, and all near the ends of a ramp.
+
+    Args:
+        work: of the loads in the step to each of n states, N mm, (n,).
+        doubt: of it, N mm, (n,).
+        stored: energy of each state, N mm, (n,).
+    """
+    gap = np.abs(work - np.diff(stored, prepend=stored[0]))
+    around = np.max([doubt, np.roll(doubt, 1), np.roll(doubt, -1)], axis=0)
+    odd = (gap > DOUBTS * around) & (gap > NOTHING * np.max(np.abs(stored)))
+    return [int(step) for step in np.flatnonzero(odd)]
 
 
 def _parts(value: Floats, conjugate: Floats) -> Floats:
@@ -117,7 +163,7 @@ def _parts(value: Floats, conjugate: Floats) -> Floats:
     parameter = np.arange(len(value), dtype=float)
     if np.all(np.diff(conjugate) > 0):
         parameter = conjugate
-    degree = min(3, len(value) - 1)
+    degree = min(DEGREE, len(value) - 1)
     q = make_interp_spline(parameter, value, degree)
     v = make_interp_spline(parameter, conjugate, degree)
     points, weights = np.polynomial.legendre.leggauss(6)

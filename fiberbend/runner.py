@@ -136,6 +136,7 @@ class _Run:
         report = self.march.run(self.ramps)
         status, reason = self._status(report)
         self.recorder.integrate()
+        self._remark_jumps()
         self.check = self._cross_check()
         self.progress.phase("output")
         self._snapshot("last")
@@ -192,6 +193,13 @@ class _Run:
             if text not in self.warnings:
                 self.warnings.append(text)
                 self.progress.message(text)
+
+    def _remark_jumps(self) -> None:
+        rows = self.recorder.rows
+        for step in self.recorder.jumps():
+            text = stability.jumped(rows[step - 1], rows[step])
+            self.warnings.append(text)
+            self.progress.message(text)
 
     def _fraction(self, state: State) -> float:
         """Part of all ramps that is done."""

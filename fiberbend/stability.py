@@ -85,12 +85,22 @@ def stopped(report: Report, target: str, beyond: float) -> str:
         target: what was asked for, with its unit.
         beyond: so many times the volume at the limit point would have been followed.
     """
-    limit = next(p for p in reversed(report.critical) if p.kind == "limit" and p.after > p.before)
+    limits = [p for p in report.critical if p.kind == "limit" and p.after > p.before]
+    limit = max(limits, key=lambda p: abs(p.value))
     factor = f"1/{beyond:g} of" if _vacuum(limit) else f"{beyond:g} times"
     followed = f"followed to {factor} the volume there"
     if report.reason:
         followed = f"there the run ends: {report.reason}"
     return f"{target} is not reached: {remark(limit)}; {followed}"
+
+
+def jumped(before: dict[str, Any], after: dict[str, Any]) -> str:
+    """A line on a step that has left its branch, from the rows at its ends."""
+    ends = f"{before['pressure_kPa']:.4g} and {after['pressure_kPa']:.4g} kPa"
+    return (
+        f"between {ends} the stored energy changes by what no load has done: the run went to a "
+        "neighbouring state there; shorter steps (solver.max_turn) may stay on one branch"
+    )
 
 
 def rod(scene: Scene, frames: Frames | None, cap: float) -> Rod:
