@@ -136,7 +136,7 @@ class _Run:
         report = self.march.run(self.ramps)
         status, reason = self._status(report)
         self.recorder.integrate()
-        self._remark_jumps()
+        self._remark_ends(status)
         self.check = self._cross_check()
         self.progress.phase("output")
         self._snapshot("last")
@@ -194,10 +194,13 @@ class _Run:
                 self.warnings.append(text)
                 self.progress.message(text)
 
-    def _remark_jumps(self) -> None:
+    def _remark_ends(self, status: str) -> None:
+        """Say what only a whole history tells: jumps, and an end at which nothing would rest."""
         rows = self.recorder.rows
-        for step in self.recorder.jumps():
-            text = stability.jumped(rows[step - 1], rows[step])
+        lines = [stability.jumped(rows[step - 1], rows[step]) for step in self.recorder.jumps()]
+        if status == "converged" and rows[-1].get("unstable_modes"):
+            lines.append(stability.UNSTABLE_END)
+        for text in lines:
             self.warnings.append(text)
             self.progress.message(text)
 

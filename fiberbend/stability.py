@@ -12,6 +12,10 @@ from fem.scene import Scene
 from fem.selfcontact import BodyRod, Rod, UniformRod
 from fem.uniform import Uniform
 
+UNSTABLE_END = (
+    "the end is unstable where every load is held at its value: given the pressure, no actuator "
+    "rests there"
+)
 _COUNT = ("no", "one", "two", "three")
 
 

@@ -113,6 +113,7 @@ def test_requested_angles_are_hit_on_the_falling_branch(balloon: RunResult) -> N
     assert other.status == "converged"
     assert np.abs(angles - beyond).min() < 1e-6
     assert angles[-1] == pytest.approx(70.0, abs=1e-6)
+    assert other.run["warnings"][-1].startswith("the end is unstable")
 
 
 def test_a_body_balloons_too(tmp_path: Path, balloon: RunResult) -> None:
