@@ -102,8 +102,8 @@ def jumped(before: dict[str, Any], after: dict[str, Any]) -> str:
     """A line on a step that has left its branch, from the rows at its ends."""
     ends = f"{before['pressure_kPa']:.4g} and {after['pressure_kPa']:.4g} kPa"
     return (
-        f"between {ends} the stored energy changes by what no load has done: the run went to a "
-        "neighbouring state there; shorter steps (solver.max_turn) may stay on one branch"
+        f"between {ends} the stored energy changes by what no load has done: the run may have "
+        "gone to a neighbouring state there; shorter steps (solver.max_turn) may stay on one branch"
     )
 
 
