@@ -41,7 +41,10 @@ def _tip(width: float, pushed: bool, **changes: Any) -> RunResult:
     case = small(effects=[{"pressure": {"to": "60 kPa"}}, WINDING, tip])
     case["output"] = {"at_pressures": ["20 kPa"], "fields": False, "pictures": False}
     result = run(case | changes)
-    assert (result.status, result.run["cutbacks"]) == ("converged", 0)
+    assert result.status == "converged"
+    if changes.get("actuator") != FLAT:
+        # a level top lies on a level roof from the start: there round-off says what touches first
+        assert result.run["cutbacks"] == 0
     return result
 
 
