@@ -20,8 +20,6 @@ Floats = npt.NDArray[np.float64]
 PRESSURE, CHAMBER = "pressure", "chamber"
 SWOLLEN, EMPTIED = 2.0, 0.7
 """A chamber of so many times its volume has ballooned, or collapses under vacuum."""
-STRETCHED = 3.0
-"""Rubber stretched so many times is no more what its law was fitted to."""
 SQUEEZED = 0.6
 """det F at a point, where an element can only keep its mean at one, that tells of squeezing."""
 MEETING = 0.1

@@ -278,6 +278,7 @@ class FiberPotential:
 
     def extrapolate(self, states: list[dict[str, Floats]], weights: Floats) -> None:
         """Predicted force from a weighted sum of remembered states."""
+        self._second = None
         self._predicted = sum(
             (weight * state["force"] for weight, state in zip(weights, states, strict=True)),
             np.zeros(len(self.strain)),

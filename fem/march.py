@@ -7,13 +7,12 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from fem.diagnosis import Diagnosis
 from fem.equilibrium import Equilibrium
 from fem.frames import Frames
 from fem.limit import critical, crossing, limit_ahead, limit_between, softens
 from fem.newton import Newton, Outcome
 from fem.predictor import distinct, lagrange
-from fem.program import Critical, Functional, Ramp, Report, Rules, State, measure
+from fem.program import Causes, Critical, Functional, Ramp, Report, Rules, State, measure
 from fem.scene import Scene
 from fem.selfcontact import Rod, first_contact
 
@@ -112,7 +111,8 @@ class March:
         self.warn = warn
         self.equilibrium = Equilibrium(scene, newton, frames, followed)
         self.predictor = self.equilibrium.predictor
-        self.diagnosis = Diagnosis(scene)
+        self.causes: Causes | None = None
+        """What tells physical causes of a failure; None: how Newton ended is all that is said."""
         self.rod: Rod | None = None
         """The states as rods, to see whether the body passes through itself; None: not looked."""
         self.states: list[State] = []
@@ -214,7 +214,7 @@ class March:
                 hopeless = (
                     failures > self.rules.cutbacks or self.increment < self.rules.least * way.span
                 )
-                inverted = self.diagnosis.inverted() if hopeless else ""
+                inverted = self.causes.inverted() if hopeless and self.causes else ""
                 self.equilibrium.restore(state)
                 self.warn(f"increment cut back: {outcome.reason}")
                 if hopeless:
@@ -338,10 +338,10 @@ class March:
 
     def _give_up(self, outcome: Outcome, inverted: str) -> bool:
         """No increment leads on from the last state."""
+        if self.causes is None:
+            return self._end(outcome.reason)
         critical = self.report.critical
-        return self._end(
-            self.diagnosis.explain(self.states, self.rest, critical, outcome, inverted)
-        )
+        return self._end(self.causes.explain(self.states, self.rest, critical, outcome, inverted))
 
     def _end(self, reason: str) -> bool:
         """The load cannot be reached."""

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from fem.frames import Shape
+
+if TYPE_CHECKING:
+    from fem.newton import Outcome
 
 Floats = npt.NDArray[np.float64]
 
@@ -181,3 +184,20 @@ class Report:
     def __post_init__(self) -> None:
         # a checkpoint gives back mappings
         self.critical = [c if isinstance(c, Critical) else Critical(**c) for c in self.critical]
+
+
+class Causes(Protocol):
+    """Tells what fails physically; it knows the effects, the march does not."""
+
+    def inverted(self) -> str:
+        """Where an element is turned inside out at the present iterate; empty where none is."""
+
+    def explain(
+        self,
+        states: list[State],
+        rest: State,
+        critical: list[Critical],
+        outcome: Outcome,
+        inverted: str,
+    ) -> str:
+        """The reason of a failure in words; collective."""

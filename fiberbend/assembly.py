@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from mpi4py import MPI
 
+from fem.diagnosis import Diagnosis
 from fem.domain import Domain
 from fem.march import March
 from fem.newton import Newton, Outcome, Settings
@@ -74,6 +75,7 @@ def assemble(
     )
     rules = contact.pace(case, rules)
     march = March(scene, newton, reading.frames, reading.followed, rules, on_step, warn)
+    march.causes = Diagnosis(scene)
     march.start()
     ramps = parts.ramps(scene.body.copies)
     if case.find(ContactEffect) is not None:

@@ -179,8 +179,8 @@ class ContactEffect(Effect):
     cylinder: Cylinder | None = None
     """A round bar to be grasped."""
     stiffness: Bedding | None = None
-    """Pressure per depth with which the obstacles yield; a hundred times the wall's modulus by the
-    thickness of sheath or wall unless said."""
+    """Pressure per depth with which the obstacles yield; unless said a hundred times the modulus by
+    the thickness of what touches, between roof and post with the wall's modulus."""
 
     @property
     def obstacles(self) -> dict[str, Obstacle]:

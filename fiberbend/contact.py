@@ -47,9 +47,9 @@ def _placed(case: Case, item: case_effects.Obstacle) -> Obstacle:
 def stiffness(case: Case) -> float:
     """Pressure per depth with which the obstacles of a case yield, MPa/mm.
 
-    What touches them, a layer of thickness h and Young's modulus E, yields by h/E of the pressure;
-    the obstacle by a hundredth of that. Between roof and post, where nothing else yields, E is the
-    wall's, also under a softer sheath.
+    What touches them, a layer of thickness h and Young's modulus E, yields by h/E times the
+    pressure; the obstacle by a hundredth of that. Between roof and post, where nothing else yields,
+    E is the wall's, also under a softer sheath.
     """
     contact = case.find(ContactEffect)
     if contact is not None and contact.stiffness is not None:

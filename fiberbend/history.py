@@ -57,19 +57,17 @@ class Recorder:
         self.rows.append(row)
         return row
 
-    def integrate(self) -> None:
-        """Fill in the work of the loads since rest, by a spline through all steps."""
-        work, _ = self._work()
-        for row, value in zip(self.rows, np.cumsum(work), strict=True):
-            row["work_mJ"] = float(value)
+    def integrate(self) -> list[int]:
+        """Fill in the work of the loads since rest, by a spline through all steps.
 
-    def jumps(self) -> list[int]:
-        """Steps in which the stored energy changed by what no load has done.
-
-        A state that is not on the branch of the one before, as stable and as well converged as any,
-        shows nowhere else.
+        Returns:
+            Steps in which the stored energy changed by what no load has done. A state that is not
+            on the branch of the one before, as stable and as well converged as any, shows nowhere
+            else.
         """
         work, doubt = self._work()
+        for row, value in zip(self.rows, np.cumsum(work), strict=True):
+            row["work_mJ"] = float(value)
         return departures(work, doubt, np.array([row["stored_mJ"] for row in self.rows]))
 
     def _row(self, step: int, state: State, outcome: Outcome | None) -> dict[str, Any]:

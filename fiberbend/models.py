@@ -19,8 +19,6 @@ from fem.uniform import Cell, CurvatureAngle, Section, Uniform
 from fiberbend import bridge
 from fiberbend.case import Case
 from fiberbend.case_effects import StraightEffect, WindingEffect
-from fiberbend.choice import FIRST_TURN as FIRST_TURN
-from fiberbend.choice import TURN as TURN
 from fiberbend.choice import choose_half
 from fiberbend.fineness import cell_slice, mesh_size
 from fiberbend.gauges import BodyGauge, UniformGauge

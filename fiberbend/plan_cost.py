@@ -69,7 +69,7 @@ class Cost:
         if self.steps is None or whole is None:
             steps, time = pace, f"about {_rounded(self.step_s)} s a step"
         else:
-            steps = f"about {self.steps}" + ("" if _still(case) else f", {pace}")
+            steps = f"about {self.steps}" + ("" if hold_straight(case.effects) else f", {pace}")
             time = f"about {_rounded(whole)} s"
             if model == "body":
                 time += f" on one rank, {_rounded(self.seconds(2) or whole)} s on two"
@@ -107,11 +107,6 @@ def _rounded(value: float) -> str:
         digits = 1 - math.floor(math.log10(value))
         return f"{round(value, digits):.0f}"
     return f"{value:.2g}"
-
-
-def _still(case: Case) -> bool:
-    """The actuator is held, so that its steps are those of the load."""
-    return hold_straight(case.effects)
 
 
 def start_seconds(model: str) -> float:
@@ -171,7 +166,7 @@ def steps_of(case: Case, model: str) -> int | None:
     least = 0
     if pressure.to is not None and case.solver.max_step is not None:
         least = math.ceil(abs(pressure.to) / case.solver.max_step)
-    if _still(case):
+    if hold_straight(case.effects):
         # the angle is all but zero: a section starts with a twentieth, a body with everything
         if pressure.to is None:
             return None

@@ -135,8 +135,7 @@ class _Run:
         self.progress.phase("solve")
         report = self.march.run(self.ramps)
         status, reason = self._status(report)
-        self.recorder.integrate()
-        self._remark_ends(status)
+        self._remark_ends(status, self.recorder.integrate())
         self.check = self._cross_check()
         self.progress.phase("output")
         self._snapshot("last")
@@ -194,10 +193,10 @@ class _Run:
                 self.warnings.append(text)
                 self.progress.message(text)
 
-    def _remark_ends(self, status: str) -> None:
+    def _remark_ends(self, status: str, jumps: list[int]) -> None:
         """Say what only a whole history tells: jumps, and an end at which nothing would rest."""
         rows = self.recorder.rows
-        lines = [stability.jumped(rows[step - 1], rows[step]) for step in self.recorder.jumps()]
+        lines = [stability.jumped(rows[step - 1], rows[step]) for step in jumps]
         if status == "converged" and rows[-1].get("unstable_modes"):
             lines.append(stability.UNSTABLE_END)
         for text in lines:

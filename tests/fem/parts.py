@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from fem.diagnosis import Diagnosis
 from fem.domain import Domain
 from fem.effect import Effect
 from fem.effects.chamber_pressure import ChamberPressure
@@ -173,6 +174,7 @@ def bender(
         energies.append(sum(stored(scene).values()))
 
     march = March(scene, newton, frames, angle, rules or Rules(), on_step, warnings.append)
+    march.causes = Diagnosis(scene)
     return Bender(scene, newton, angle, Tip(scene.body), march, states, energies, warnings)
 
 

@@ -28,7 +28,7 @@ class Record:
         iterations: Newton iterations, failed steps included.
         least_det_f: over all steps.
         modes: unstable modes at the end.
-        gap: |∫ Σ q dQ − stored energy| over the stored energy, at the end.
+        gap: |∫ Σ q dQ − stored energy| at the end over the greatest stored energy.
         warnings: of the run.
         checks: further comparisons, what was measured and its bounds.
         seconds: wall time.
@@ -59,7 +59,7 @@ def solve(hard: Hard, model: str) -> Record:
     done = getattr(procedures, hard.procedure)(hard, model)
     rows, run = done.rows, done.run
     last = rows[-1]
-    stored = abs(last["stored_mJ"])
+    stored = max(abs(row["stored_mJ"]) for row in rows)
     record = Record(
         name=hard.name,
         model=model,
