@@ -178,6 +178,7 @@ def _sweep(options: argparse.Namespace) -> int:
     out = options.out or Path("runs") / options.sweep.stem
     try:
         if options.worker:
+            launch.start_mpi()
             return run_worker(options.sweep, out, options.settings)
         return run_sweep(
             options.sweep, out, options.settings, options.jobs, options.retry, say=_say
@@ -198,6 +199,7 @@ def _control(options: argparse.Namespace) -> int:
     case, settings = read_case(options.case, options.settings), read_settings(options)
     out = options.out or Path("runs") / f"{Path(options.case).stem}_control"
     try:
+        launch.start_mpi()
         from fiberbend.control import run_control
 
         result = run_control(case, settings, out, options.overwrite)

@@ -45,10 +45,11 @@ def start_mpi() -> None:
     alone = not any(name in os.environ for name in (*_RANK, *_SIZE))
     new = [name for name in _ALONE if alone and name not in os.environ]
     os.environ.update({name: _ALONE[name] for name in new})
-    import mpi4py.MPI  # noqa: F401
-
-    for name in new:
-        del os.environ[name]
+    try:
+        import mpi4py.MPI  # noqa: F401
+    finally:
+        for name in new:
+            del os.environ[name]
 
 
 def let_rank_0_speak() -> None:
