@@ -12,6 +12,10 @@ from fem.kinematics import Kinematics
 
 Floats = npt.NDArray[np.float64]
 
+ROUND_OFF = 1e-9
+"""Share of a measure's range by which a body at the range's end may miss it: at rest the fitted
+angle is ±1e-15 rad, and its sign is round-off's."""
+
 
 class Guide:
     """A uniformly bent body between rigid caps, from the states of its section.
@@ -59,9 +63,12 @@ class Guide:
         ).T
 
     def covers(self, measure: str, value: float) -> bool:
-        """Whether the section has states on both sides of a value."""
+        """Whether the section's states span a value, its ends included up to round-off."""
         known = self._measures.get(measure)
-        return known is not None and bool(known[0] <= value <= known[-1])
+        if known is None:
+            return False
+        slack = ROUND_OFF * (known[-1] - known[0])
+        return bool(known[0] - slack <= value <= known[-1] + slack)
 
     def shape(self, measure: str, value: float) -> Shape:
         """The body's shape where a measure takes a value.
