@@ -75,7 +75,7 @@ sys.exit(any(".venv" in module.__file__ for module in (numpy, scipy)))
 CHECK
 # Bytes of what every run imports; all of the packages would take longer than they ever save.
 env -u PYTHONDONTWRITEBYTECODE .venv/bin/python -c \
-    'import fiberbend.cli, fiberbend.reader, matplotlib.pyplot, pyvista, rich.progress' ||
+    'import fiberbend.cli, fiberbend.reader.reader, matplotlib.pyplot, pyvista, rich.progress' ||
     fail "the installed packages do not import."
 printf '%s\n' "$key" > "$STAMP"
 echo "setup: done"

@@ -10,7 +10,7 @@ import time
 import numpy as np
 
 from analytic.bending import Hemicircle
-from analytic.filter import AngleFilter, seconds_per_sample
+from analytic.control.filter import AngleFilter, seconds_per_sample
 
 BASELINE = (8.0, 2.0, 2.0, 160.0)
 """a, b, t, L of Polygerinos et al. 2015, mm."""

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from fiberbend.contact import obstacles
-from fiberbend.models import make_mesh
-from fiberbend.page import COLORS, figure, save
-from fiberbend.reader import as_case
-from geometry.mesh import FACET_VERTICES, vertex_positions
+from fiberbend.drawing.page import COLORS, figure, save
+from fiberbend.effects.contact import obstacles
+from fiberbend.models.kinds import make_mesh
+from fiberbend.reader.reader import as_case
+from geometry.mesh.data import FACET_VERTICES, vertex_positions
 
 if TYPE_CHECKING:
     from bench.contact import Fig11

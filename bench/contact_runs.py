@@ -14,11 +14,11 @@ import yaml
 from mpi4py import MPI
 
 from bench.tables import ROOT
-from fem.measures import UniformAngle
+from fem.results.measures import UniformAngle
 from fiberbend import run
-from fiberbend.assembly import assemble
-from fiberbend.models import make_mesh
-from fiberbend.reader import as_case
+from fiberbend.models.kinds import make_mesh
+from fiberbend.reader.reader import as_case
+from fiberbend.run.assembly import assemble
 
 RUNS = ROOT / "runs" / "contact"
 PRESSURES = (50, 100, 150, 200, 250)

@@ -38,7 +38,7 @@ def least(action: Callable[[], object], repeats: int = REPEATS) -> float:
 def analytic() -> list[tuple[str, float, float]]:
     """P(θ) of 100 points and θ(P) of one sample, by the closed form of eq. (19)."""
     from analytic.bending import Hemicircle
-    from analytic.filter import AngleFilter
+    from analytic.control.filter import AngleFilter
 
     actuator = Hemicircle(radius=8, floor=2, wall=2, length=160)
     angles = np.linspace(0, 2 * np.pi, 100)
@@ -59,9 +59,9 @@ def uniform(model: str, limit: float, *settings: str) -> tuple[str, float, float
     """A curve from 0 to 360° after its kernels are compiled."""
     from mpi4py import MPI
 
-    from fiberbend.assembly import assemble
-    from fiberbend.models import make_mesh
-    from fiberbend.reader import read_case
+    from fiberbend.models.kinds import make_mesh
+    from fiberbend.reader.reader import read_case
+    from fiberbend.run.assembly import assemble
 
     case = read_case(CASE, [f"model={model}", "output={}", *settings])
     case = case.model_copy(

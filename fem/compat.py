@@ -47,7 +47,7 @@ import ufl  # noqa: E402
 if _stands_in:
     del sys.modules["pkg_resources"]
 
-from geometry.mesh import FACET_VERTICES, reference_nodes, vertex_positions  # noqa: E402
+from geometry.mesh.data import FACET_VERTICES, reference_nodes, vertex_positions  # noqa: E402
 
 COMPILER_FLAGS = [
     *("-O3", "-march=native", "-g0"),

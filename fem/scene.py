@@ -12,9 +12,9 @@ import ufl
 from petsc4py import PETSc
 
 from fem import compat
-from fem.domain import Domain
-from fem.effect import Constraint, Discrete, Effect
-from fem.kinematics import Body, Kinematics
+from fem.effects.effect import Constraint, Discrete, Effect
+from fem.kinematics.domain import Domain
+from fem.kinematics.kinematics import Body, Kinematics
 
 Floats = npt.NDArray[np.float64]
 

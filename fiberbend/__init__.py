@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from fiberbend.case import Case
-    from fiberbend.runner import RunResult
+    from fiberbend.case.case import Case
+    from fiberbend.run.runner import RunResult
 
 __version__ = metadata.version("fiberbend")
 
@@ -32,14 +32,14 @@ def run(
         What was computed.
 
     Raises:
-        fiberbend.problems.CaseError: everything that is wrong with the case.
+        fiberbend.schema.problems.CaseError: everything that is wrong with the case.
     """
-    from fiberbend import launch
-    from fiberbend.progress import Progress
-    from fiberbend.reader import as_case
+    from fiberbend.reader.reader import as_case
+    from fiberbend.run import launch
+    from fiberbend.run.progress import Progress
 
     launch.start_mpi()
-    from fiberbend.runner import run_case
+    from fiberbend.run.runner import run_case
 
     progress = Progress(quiet=quiet)
     folder = None if out is None else Path(out)

@@ -13,8 +13,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
-from fiberbend import __version__, launch
-from fiberbend.control_options import add_options
+from fiberbend import __version__
+from fiberbend.control.settings import add_options
+from fiberbend.run import launch
 
 WRONG_INPUT = 1
 FAILED = 2
@@ -57,7 +58,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.command == "version":
         _say(__version__)
         return 0
-    from fiberbend.problems import CaseError
+    from fiberbend.schema.problems import CaseError
 
     try:
         code: int = options.action(options)
@@ -121,7 +122,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _validate(options: argparse.Namespace) -> int:
-    from fiberbend.reader import read_case
+    from fiberbend.reader.reader import read_case
 
     read_case(options.case, options.settings)
     _say(f"{options.case}: valid")
@@ -129,8 +130,8 @@ def _validate(options: argparse.Namespace) -> int:
 
 
 def _plan(options: argparse.Namespace) -> int:
-    from fiberbend.plan import make_plan
-    from fiberbend.reader import read_case
+    from fiberbend.plan.plan import make_plan
+    from fiberbend.reader.reader import read_case
 
     for line in make_plan(read_case(options.case, options.settings)).lines():
         _say(line)
@@ -138,23 +139,23 @@ def _plan(options: argparse.Namespace) -> int:
 
 
 def _schema(options: argparse.Namespace) -> int:
-    from fiberbend.reader import json_schema
+    from fiberbend.reader.reader import json_schema
 
     _say(json.dumps(json_schema(), indent=2, ensure_ascii=False))
     return 0
 
 
 def _run(options: argparse.Namespace) -> int:
-    from fiberbend.problems import CaseError
-    from fiberbend.progress import Progress
-    from fiberbend.reader import read_case
+    from fiberbend.reader.reader import read_case
+    from fiberbend.run.progress import Progress
+    from fiberbend.schema.problems import CaseError
 
     case = read_case(options.case, options.settings)
     out = options.out or Path("runs") / Path(options.case).stem
     progress = Progress(quiet=options.quiet)
     try:
         launch.start_mpi()
-        from fiberbend.runner import run_case
+        from fiberbend.run.runner import run_case
 
         result = run_case(
             case, out, overwrite=options.overwrite, progress=progress, resume=options.resume
@@ -172,8 +173,8 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _sweep(options: argparse.Namespace) -> int:
-    from fiberbend.problems import CaseError
-    from fiberbend.sweep import INTERRUPTED, run_sweep, run_worker
+    from fiberbend.schema.problems import CaseError
+    from fiberbend.sweep.command import INTERRUPTED, run_sweep, run_worker
 
     out = options.out or Path("runs") / options.sweep.stem
     try:
@@ -192,15 +193,15 @@ def _sweep(options: argparse.Namespace) -> int:
 
 
 def _control(options: argparse.Namespace) -> int:
-    from fiberbend.control_options import read_settings
-    from fiberbend.problems import CaseError
-    from fiberbend.reader import read_case
+    from fiberbend.control.settings import read_settings
+    from fiberbend.reader.reader import read_case
+    from fiberbend.schema.problems import CaseError
 
     case, settings = read_case(options.case, options.settings), read_settings(options)
     out = options.out or Path("runs") / f"{Path(options.case).stem}_control"
     try:
         launch.start_mpi()
-        from fiberbend.control import run_control
+        from fiberbend.control.command import run_control
 
         result = run_control(case, settings, out, options.overwrite)
     except CaseError:

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.dimensions import Actuator
-from geometry.embed import embed
-from geometry.errors import MeshError
-from geometry.mesh import Floats, MeshData, reference_nodes, vertex_positions
-from geometry.reference import area_vectors, cell_rule, jacobians
-from geometry.winding import Winding
+from geometry.actuator import Actuator
+from geometry.mesh.data import (
+    Floats,
+    MeshData,
+    reference_nodes,
+    vertex_positions,
+)
+from geometry.mesh.errors import MeshError
+from geometry.mesh.reference import area_vectors, cell_rule, jacobians
+from geometry.winding.embed import embed
+from geometry.winding.helix import Winding
 
 _CHUNK = 20_000
 

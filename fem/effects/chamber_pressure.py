@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from fem.effect import Effect
-from fem.kinematics import Kinematics
+from fem.effects.effect import Effect
+from fem.kinematics.kinematics import Kinematics
 
 
 class ChamberPressure(Effect):

@@ -7,8 +7,8 @@ from typing import Any, ClassVar, Protocol
 
 import ufl
 
-from fem.effect import Effect
-from fem.kinematics import Kinematics
+from fem.effects.effect import Effect
+from fem.kinematics.kinematics import Kinematics
 
 
 class Obstacle(Protocol):

@@ -6,8 +6,8 @@ from typing import Any
 
 import ufl
 
-from fem.effect import Effect
-from fem.kinematics import Kinematics
+from fem.effects.effect import Effect
+from fem.kinematics.kinematics import Kinematics
 
 
 class Gravity(Effect):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fem.effect import Constraint, Effect
+from fem.effects.effect import Constraint, Effect
 
 
 class Clamp(Effect):

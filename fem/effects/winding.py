@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from fem.effect import Effect
-from fem.embedded import FiberPotential
-from fem.kinematics import Kinematics
-from geometry.embed import EmbeddedFibers
+from fem.effects.effect import Effect
+from fem.effects.embedded_fibers import FiberPotential
+from fem.kinematics.kinematics import Kinematics
+from geometry.winding.embed import EmbeddedFibers
 
 
 class _Fibers(Effect):

@@ -9,8 +9,13 @@ import numpy as np
 import pytest
 
 from analytic.bending import Hemicircle
-from analytic.controller import Controller, DeadZone, Inside, Valves
-from analytic.filter import TOLERANCE, AngleFilter
+from analytic.control.controller import (
+    Controller,
+    DeadZone,
+    Inside,
+    Valves,
+)
+from analytic.control.filter import TOLERANCE, AngleFilter
 from analytic.stress import effective
 
 BASE = Hemicircle(8, 2, 2, 160)

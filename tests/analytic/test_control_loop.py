@@ -11,20 +11,26 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from analytic import control_loop
 from analytic.bending import Hemicircle
 from analytic.calibration import calibrate
-from analytic.control_loop import Sensor, Sine, Steps, Trace, simulate
-from analytic.control_metrics import sine_metrics, step_metrics
-from analytic.controller import Controller, DeadZone
-from analytic.filter import AngleFilter
-from analytic.plant import ArcCurve, Plant, PlantParameters
+from analytic.control import loop as control_loop
+from analytic.control.controller import Controller, DeadZone
+from analytic.control.filter import AngleFilter
+from analytic.control.loop import (
+    Sensor,
+    Sine,
+    Steps,
+    Trace,
+    simulate,
+)
+from analytic.control.metrics import sine_metrics, step_metrics
+from analytic.control.plant import ArcCurve, Plant, PlantParameters
 from analytic.stress import effective
 
 BASE = Hemicircle(8, 2, 2, 160)
 DEGREES = np.linspace(0, 360, 37)
 QUARTERS = [0, 90, 180, 270, 360]
-# the baseline: P of an independent section model, V of `fiberbend.curves.section_curve`
+# the baseline: P of an independent section model, V of `section_curve`
 SECTION = ArcCurve(
     pressure=1e-3 * CubicSpline(QUARTERS, [0, 45.1, 89.2, 134.3, 181.5])(DEGREES),
     angle=np.radians(DEGREES),

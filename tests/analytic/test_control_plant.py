@@ -10,8 +10,15 @@ import numpy as np
 import pytest
 
 from analytic.bending import Hemicircle
-from analytic.controller import Valves
-from analytic.plant import CONDUCTANCE, LAMINAR, ArcCurve, Plant, PlantParameters, flow
+from analytic.control.controller import Valves
+from analytic.control.plant import (
+    CONDUCTANCE,
+    LAMINAR,
+    ArcCurve,
+    Plant,
+    PlantParameters,
+    flow,
+)
 
 BASE = Hemicircle(8, 2, 2, 160)
 CURVE = ArcCurve.of(BASE, np.linspace(0, 2 * math.pi, 73))

@@ -10,10 +10,16 @@ from pathlib import Path
 
 import pytest
 
-from fiberbend.case import Case
-from fiberbend.case_effects import WindingEffect
-from fiberbend.choice import MODELS, choose_half, choose_model, objection, omissions
-from fiberbend.reader import parse_case, read_case
+from fiberbend.case.case import Case
+from fiberbend.effects.table import WindingEffect
+from fiberbend.models.choice import (
+    MODELS,
+    choose_half,
+    choose_model,
+    objection,
+    omissions,
+)
+from fiberbend.reader.reader import parse_case, read_case
 from tests.cases.bad_cases import BLOCKED, HOOPS, SMEARED, WEIGHT
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -14,9 +14,9 @@ from typing import Any
 import pytest
 import yaml
 
-from fiberbend.measured import Measured, read_measured
-from fiberbend.problems import CaseError
-from fiberbend.reader import parse_case, read_case
+from fiberbend.case.measured import Measured, read_measured
+from fiberbend.reader.reader import parse_case, read_case
+from fiberbend.schema.problems import CaseError
 
 ROOT = Path(__file__).resolve().parents[2]
 FREE = ROOT / "cases" / "free_bending.yaml"

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from fiberbend.case import Case
-from fiberbend.plan import WIDTH, Plan, make_plan
-from fiberbend.plan_cost import cost_of, expected_angle
-from fiberbend.plan_size import size_of
-from fiberbend.reader import read_case
+from fiberbend.case.case import Case
+from fiberbend.plan.estimate import cost_of, expected_angle
+from fiberbend.plan.plan import WIDTH, Plan, make_plan
+from fiberbend.plan.size import size_of
+from fiberbend.reader.reader import read_case
 from tests.cases.bad_cases import BLOCKED, HOOPS, SMEARED
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -10,10 +10,16 @@ from typing import IO
 import numpy as np
 import pytest
 
-from fiberbend.problems import CaseError
-from fiberbend.progress import Progress
-from fiberbend.reader import read_case
-from fiberbend.runfolder import HISTORY_COLUMNS, RUN_KEYS, RunFolder, differences, read_history
+from fiberbend.reader.reader import read_case
+from fiberbend.run.folder import (
+    HISTORY_COLUMNS,
+    RUN_KEYS,
+    RunFolder,
+    differences,
+    read_history,
+)
+from fiberbend.run.progress import Progress
+from fiberbend.schema.problems import CaseError
 
 CASE = read_case(Path(__file__).resolve().parents[2] / "cases" / "free_bending.yaml")
 

@@ -12,11 +12,21 @@ from typing import Any
 import pytest
 import yaml
 
-from fiberbend import bridge
-from fiberbend.case import COEFFICIENTS, Case, Material
-from fiberbend.case_effects import EFFECTS, GravityEffect, PressureEffect, WindingEffect
-from fiberbend.problems import CaseError
-from fiberbend.reader import as_case, json_schema, parse_case, read_case
+from fiberbend.case import convert
+from fiberbend.case.case import COEFFICIENTS, Case, Material
+from fiberbend.effects.table import (
+    EFFECTS,
+    GravityEffect,
+    PressureEffect,
+    WindingEffect,
+)
+from fiberbend.reader.reader import (
+    as_case,
+    json_schema,
+    parse_case,
+    read_case,
+)
+from fiberbend.schema.problems import CaseError
 from materials.laws import LAWS
 from tests.cases import bad_cases
 
@@ -205,14 +215,14 @@ def test_bridge_takes_what_the_case_says() -> None:
             "effects.1.winding.fiber={modulus: 3 GPa, diameter: 0.2 mm}",
         ],
     )
-    wall = bridge.material(case.materials.wall)
+    wall = convert.material(case.materials.wall)
     assert (wall.law, wall.parameters["c1"], wall.bulk) == ("yeoh", 0.11, 200.0)
     winding = case.find(WindingEffect)
     assert winding is not None
-    assert bridge.fiber(winding.fiber).stiffness == pytest.approx(3000 * math.pi * 0.1**2)
-    assert bridge.dimensions(case.actuator).total_length == 190.0
+    assert convert.fiber(winding.fiber).stiffness == pytest.approx(3000 * math.pi * 0.1**2)
+    assert convert.dimensions(case.actuator).total_length == 190.0
     own = Material(law="neo-hooke", mu="1 MPa", density="1.1 g/cm^3")  # type: ignore[arg-type]
-    assert bridge.material(own).density == pytest.approx(1100.0)
+    assert convert.material(own).density == pytest.approx(1100.0)
 
 
 def test_committed_schema_is_current() -> None:

@@ -10,10 +10,10 @@ from typing import Any
 import pytest
 import yaml
 
-from fiberbend.case_effects import PressureEffect, StraightEffect
-from fiberbend.problems import CaseError
-from fiberbend.sweep_fields import labels, point_name
-from fiberbend.sweep_points import Sweep, read_sweep
+from fiberbend.effects.table import PressureEffect, StraightEffect
+from fiberbend.schema.problems import CaseError
+from fiberbend.sweep.fields import labels, point_name
+from fiberbend.sweep.points import Sweep, read_sweep
 
 ROOT = Path(__file__).resolve().parents[2]
 SWEEPS = sorted((ROOT / "cases" / "sweeps").glob("*.yaml"))

@@ -7,7 +7,7 @@ import math
 import pint
 import pytest
 
-from fiberbend.units import KINDS, parse, show
+from fiberbend.schema.units import KINDS, parse, show
 
 EVERY_FACTOR = [(name, unit) for name, kind in KINDS.items() for unit in kind.factors]
 

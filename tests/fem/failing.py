@@ -9,14 +9,14 @@ from collections.abc import Sequence
 import numpy as np
 from mpi4py import MPI
 
-from fem.border import Closure
-from fem.diagnosis import Diagnosis
-from fem.domain import Domain
-from fem.march import Ramp, Rules
-from fem.newton import Outcome
-from fem.selfcontact import BodyRod, clearance
-from geometry.size import MeshSize
-from geometry.sweep import swept_body
+from fem.kinematics.domain import Domain
+from fem.march.march import Ramp, Rules
+from fem.march.selfcontact import BodyRod, clearance
+from fem.results.diagnosis import Diagnosis
+from fem.solver.border import Closure
+from fem.solver.newton import Outcome
+from geometry.bodies.extrude import swept_body
+from geometry.sections.size import MeshSize
 from tests.fem.parts import SHORT, Bender, Floats, bender
 
 

@@ -9,29 +9,35 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from fem.diagnosis import Diagnosis
-from fem.domain import Domain
-from fem.effect import Effect
 from fem.effects.chamber_pressure import ChamberPressure
+from fem.effects.effect import Effect
 from fem.effects.elastic import Elastic
 from fem.effects.gravity import Gravity
 from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Clamp, Symmetry
 from fem.effects.winding import SmearedWinding
 from fem.effects.winding import Winding as Discrete
-from fem.frames import Frames
-from fem.march import March, Ramp, Report, Rules, State
-from fem.measures import BendingAngle, Tip
-from fem.newton import Newton, Outcome, Settings
+from fem.kinematics.domain import Domain
+from fem.march.frames import Frames
+from fem.march.march import (
+    March,
+    Ramp,
+    Report,
+    Rules,
+    State,
+)
+from fem.results.diagnosis import Diagnosis
+from fem.results.measures import BendingAngle, Tip
 from fem.scene import Scene
-from geometry.dimensions import Actuator
-from geometry.embed import embed, smear
-from geometry.mesh import MeshData
-from geometry.shapes import tube_sector
-from geometry.size import MeshSize
-from geometry.sweep import swept_body
-from geometry.tets import to_tetrahedra
-from geometry.winding import Winding
+from fem.solver.newton import Newton, Outcome, Settings
+from geometry.actuator import Actuator
+from geometry.bodies.extrude import swept_body
+from geometry.bodies.solids import tube_sector
+from geometry.mesh.data import MeshData
+from geometry.mesh.tets import to_tetrahedra
+from geometry.sections.size import MeshSize
+from geometry.winding.embed import embed, smear
+from geometry.winding.helix import Winding
 
 Floats = npt.NDArray[np.float64]
 CELLS = ("hexahedron", "tetrahedron")

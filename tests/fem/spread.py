@@ -7,10 +7,10 @@ import json
 import numpy as np
 from mpi4py import MPI
 
-from fem.domain import Domain
-from fem.march import Ramp
-from geometry.size import MeshSize
-from geometry.sweep import swept_body
+from fem.kinematics.domain import Domain
+from fem.march.march import Ramp
+from geometry.bodies.extrude import swept_body
+from geometry.sections.size import MeshSize
 from tests.fem.parts import SHORT, bender
 
 ANGLE = np.deg2rad(4.0)

@@ -8,20 +8,20 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fem.contact import Probe
-from fem.domain import Domain
-from fem.effect import Effect
 from fem.effects.contact import Contact, Cylinder, Obstacle, Plane
+from fem.effects.effect import Effect
 from fem.effects.elastic import Elastic
 from fem.effects.gravity import Gravity
 from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Clamp
-from fem.march import March
-from fem.measures import balance
-from fem.newton import Newton, Outcome, Settings
-from fem.program import Ramp, Rules, State
+from fem.kinematics.domain import Domain
+from fem.march.march import March
+from fem.march.records import Ramp, Rules, State
+from fem.results.measures import balance
+from fem.results.touch import Probe
 from fem.scene import Scene
-from geometry.shapes import box
+from fem.solver.newton import Newton, Outcome, Settings
+from geometry.bodies.solids import box
 from tests.fem.parts import Floats, stub
 
 LENGTH, SIDE = 100.0, 5.0

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fem.diagnosis import Diagnosis
-from fem.newton import Outcome
-from fem.program import Critical
+from fem.march.records import Critical
+from fem.results.diagnosis import Diagnosis
+from fem.solver.newton import Outcome
 from tests.conftest import MpiRun
 from tests.fem.failing import cap_sheath, found, short, turn_inside_out
 from tests.fem.parts import SHORT, Bender

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from fem.domain import Domain
-from fem.effect import Effect
 from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.contact import Contact, Cylinder, Obstacle, Plane
+from fem.effects.effect import Effect
 from fem.effects.incompressible import Incompressible
+from fem.kinematics.domain import Domain
 from fem.scene import Scene
 from geometry.checks import region_volumes
 from tests.fem.parts import CELLS, Floats, gravity, law, perturb, smeared, stub, winding

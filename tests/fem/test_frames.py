@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fem.domain import Domain
-from fem.frames import Frames
-from fem.kinematics import Body
-from fem.measures import BendingAngle, Tip
-from geometry.reference import area_vectors
-from geometry.size import MeshSize
-from geometry.sweep import swept_body
+from fem.kinematics.domain import Domain
+from fem.kinematics.kinematics import Body
+from fem.march.frames import Frames
+from fem.results.measures import BendingAngle, Tip
+from geometry.bodies.extrude import swept_body
+from geometry.mesh.reference import area_vectors
+from geometry.sections.size import MeshSize
 from tests.fem.parts import SHORT, Floats, short_domain
 
 LENGTH = SHORT.length

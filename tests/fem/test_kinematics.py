@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fem.domain import Domain
 from fem.effects.chamber_pressure import ChamberPressure
-from fem.kinematics import Body
+from fem.kinematics.domain import Domain
+from fem.kinematics.kinematics import Body
 from fem.scene import Scene
 from geometry.checks import surface_area
-from geometry.reference import area_vectors
+from geometry.mesh.reference import area_vectors
 from tests.fem.parts import CELLS, STUB, Floats, law, sector, set_positions, stub
 
 RNG = np.random.default_rng(11)

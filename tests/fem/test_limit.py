@@ -12,20 +12,25 @@ import numpy as np
 import pytest
 
 from analytic.exact import sphere_limit, sphere_pressure, yeoh_slope
-from fem.domain import Domain
-from fem.effect import Effect
 from fem.effects.chamber_pressure import ChamberPressure
+from fem.effects.effect import Effect
 from fem.effects.elastic import Elastic
 from fem.effects.gravity import Gravity
 from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Clamp, Symmetry
-from fem.frames import Frames
-from fem.limit import crossing, extreme, limit_ahead
-from fem.march import March
-from fem.newton import Newton, Outcome, Settings
-from fem.program import Ramp, Report, Rules, State
+from fem.kinematics.domain import Domain
+from fem.march.frames import Frames
+from fem.march.limit_points import crossing, extreme, limit_ahead
+from fem.march.march import March
+from fem.march.records import (
+    Ramp,
+    Report,
+    Rules,
+    State,
+)
 from fem.scene import Scene
-from geometry.shapes import box, sphere_octant
+from fem.solver.newton import Newton, Outcome, Settings
+from geometry.bodies.solids import box, sphere_octant
 
 INNER, OUTER = 10.0, 11.0
 C1 = 0.11
@@ -192,8 +197,8 @@ def test_newton_may_not_leave_for_another_branch() -> None:
 
 def test_a_march_always_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     # near a limit point that nobody sees, half of all tiny increments converge: 2000 and more
-    monkeypatch.setattr("fem.march.limit_ahead", lambda *_: False)
-    monkeypatch.setattr("fem.march.softens", lambda *_: False)
+    monkeypatch.setattr("fem.march.march.limit_ahead", lambda *_: False)
+    monkeypatch.setattr("fem.march.march.softens", lambda *_: False)
     body = sphere(rules=Rules(jump=np.inf))
     report = body.march.run([Ramp("pressure", 0.0262)])
     assert report.status == "failed"

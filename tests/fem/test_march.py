@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from fem.march import Ramp, Rules, State
-from fem.newton import Closure, Newton, Outcome
+from fem.march.march import Ramp, Rules, State
+from fem.solver.newton import Closure, Newton, Outcome
 from tests.fem.parts import Bender, Floats, bender
 
 TARGET = 0.03

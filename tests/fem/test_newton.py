@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from fem.newton import Outcome, Settings
+from fem.solver.newton import Outcome, Settings
 from tests.fem.parts import Bender, Floats, bender
 
 PRESSURE = 0.004

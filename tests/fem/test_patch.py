@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fem.domain import Domain
 from fem.effects.incompressible import Incompressible
-from fem.newton import Newton, Settings
+from fem.kinematics.domain import Domain
 from fem.scene import Scene
-from geometry.mesh import MeshData
-from geometry.shapes import box
-from geometry.tets import to_tetrahedra
+from fem.solver.newton import Newton, Settings
+from geometry.bodies.solids import box
+from geometry.mesh.data import MeshData
+from geometry.mesh.tets import to_tetrahedra
 from tests.fem.parts import CELLS, law
 
 

@@ -7,11 +7,11 @@ import itertools
 import numpy as np
 import pytest
 
-from fem.domain import Domain
-from fem.effect import Effect
 from fem.effects.chamber_pressure import ChamberPressure
+from fem.effects.effect import Effect
 from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Clamp, Symmetry
+from fem.kinematics.domain import Domain
 from fem.scene import Scene
 from tests.fem.parts import Floats, gravity, law, perturb, stub, winding
 

@@ -7,16 +7,23 @@ import numpy.typing as npt
 import pytest
 from scipy.optimize import brentq
 
-from fem.domain import Domain
 from fem.effects.elastic import Elastic
-from fem.frames import Frames
-from fem.program import State
+from fem.kinematics.domain import Domain
+from fem.kinematics.uniform import Section
+from fem.march.frames import Frames
+from fem.march.records import State
+from fem.march.selfcontact import (
+    BodyRod,
+    Pose,
+    UniformRod,
+    clearance,
+    directions,
+    first_contact,
+)
 from fem.scene import Scene
-from fem.selfcontact import BodyRod, Pose, UniformRod, clearance, directions, first_contact
-from fem.uniform import Section
-from geometry.dimensions import Actuator
-from geometry.size import MeshSize
-from geometry.sweep import swept_body, swept_section
+from geometry.actuator import Actuator
+from geometry.bodies.extrude import swept_body, swept_section
+from geometry.sections.size import MeshSize
 from tests.fem.parts import set_positions
 
 Floats = npt.NDArray[np.float64]

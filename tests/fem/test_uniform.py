@@ -8,19 +8,25 @@ from collections.abc import Callable, Iterable
 import numpy as np
 import pytest
 
-from fem.domain import Domain
-from fem.effect import Effect
 from fem.effects.chamber_pressure import ChamberPressure
+from fem.effects.effect import Effect
 from fem.effects.incompressible import Incompressible
 from fem.effects.winding import SmearedWinding
 from fem.effects.winding import Winding as Discrete
-from fem.kinematics import Kinematics
+from fem.kinematics.domain import Domain
+from fem.kinematics.kinematics import Kinematics
+from fem.kinematics.uniform import (
+    CURVATURE,
+    STRETCH,
+    TWIST,
+    Cell,
+    Section,
+)
 from fem.scene import Scene
-from fem.uniform import CURVATURE, STRETCH, TWIST, Cell, Section
-from geometry.embed import embed, smear
-from geometry.size import MeshSize
-from geometry.sweep import swept_section, swept_slice
-from geometry.winding import Winding
+from geometry.bodies.extrude import swept_section, swept_slice
+from geometry.sections.size import MeshSize
+from geometry.winding.embed import embed, smear
+from geometry.winding.helix import Winding
 from tests.fem.parts import EA, SHORT, Floats, law, perturb
 
 PITCH = 3.0

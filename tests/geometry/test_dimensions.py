@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from geometry.dimensions import Actuator
-from geometry.size import MeshSize, Strips, check_size
+from geometry.actuator import Actuator
+from geometry.sections.size import MeshSize, Strips, check_size
 
 BASELINE = Actuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
 

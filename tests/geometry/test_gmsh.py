@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from geometry.actuator import Actuator
+from geometry.bodies.extrude import swept_body
+from geometry.bodies.gmsh_body import build_body
 from geometry.checks import check, region_volumes, surface_area
-from geometry.dimensions import Actuator
-from geometry.errors import MeshError
-from geometry.gmsh_body import build_body
-from geometry.mesh import MeshData
-from geometry.size import MeshSize, Strips
-from geometry.sweep import swept_body
-from geometry.winding import Winding
+from geometry.mesh.data import MeshData
+from geometry.mesh.errors import MeshError
+from geometry.sections.size import MeshSize, Strips
+from geometry.winding.helix import Winding
 
 SHORT = Actuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
 STRIPS = Strips(2.0, 2.0)

@@ -10,6 +10,9 @@ import numpy as np
 import pytest
 
 from analytic.sections import EqualArea, Shape
+from geometry.actuator import SECTIONS, Actuator
+from geometry.bodies.extrude import swept_body, swept_section, swept_slice
+from geometry.bodies.gmsh_body import build_body
 from geometry.checks import (
     chamber_volume,
     check,
@@ -18,17 +21,19 @@ from geometry.checks import (
     region_volumes,
     surface_area,
 )
-from geometry.dimensions import SECTIONS, Actuator
-from geometry.embed import embed, smear
-from geometry.gmsh_body import build_body
-from geometry.layouts import LAYOUTS
-from geometry.mesh import MeshData
-from geometry.outline import OUTLINES, arc_length, position, tangent
-from geometry.reference import area_vectors, cell_rule, jacobians
-from geometry.size import MeshSize, Strips, check_size
-from geometry.sweep import swept_body, swept_section, swept_slice
-from geometry.tets import to_tetrahedra
-from geometry.winding import Winding
+from geometry.mesh.data import MeshData
+from geometry.mesh.reference import area_vectors, cell_rule, jacobians
+from geometry.mesh.tets import to_tetrahedra
+from geometry.sections.size import MeshSize, Strips, check_size
+from geometry.sections.table import LAYOUTS
+from geometry.winding.embed import embed, smear
+from geometry.winding.helix import Winding
+from geometry.winding.outline import (
+    OUTLINES,
+    arc_length,
+    position,
+    tangent,
+)
 
 HEMICIRCLE = Actuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
 RECTANGLE = Actuator(

@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
+from geometry.actuator import Actuator
+from geometry.bodies.extrude import swept_body, swept_section, swept_slice
 from geometry.checks import chamber_gap, check, determinants, region_volumes, surface_area
-from geometry.dimensions import Actuator
-from geometry.errors import MeshError
-from geometry.mesh import MeshData
-from geometry.size import MeshSize, Strips
-from geometry.sweep import swept_body, swept_section, swept_slice
-from geometry.tets import to_tetrahedra
+from geometry.mesh.data import MeshData
+from geometry.mesh.errors import MeshError
+from geometry.mesh.tets import to_tetrahedra
+from geometry.sections.size import MeshSize, Strips
 
 BASELINE = Actuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
 SHAPES = [

@@ -18,12 +18,12 @@ import scipy.sparse.linalg as spl
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fem.linear import Factor
 from fem.scene import Scene
-from fiberbend.assembly import Assembly, assemble
-from fiberbend.case import Case
-from fiberbend.models import make_mesh
-from fiberbend.reader import parse_case
+from fem.solver.factor import Factor
+from fiberbend.case.case import Case
+from fiberbend.models.kinds import make_mesh
+from fiberbend.reader.reader import parse_case
+from fiberbend.run.assembly import Assembly, assemble
 from tests.hard.cases import ANGLE, TO, Hard, bulky
 
 STUB = {"actuator.length": "8 mm", "actuator.cap": "4 mm", TO: "1 kPa"}

@@ -11,20 +11,20 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from fem.closures import Stationary
-from fem.measures import Tip
-from fem.newton import Outcome
-from fem.program import Ramp, Report, State
-from fiberbend import stability
-from fiberbend.assembly import assemble
-from fiberbend.derived import as_section, load
-from fiberbend.history import Recorder
-from fiberbend.models import make_mesh
-from fiberbend.progress import Progress
-from fiberbend.reader import parse_case
-from fiberbend.result import RunResult
-from fiberbend.runner import run_case
-from geometry.mesh import Floats, MeshData
+from fem.march.records import Ramp, Report, State
+from fem.results.measures import Tip
+from fem.solver.closures import Stationary
+from fem.solver.newton import Outcome
+from fiberbend.case.section_beside import as_section, load
+from fiberbend.models.kinds import make_mesh
+from fiberbend.models.result import RunResult
+from fiberbend.reader.reader import parse_case
+from fiberbend.run import messages
+from fiberbend.run.assembly import assemble
+from fiberbend.run.history import Recorder
+from fiberbend.run.progress import Progress
+from fiberbend.run.runner import run_case
+from geometry.mesh.data import Floats, MeshData
 from tests.hard.cases import Hard
 
 Check = tuple[str, float, float, float]
@@ -132,7 +132,7 @@ class Driven:
             "load_steps": report.steps,
             "cutbacks": report.cutbacks,
             "newton_iterations": report.iterations,
-            "warnings": stability.remarks(report),
+            "warnings": messages.remarks(report),
         }
 
 

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from petsc4py import PETSc
 
-import fem.march
-import fem.newton
-from fem.newton import Settings
-from fem.predictor import Predictor
-from fem.program import Rules
+import fem.march.march
+import fem.solver.newton
+from fem.march.predictor import Predictor
+from fem.march.records import Rules
 from fem.scene import Scene
-from fiberbend import assembly
-from fiberbend.reader import parse_case
-from fiberbend.result import RunResult
-from fiberbend.runner import run_case
+from fem.solver.newton import Settings
+from fiberbend.models.result import RunResult
+from fiberbend.reader.reader import parse_case
+from fiberbend.run import assembly
+from fiberbend.run.runner import run_case
 from tests.hard.cases import find
 from tests.hard.procedures import unloaded
 
@@ -58,8 +58,8 @@ def test_bounds_of_an_increment_of_volume(monkeypatch: Patch) -> None:
 
 def test_a_pressure_that_turns_to_the_volume(monkeypatch: Patch) -> None:
     """Held to the pressure, the march creeps up to the limit point and cannot name it."""
-    monkeypatch.setattr(fem.march, "softens", lambda *_: False)
-    monkeypatch.setattr(fem.march, "limit_ahead", lambda *_: False)
+    monkeypatch.setattr(fem.march.march, "softens", lambda *_: False)
+    monkeypatch.setattr(fem.march.march, "limit_ahead", lambda *_: False)
     result = solve("balloon")
     assert result.status == "failed"
     assert result.run["critical_points"] == []
@@ -70,10 +70,10 @@ def test_each_field_converges_for_itself(monkeypatch: Patch) -> None:
 
     That creeps on without an end unless the march gives up.
     """
-    monkeypatch.setattr(fem.newton._Solve, "test", _one_norm(fem.newton._Solve.test))
+    monkeypatch.setattr(fem.solver.newton._Solve, "test", _one_norm(fem.solver.newton._Solve.test))
     result = solve("floor-0.01")
     assert result.status == "failed"
-    assert fem.march.CREEPS in result.reason
+    assert fem.march.march.CREEPS in result.reason
 
 
 def _one_norm(test: Callable[..., int]) -> Callable[..., int]:
@@ -95,7 +95,7 @@ def _one_norm(test: Callable[..., int]) -> Callable[..., int]:
 
 def test_forces_are_measured_by_those_before(monkeypatch: Patch) -> None:
     """Back at no load there is no force to be measured by: before, 'no convergence'."""
-    monkeypatch.setattr(fem.newton, "FADED", 0.0)
+    monkeypatch.setattr(fem.solver.newton, "FADED", 0.0)
     done = unloaded(find("unloaded"), "section")
     assert done.run["status"] == "failed"
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from fiberbend.snapshot import Scenery, Snapshot
-from geometry.dimensions import Actuator
-from geometry.embed import embed
-from geometry.mesh import Floats
-from geometry.size import MeshSize
-from geometry.sweep import swept_body
-from geometry.winding import Winding
+from fiberbend.states.snapshot import Scenery, Snapshot
+from geometry.actuator import Actuator
+from geometry.bodies.extrude import swept_body
+from geometry.mesh.data import Floats
+from geometry.sections.size import MeshSize
+from geometry.winding.embed import embed
+from geometry.winding.helix import Winding
 from materials.laws import Material
 
 BASELINE = Actuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
@@ -30,7 +30,7 @@ def scenery(
     width: float = 0.38,
 ) -> Scenery:
     """The actuator with its double helix at a pitch of 3 mm."""
-    from geometry.tets import to_tetrahedra
+    from geometry.mesh.tets import to_tetrahedra
 
     mesh = swept_body(actuator, MeshSize(axial=axial, half=half))
     if element == "tetrahedron":

@@ -11,10 +11,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fiberbend.overlay import MODELS, Line, Overlay, Points
-from fiberbend.page import figure
-from fiberbend.plots import SIZE, plot_pressure_angle, plot_tip_force
-from fiberbend.plots_labels import Labels, _overlap, _within
+from fiberbend.drawing.curves import SIZE, plot_pressure_angle, plot_tip_force
+from fiberbend.drawing.labels import Labels, _overlap, _within
+from fiberbend.drawing.overlay import (
+    MODELS,
+    Line,
+    Overlay,
+    Points,
+)
+from fiberbend.drawing.page import figure
 from tests.output.test_pictures import is_drawn
 
 LABELS = ("section model", "analytic (own rubber)", "analytic (area to winding)", "analytic (μ̄)")
@@ -33,7 +38,7 @@ class Watched(Labels):
 
 @pytest.fixture
 def watched(monkeypatch: pytest.MonkeyPatch) -> type[Watched]:
-    monkeypatch.setattr("fiberbend.plots.Labels", Watched)
+    monkeypatch.setattr("fiberbend.drawing.curves.Labels", Watched)
     return Watched
 
 

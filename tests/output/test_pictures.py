@@ -11,13 +11,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fiberbend.page import nice_above
-from fiberbend.pictures import SIZE, draw_pictures
-from fiberbend.plots import Row, draw_plots, plot_tip_force
-from fiberbend.props import Props
-from fiberbend.snapshot import Write
-from fiberbend.stage import FROM_THE_SIDE, Layer, PictureError, Stage, frame
-from fiberbend.surface import Tessellation, boundary_facets
+from fiberbend.drawing.body import SIZE, draw_pictures
+from fiberbend.drawing.curves import Row, draw_plots, plot_tip_force
+from fiberbend.drawing.page import nice_above
+from fiberbend.drawing.props import Props
+from fiberbend.drawing.stage import (
+    FROM_THE_SIDE,
+    Layer,
+    PictureError,
+    Stage,
+    frame,
+)
+from fiberbend.drawing.tessellation import Tessellation, boundary_facets
+from fiberbend.states.snapshot import Write
 from geometry.checks import region_volumes
 from tests.output.bending import scenery, snapshot
 

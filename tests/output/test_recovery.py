@@ -7,11 +7,16 @@ import dataclasses
 import numpy as np
 import pytest
 
-from fiberbend.recovery import NodalFields, cauchy_stress, recover, split_nodes
-from fiberbend.snapshot import Scenery, Snapshot
-from geometry.mesh import Floats
-from geometry.shapes import box
-from geometry.tets import to_tetrahedra
+from fiberbend.states.recovery import (
+    NodalFields,
+    cauchy_stress,
+    recover,
+    split_nodes,
+)
+from fiberbend.states.snapshot import Scenery, Snapshot
+from geometry.bodies.solids import box
+from geometry.mesh.data import Floats
+from geometry.mesh.tets import to_tetrahedra
 from materials.laws import Material, uniaxial_stress
 from tests.output.bending import SHORT, scenery, snapshot
 

@@ -13,21 +13,21 @@ import numpy as np
 import pytest
 
 from analytic.path import tip
-from fiberbend.bend import Bend
-from fiberbend.cell_pictures import Slices, plot_tension, tension_along
-from fiberbend.crosscut import Crosscut
-from fiberbend.reader import parse_case
-from fiberbend.recovery import cauchy_stress, recover
-from fiberbend.runfolder import RunFolder
-from fiberbend.section_pictures import Sections
-from fiberbend.snapshot import Scenery
-from fiberbend.stack import repeated, split_alike, swept
-from fiberbend.uniform_report import draw_states
+from fiberbend.drawing.cell import Slices, plot_tension, tension_along
+from fiberbend.drawing.crosscut import Crosscut
+from fiberbend.drawing.section import Sections
+from fiberbend.reader.reader import parse_case
+from fiberbend.run.folder import RunFolder
+from fiberbend.run.uniform_report import draw_states
+from fiberbend.states.bend import Bend
+from fiberbend.states.recovery import cauchy_stress, recover
+from fiberbend.states.snapshot import Scenery
+from fiberbend.states.stack import repeated, split_alike, swept
+from geometry.bodies.extrude import swept_section
 from geometry.checks import region_volumes
-from geometry.embed import embed
-from geometry.mesh import Floats, MeshData
-from geometry.size import MeshSize
-from geometry.sweep import swept_section
+from geometry.mesh.data import Floats, MeshData
+from geometry.sections.size import MeshSize
+from geometry.winding.embed import embed
 from materials.laws import Material, uniaxial_stress
 from tests.output.bending import MATERIALS, SHORT
 from tests.output.test_pictures import is_drawn

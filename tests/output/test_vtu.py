@@ -11,10 +11,15 @@ import numpy as np
 import pytest
 import pyvista as pv
 
-from fiberbend.fiberlines import fiber_lines
-from fiberbend.vtu import body_grid, write_fields, write_grid, write_series
+from fiberbend.states.fiber_lines import fiber_lines
+from fiberbend.states.paraview import (
+    body_grid,
+    write_fields,
+    write_grid,
+    write_series,
+)
 from geometry.checks import region_volumes
-from geometry.reference import cell_rule
+from geometry.mesh.reference import cell_rule
 from tests.output.bending import SHORT, bent, scenery, snapshot
 
 ELEMENTS = {"hexahedron": 29, "tetrahedron": 24}

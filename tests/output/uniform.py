@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fiberbend.snapshot import Scenery, Snapshot
-from geometry.embed import embed, smear
-from geometry.mesh import Floats
-from geometry.size import MeshSize
-from geometry.sweep import swept_section, swept_slice
-from geometry.winding import Winding
+from fiberbend.states.snapshot import Scenery, Snapshot
+from geometry.bodies.extrude import swept_section, swept_slice
+from geometry.mesh.data import Floats
+from geometry.sections.size import MeshSize
+from geometry.winding.embed import embed, smear
+from geometry.winding.helix import Winding
 from tests.output.bending import MATERIALS, SHORT
 
 PITCH = 3.0

@@ -6,13 +6,13 @@ from typing import Any
 
 import pytest
 
-from fem.domain import Domain
+from fem.kinematics.domain import Domain
 from fem.scene import Scene
-from fiberbend import bridge
-from fiberbend.reader import as_case
-from fiberbend.registry import build
-from geometry.mesh import MeshData
-from geometry.sweep import swept_body
+from fiberbend.case import convert
+from fiberbend.models.parts import build
+from fiberbend.reader.reader import as_case
+from geometry.bodies.extrude import swept_body
+from geometry.mesh.data import MeshData
 from tests.run.conftest import small
 
 DENSE = {
@@ -40,9 +40,9 @@ def mesh() -> MeshData:
     case = as_case(small(effects=[{"pressure": {"to": "1 kPa"}}, {"blocked-tip": {}}]))
     tip = case.effects[1]
     return swept_body(
-        bridge.dimensions(case.actuator),
-        bridge.mesh_size(case.mesh, True),
-        bridge.strips(tip),  # type: ignore[arg-type]
+        convert.dimensions(case.actuator),
+        convert.mesh_size(case.mesh, True),
+        convert.strips(tip),  # type: ignore[arg-type]
     )
 
 

@@ -15,13 +15,23 @@ import numpy as np
 import pytest
 import yaml
 
-from fiberbend.analytic_curves import analytic_curves, assumptions, face_height, no_analytic
-from fiberbend.analytic_run import run_analytic
-from fiberbend.case import Case
-from fiberbend.progress import Progress
-from fiberbend.reader import parse_case
-from fiberbend.result import RunResult
-from fiberbend.runfolder import HISTORY_COLUMNS, RUN_KEYS, RunFolder, read_history
+from fiberbend.case.case import Case
+from fiberbend.models.closed_form import (
+    analytic_curves,
+    assumptions,
+    face_height,
+    no_analytic,
+)
+from fiberbend.models.result import RunResult
+from fiberbend.reader.reader import parse_case
+from fiberbend.run.analytic import run_analytic
+from fiberbend.run.folder import (
+    HISTORY_COLUMNS,
+    RUN_KEYS,
+    RunFolder,
+    read_history,
+)
+from fiberbend.run.progress import Progress
 from materials.laws import Material
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from fiberbend.cli import main
-from fiberbend.reader import read_case
-from fiberbend.runfolder import read_history
-from fiberbend.runner import run_case
+from fiberbend.reader.reader import read_case
+from fiberbend.run.folder import read_history
+from fiberbend.run.runner import run_case
 
 ROOT = Path(__file__).resolve().parents[2]
 HOOPS = ["--set", "effects.1={hoops: {}}"]

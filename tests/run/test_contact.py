@@ -10,15 +10,15 @@ import numpy.typing as npt
 import pytest
 from mpi4py import MPI
 
-from fem.newton import Outcome
-from fem.program import Ramp, State
+from fem.march.records import Ramp, State
+from fem.solver.newton import Outcome
 from fiberbend import run
-from fiberbend.assembly import assemble
-from fiberbend.models import make_mesh
-from fiberbend.problems import CaseError
-from fiberbend.reader import as_case
-from fiberbend.runfolder import read_history
-from fiberbend.runner import RunResult
+from fiberbend.models.kinds import make_mesh
+from fiberbend.reader.reader import as_case
+from fiberbend.run.assembly import assemble
+from fiberbend.run.folder import read_history
+from fiberbend.run.runner import RunResult
+from fiberbend.schema.problems import CaseError
 from tests.conftest import MpiRun
 from tests.run.conftest import small, write_case
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from fiberbend.cli import main
-from fiberbend.control_export import TABLE_ERROR, short_table, table_header
+from fiberbend.control.export import TABLE_ERROR, short_table, table_header
 
 ROOT = Path(__file__).resolve().parents[2]
 BASELINE = str(ROOT / "cases" / "free_bending.yaml")
@@ -138,7 +138,7 @@ def test_the_header_states_the_error_against_the_model(folder: Path) -> None:
 
 def test_titles_cannot_leave_the_comment() -> None:
     from analytic.bending import Hemicircle
-    from analytic.filter import AngleFilter
+    from analytic.control.filter import AngleFilter
 
     table = short_table(AngleFilter.from_model(Hemicircle(8, 2, 2, 160)), 0.2)
     header = table_header(table, "θ */ int x;\nµ", "eq. (19), μ̄ = 0.2 ± 0.1 MPa")

@@ -19,16 +19,21 @@ from scipy.interpolate import CubicSpline
 
 from analytic.bending import Hemicircle
 from analytic.stress import effective
-from fiberbend.analytic_curves import analytic_curves
-from fiberbend.case import Case
-from fiberbend.crosscheck import Check, Comparison, band, crosscheck
-from fiberbend.crosscheck_models import Straight
-from fiberbend.crosscheck_run import check_run
-from fiberbend.curves import Curve
-from fiberbend.measured import Measured
-from fiberbend.reader import parse_case
-from fiberbend.result import RunResult
-from fiberbend.runner import run_case
+from fiberbend.case.case import Case
+from fiberbend.case.measured import Measured
+from fiberbend.compare.beside import check_run
+from fiberbend.compare.check import (
+    Check,
+    Comparison,
+    band,
+    crosscheck,
+)
+from fiberbend.compare.others import Straight
+from fiberbend.control.plant_curve import Curve
+from fiberbend.models.closed_form import analytic_curves
+from fiberbend.models.result import RunResult
+from fiberbend.reader.reader import parse_case
+from fiberbend.run.runner import run_case
 
 ROOT = Path(__file__).resolve().parents[2]
 ANGLES = (0.0, 20.0, 60.0, 90.0, 180.0, 270.0, 360.0)

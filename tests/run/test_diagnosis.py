@@ -6,9 +6,10 @@ from typing import Any
 
 import pytest
 
-from fem.program import Critical, Report
-from fiberbend import run, stability
-from fiberbend.runner import RunResult
+from fem.march.records import Critical, Report
+from fiberbend import run
+from fiberbend.run import messages
+from fiberbend.run.runner import RunResult
 from tests.run.conftest import small
 
 QUIET = {"pictures": False, "fields": False}
@@ -89,16 +90,16 @@ def _point(kind: str, value: float, before: int, after: int) -> Critical:
     ],
 )
 def test_a_critical_point_has_its_line(point: Critical, text: str) -> None:
-    (line,) = stability.remarks(Report(critical=[point]))
+    (line,) = messages.remarks(Report(critical=[point]))
     assert text in line
 
 
 def test_one_mode_less_of_several_is_no_news() -> None:
-    assert stability.remarks(Report(critical=[_point("bifurcation", 0.1, 3, 2)])) == []
+    assert messages.remarks(Report(critical=[_point("bifurcation", 0.1, 3, 2)])) == []
 
 
 def test_critical_points_are_those_of_the_whole_actuator() -> None:
     # half a body has half the chamber
-    (entry,) = stability.critical_points(Report(critical=[_point("limit", 0.02, 0, 1)]), copies=2)
+    (entry,) = messages.critical_points(Report(critical=[_point("limit", 0.02, 0, 1)]), copies=2)
     assert entry["chamber_mm3"] == 2000.0
     assert entry["pressure_kPa"] == pytest.approx(20.0)

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fem.measures import UniformAngle
+from fem.results.measures import UniformAngle
 from fiberbend import run
-from fiberbend.assembly import assemble
-from fiberbend.models import make_mesh
-from fiberbend.reader import as_case
-from fiberbend.runner import RunResult
+from fiberbend.models.kinds import make_mesh
+from fiberbend.reader.reader import as_case
+from fiberbend.run.assembly import assemble
+from fiberbend.run.runner import RunResult
 from tests.run.conftest import small
 
 WINDING = {

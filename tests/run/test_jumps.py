@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fiberbend import run
-from fiberbend.history import departures, work_of
+from fiberbend.run.history import departures, work_of
 from tests.hard.cases import find
 
 VOLUME = np.linspace(1.0, 4.0, 13)

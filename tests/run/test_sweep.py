@@ -23,12 +23,12 @@ import yaml
 
 from fem import compat
 from fiberbend import run
-from fiberbend.sweep import run_sweep
-from fiberbend.sweep_fields import Column
-from fiberbend.sweep_points import read_sweep
-from fiberbend.sweep_store import MARK, Store
-from fiberbend.sweep_table import where
-from fiberbend.sweep_trends import groups, sign
+from fiberbend.sweep.command import run_sweep
+from fiberbend.sweep.fields import Column
+from fiberbend.sweep.points import read_sweep
+from fiberbend.sweep.store import MARK, Store
+from fiberbend.sweep.table import where
+from fiberbend.sweep.trends import groups, sign
 
 ROOT = Path(__file__).resolve().parents[2]
 SWEEP: dict[str, Any] = {
@@ -57,7 +57,7 @@ ACTS = dict(item.split("=", 1) for item in os.environ["FAKE"].split() if "=" in 
 
 def run_case(case, out, overwrite=False, progress=None, resume=False):
     from fiberbend.result import RunResult
-    from fiberbend.runfolder import RunFolder
+    from fiberbend.run.folder import RunFolder
     folder = RunFolder.resume(out, case) if resume else RunFolder.create(out, case, overwrite)
     with open(os.environ["FAKE_LOG"], "a") as log:
         log.write(f"{out.name} {os.getpid()} {'resumed' if resume else 'fresh'}\\n")
@@ -81,9 +81,9 @@ def run_case(case, out, overwrite=False, progress=None, resume=False):
     folder.write_run(**run)
     return RunResult(status, reason, rows, run, out)
 
-module = types.ModuleType("fiberbend.runner")
+module = types.ModuleType("fiberbend.run.runner")
 module.run_case = run_case
-sys.modules["fiberbend.runner"] = module
+sys.modules["fiberbend.run.runner"] = module
 '''
 
 

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fem.guide import Guide
-from fiberbend import run, runner
+from fem.march.guide import Guide
+from fiberbend import run
+from fiberbend.run import runner
 from tests.run.conftest import small
 
 LONG: dict[str, Any] = {

@@ -9,14 +9,14 @@ import numpy as np
 from mpi4py import MPI
 
 from analytic.exact import Tube, wound_tube
-from fem.domain import Domain
 from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.elastic import Elastic
 from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Symmetry
 from fem.effects.winding import Winding
-from fem.newton import Newton, Settings
+from fem.kinematics.domain import Domain
 from fem.scene import Scene
+from fem.solver.newton import Newton, Settings
 from tests.verify.hoops import double_helix, half_tube
 from tests.verify.ladder import YEOH, balanced_pressure, end_load, start_from
 from tests.verify.problems import ORIGIN, SLOPE

@@ -6,11 +6,23 @@ import math
 
 import numpy as np
 
-from geometry.blocks import Layout
-from geometry.embed import EmbeddedFibers
-from geometry.mesh import FACET_VERTICES, Floats, Ints, MeshData, reference_nodes, vertex_positions
-from geometry.reference import area_vectors, facet_rule, gauss, jacobians
-from geometry.shapes import prism
+from geometry.bodies.solids import prism
+from geometry.mesh.data import (
+    FACET_VERTICES,
+    Floats,
+    Ints,
+    MeshData,
+    reference_nodes,
+    vertex_positions,
+)
+from geometry.mesh.reference import (
+    area_vectors,
+    facet_rule,
+    gauss,
+    jacobians,
+)
+from geometry.sections.blocks import Layout
+from geometry.winding.embed import EmbeddedFibers
 
 
 def half_tube(

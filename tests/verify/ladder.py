@@ -13,15 +13,15 @@ import ufl
 from mpi4py import MPI
 
 from fem import compat
-from fem.domain import Domain
-from fem.effect import Effect
+from fem.effects.effect import Effect
 from fem.effects.elastic import Elastic
 from fem.effects.incompressible import Incompressible
-from fem.newton import Newton, Outcome, Settings
+from fem.kinematics.domain import Domain
 from fem.scene import Scene
-from geometry.mesh import MeshData
-from geometry.reference import cell_rule, jacobians
-from geometry.tets import to_tetrahedra
+from fem.solver.newton import Newton, Outcome, Settings
+from geometry.mesh.data import MeshData
+from geometry.mesh.reference import cell_rule, jacobians
+from geometry.mesh.tets import to_tetrahedra
 
 Floats = npt.NDArray[np.float64]
 YEOH = {"c1": 0.11, "c2": 0.02}

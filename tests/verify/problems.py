@@ -8,15 +8,15 @@ from typing import ClassVar
 import numpy as np
 
 from analytic.exact import Flexure, Torsion, Tube, closed_tube, wound_tube, yeoh_slope
-from fem.domain import Domain
-from fem.effect import Effect
 from fem.effects.chamber_pressure import ChamberPressure
+from fem.effects.effect import Effect
 from fem.effects.supports import Symmetry
 from fem.effects.winding import SmearedWinding
-from fem.newton import Newton, Outcome
+from fem.kinematics.domain import Domain
 from fem.scene import Scene
-from geometry.mesh import MeshData
-from geometry.shapes import box, cylinder, tube_sector
+from fem.solver.newton import Newton, Outcome
+from geometry.bodies.solids import box, cylinder, tube_sector
+from geometry.mesh.data import MeshData
 from tests.verify.hoops import hoops
 from tests.verify.ladder import (
     YEOH,

@@ -10,19 +10,24 @@ import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
 
-from fem.domain import Domain
-from fem.effect import Effect
+from fem.effects.effect import Effect
 from fem.effects.elastic import Elastic
 from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Symmetry, TwofoldAxis
-from fem.march import March
-from fem.newton import Newton, Settings
-from fem.program import Ramp, Rules, State
+from fem.kinematics.domain import Domain
+from fem.kinematics.uniform import (
+    CURVATURE,
+    STRETCH,
+    TWIST,
+    Section,
+)
+from fem.march.march import March
+from fem.march.records import Ramp, Rules, State
 from fem.scene import Scene
-from fem.uniform import CURVATURE, STRETCH, TWIST, Section
-from geometry.dimensions import Actuator
-from geometry.size import MeshSize
-from geometry.sweep import swept_section
+from fem.solver.newton import Newton, Settings
+from geometry.actuator import Actuator
+from geometry.bodies.extrude import swept_section
+from geometry.sections.size import MeshSize
 
 Floats = npt.NDArray[np.float64]
 Law = dict[str, float]

@@ -13,13 +13,13 @@ from analytic.exact import Torsion, closed_tube, yeoh_slope
 from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.supports import HeldStraight
 from fem.effects.winding import SmearedWinding
-from fem.newton import Newton, Settings
-from fem.program import Ramp
+from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
+from fem.march.records import Ramp
 from fem.scene import Scene
-from fem.uniform import CURVATURE, STRETCH, TWIST
-from geometry.dimensions import Actuator
-from geometry.embed import smear
-from geometry.winding import PATTERNS, Winding
+from fem.solver.newton import Newton, Settings
+from geometry.actuator import Actuator
+from geometry.winding.embed import smear
+from geometry.winding.helix import PATTERNS, Winding
 from tests.verify.helix_tube import HelixTube
 from tests.verify.ladder import YEOH
 from tests.verify.uniform import (

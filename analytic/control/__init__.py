@@ -1,0 +1,1 @@
+"""The feedback loop of the paper's section VI."""

@@ -1,0 +1,111 @@
+"""What an effect may give to a scene."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any, ClassVar, Protocol
+
+import numpy as np
+import numpy.typing as npt
+from petsc4py import PETSc
+
+from fem.kinematics.kinematics import Kinematics
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclasses.dataclass(frozen=True)
+class Constraint:
+    """A displacement component held at a value on a named surface.
+
+    Attributes:
+        name: what holds it; reactions are reported under this name.
+        surface: named surface of the mesh.
+        component: 0, 1 or 2.
+        value: mm.
+    """
+
+    name: str
+    surface: str
+    component: int
+    value: float = 0.0
+
+
+class Discrete(Protocol):
+    """A potential with its own energy, vector and matrix instead of a UFL density.
+
+    Attributes:
+        index: global number of every piece that this rank holds, (n,); what it remembers of a
+            step is one value a piece.
+    """
+
+    index: npt.NDArray[np.int64]
+
+    def update(self, w: Floats) -> None:
+        """Take the local coefficients (owned and ghosts) of the fields as the present state."""
+
+    def energy(self) -> float:
+        """This rank's energy, N mm."""
+
+    def add_residual(self, b: Floats) -> None:
+        """Add ∂Π/∂w to local coefficients (owned and ghosts)."""
+
+    def add_noise(self, b: Floats) -> None:
+        """Add the least forces that double precision resolves, at rest, to local coefficients."""
+
+    def add_tangent(self, matrix: PETSc.Mat, free: npt.NDArray[np.bool_]) -> None:
+        """Add ∂²Π/∂w² on the free local dofs."""
+
+    def predict(
+        self, correction: Floats | None, scalars: Mapping[str, float] | None = None
+    ) -> None:
+        """Take Newton's last correction, which the next tangent may use; None: none yet."""
+
+    def conjugate(self, name: str) -> float:
+        """This rank's −∂Π/∂q of a global scalar; zero where it does not enter."""
+
+    def add_load(self, name: str, b: Floats) -> None:
+        """Add ∂²Π/∂w∂q of a global scalar to local coefficients (owned and ghosts)."""
+
+    def corner(self, first: str, second: str) -> float:
+        """This rank's ∂²Π/∂q∂r of two global scalars."""
+
+    def state(self) -> dict[str, Floats]:
+        """What a converged step must remember, this rank's part."""
+
+    def extrapolate(self, states: list[dict[str, Floats]], weights: Floats) -> None:
+        """Start a step from a weighted sum of remembered states."""
+
+
+class Effect:
+    """One summand Π_e of the scene's potential; a subclass gives only the parts it has.
+
+    Attributes:
+        fields: names of the fields it needs.
+        outside: its forces act from outside, as a support's do; they have a resultant.
+    """
+
+    fields: ClassVar[tuple[str, ...]] = ("u",)
+    outside: ClassVar[bool] = False
+
+    @property
+    def key(self) -> str:
+        """Name that sorts it within the scene and labels its energy."""
+        return type(self).__name__
+
+    def potential(self, body: Kinematics) -> Any:
+        """Its signed potential as a UFL form in N mm, or None."""
+        return None
+
+    def discrete(self, body: Kinematics) -> Discrete | None:
+        """Its signed potential as own code, or None."""
+        return None
+
+    def constraints(self) -> tuple[Constraint, ...]:
+        """Displacement components that it holds."""
+        return ()
+
+    def held_scalars(self) -> dict[str, float]:
+        """Natural unknowns of the kinematics, such as the curvature, that it holds at a value."""
+        return {}

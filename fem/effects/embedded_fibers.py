@@ -1,0 +1,285 @@
+"""Fibers embedded in the faces of solid elements: energy, force and tangent, vectorised."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from fem import compat
+from fem.kinematics.kinematics import Kinematics
+from geometry.mesh.data import facet_positions
+from geometry.winding.embed import EmbeddedFibers
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclasses.dataclass(frozen=True)
+class _Second:
+    """Second derivatives of s segments with k dofs each.
+
+    Attributes:
+        block: ∂²Π/∂w², (s, k, k).
+        borders: by scalar, ∂²Π/∂w∂q, (s, k).
+        corners: by pair of scalars, ∂²Π/∂q∂r of all segments together.
+    """
+
+    block: Floats
+    borders: dict[str, Floats]
+    corners: dict[tuple[str, str], float]
+
+
+def _contract(vectors: Floats, maps: Floats) -> Floats:
+    """Σ over points and components of vectors (n, q, 3) with maps (n, q, 3, k), (n, k)."""
+    count, width = len(maps), maps.shape[3]
+    result: Floats = (vectors.reshape(count, 1, -1) @ maps.reshape(count, -1, width))[:, 0]
+    return result
+
+
+def _cross(spin: Floats) -> Floats:
+    """The matrix of spin ×."""
+    x, y, z = spin
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+class FiberPotential:
+    """Π = Σ ½ EA ℓ e², e = λ_f − 1, λ_f the mean of |F T| over the points of a segment.
+
+    One strain a segment, because several would lock; every segment couples the dofs of one facet
+    only, so that the sparsity of the solid is kept.
+
+    The tangent's geometric part may use the force that Newton's last correction predicts,
+    EA (e + b·δu), instead of EA e: the converged state is the same, the iterations fewer. That is
+    not the tangent at the solution; `predict(None)` switches it off.
+
+    In uniform bending F T has a part T_z (λ0 e_z + ω × x') that depends on global scalars; the
+    derivatives with respect to these are `conjugate`, `add_load` and `corner`.
+
+    Args:
+        body: the kinematics.
+        segments: pieces of fiber; those of cells owned elsewhere are left out.
+        stiffness: axial stiffness EA of a whole fiber, N.
+        tension_only: slack fibers carry nothing.
+    """
+
+    def __init__(
+        self,
+        body: Kinematics,
+        segments: EmbeddedFibers,
+        stiffness: float,
+        tension_only: bool = False,
+    ) -> None:
+        self._body = body
+        domain = body.domain
+        local = domain.local_cell[segments.cell]
+        facets = len(facet_positions(domain.data.cell_type))
+        host = segments.cell * facets + segments.facet
+        mine = np.flatnonzero(local >= 0)
+        self.index = mine[np.argsort(host[mine], kind="stable")]
+        """Number within `segments` of every segment held here, (n,)."""
+        self.tension_only = tension_only
+        self.length = segments.length[self.index]
+        self.stiffness = stiffness * segments.share[self.index]
+        local, facet = local[self.index], segments.facet[self.index]
+        host = host[self.index]
+        self._start = np.flatnonzero(np.r_[True, host[1:] != host[:-1]][: len(host)])
+
+        positions = facet_positions(domain.data.cell_type)[facet]
+        count, quadrature = len(self.index), segments.weights.shape[1]
+        dim = segments.points.shape[2]
+        points = segments.points[self.index].reshape(-1, dim)
+        _, gradient = compat.tabulate_gradient(domain.data.cell_type, points)
+        tangent = segments.tangents[self.index].reshape(-1, dim)
+        along = np.einsum("pad,pd->pa", gradient, tangent).reshape(count, quadrature, -1)
+        along = np.take_along_axis(along, positions[:, None, :], axis=2)
+        self._dofs = body.cell_dofs[local[:, None], positions].reshape(count, -1)
+        cells = domain.data.cells[segments.cell[self.index, None], positions]
+        self._reference = domain.data.nodes[cells]
+        rise = segments.axial[self.index]
+        if self._reference.shape[2] == 3:
+            rise = np.einsum("nqa,na->nq", along, self._reference[:, :, 2])
+        plane = along @ self._reference[:, :, :2]
+        metric = np.sqrt(np.sum(plane**2, axis=2) + rise**2)
+        slope = along / metric[:, :, None]  # ∂φ_a/∂S, 1/mm
+        share = segments.weights[self.index] * metric
+        self._share = share / share.sum(axis=1, keepdims=True)
+        self._uniform = body.carry() is not None
+        parts = body.components
+        if self._uniform:
+            value, _ = compat.tabulate_gradient(domain.data.cell_type, points)
+            value = np.take_along_axis(
+                value.reshape(count, quadrature, -1), positions[:, None, :], axis=2
+            )
+            self._value = np.einsum("nqa,ij->nqiaj", value, np.eye(3)[:, :parts]).reshape(
+                count, quadrature, 3, -1
+            )
+            self._rise: Floats = (rise / metric)[:, :, None]
+        self._slope = np.einsum("nqa,ij->nqiaj", slope, np.eye(3)[:, :parts]).reshape(
+            count, quadrature, 3, -1
+        )
+        rest = np.zeros((*self._reference.shape[:2], parts))
+        # x' in the turning frame: z is not a position there
+        shown = 2 if self._uniform else 3
+        rest[:, :, :shown] = self._reference[:, :, :shown]
+        self._reference = rest.reshape(count, -1)
+        self._predicted: Floats | None = None
+        self._second: _Second | None = None
+        self.strain = np.zeros(count)
+
+    # --- state ---------------------------------------------------------------------------------
+
+    def update(self, w: Floats) -> None:
+        """Strain and its derivatives at the local coefficients w and the present scalars."""
+        x = self._reference + w[self._dofs]
+        self._map = self._slope
+        self._rates: dict[str, Floats] = {}
+        t = (self._slope @ x[:, None, :, None])[..., 0]
+        carry = self._body.carry()
+        if carry is not None:
+            position = (self._value @ x[:, None, :, None])[..., 0]
+            along, spin = np.array([0.0, 0.0, carry.stretch]), _cross(carry.spin)
+            t = t + self._rise * (along + position @ spin.T)
+            self._map = self._slope + self._rise[..., None] * (spin @ self._value)
+            for name, (vector, turn) in carry.rates.items():
+                self._rates[name] = self._rise * (vector + position @ _cross(turn).T)
+        self._stretch = np.linalg.norm(t, axis=2)
+        self._direction = t / self._stretch[:, :, None]
+        self.strain = np.sum(self._share * self._stretch, axis=1) - 1
+        weighted = self._share[:, :, None] * self._direction
+        self._b = _contract(weighted, self._map)
+        self._e_q = {
+            name: np.sum(weighted * rate, axis=(1, 2)) for name, rate in self._rates.items()
+        }
+        self._second = None
+
+    @property
+    def force(self) -> Floats:
+        """Axial force of every segment, N; zero where a tension-only fiber is slack."""
+        force: Floats = self.stiffness * self.strain
+        return np.maximum(force, 0) if self.tension_only else force
+
+    def energy(self) -> float:
+        """This rank's stored energy, N mm."""
+        return float(0.5 * np.sum(self.length * self.force * self.strain))
+
+    def force_range(self) -> tuple[float, float]:
+        """Least and greatest axial force over all ranks, N."""
+        comm = self._body.domain.comm
+        force = self.force
+        low = float(force.min()) if len(force) else np.inf
+        high = float(force.max()) if len(force) else -np.inf
+        return float(comm.allreduce(low, MPI.MIN)), float(comm.allreduce(high, MPI.MAX))
+
+    # --- first and second derivative ---------------------------------------------------------
+
+    def add_residual(self, b: Floats) -> None:
+        """Add ∂Π/∂w = Σ ℓ N ∂e/∂w to local coefficients."""
+        self._add(b, (self.length * self.force)[:, None] * self._b)
+
+    def add_noise(self, b: Floats) -> None:
+        """Add the forces that round-off in the strains makes, at rest, to local coefficients.
+
+        F T is a sum of positions over the size of an element: its error is that of the summands.
+        """
+        x = np.abs(self._reference)[:, None, :, None]
+        error = np.finfo(float).eps * np.linalg.norm((np.abs(self._slope) @ x)[..., 0], axis=2)
+        force = self.length * self.stiffness * np.sum(self._share * error, axis=1)
+        self._add(b, force[:, None] * np.abs(self._b))
+
+    def _add(self, b: Floats, values: Floats) -> None:
+        b += np.bincount(self._dofs.ravel(), values.ravel(), len(b))
+
+    def predict(
+        self, correction: Floats | None, scalars: Mapping[str, float] | None = None
+    ) -> None:
+        """Force EA (e + b·δw + e_q δq) from strain and gradient at the last tangent; None: EA e."""
+        self._second = None
+        if correction is None:
+            self._predicted = None
+            return
+        change = np.einsum("nk,nk->n", self._b, correction[self._dofs])
+        for name, value in (scalars or {}).items():
+            if name in self._e_q:
+                change += self._e_q[name] * value
+        self._predicted = self.stiffness * (self.strain + change)
+
+    def _second_derivatives(self) -> _Second:
+        """∂²Π of every segment in its own dofs and the scalars, at the present state."""
+        if self._second is not None:
+            return self._second
+        force, stiffness = self.force, self.stiffness
+        if self._predicted is not None:
+            force = np.maximum(self._predicted, 0) if self.tension_only else self._predicted
+        if self.tension_only:
+            stiffness = np.where(self.strain > 0, stiffness, 0.0)
+        n = self._direction
+        across = np.eye(3) - n[..., :, None] * n[..., None, :]
+        pull = self.length[:, None] * force[:, None] * self._share
+        across *= (pull / self._stretch)[..., None, None]
+        stiff = self.length * stiffness
+        side = across @ self._map
+        count, width = self._dofs.shape
+        block = self._map.reshape(count, -1, width).swapaxes(1, 2) @ side.reshape(count, -1, width)
+        block += stiff[:, None, None] * (self._b[:, :, None] * self._b[:, None, :])
+        borders: dict[str, Floats] = {}
+        corners: dict[tuple[str, str], float] = {}
+        carry = self._body.carry()
+        for name, rate in self._rates.items():
+            assert carry is not None
+            turned = self._rise[..., None] * (_cross(carry.rates[name][1]) @ self._value)
+            border = _contract(rate, side) + _contract(pull[:, :, None] * n, turned)
+            borders[name] = border + (stiff * self._e_q[name])[:, None] * self._b
+            for other, last in self._rates.items():
+                geometric = np.sum(rate * (across @ last[..., None])[..., 0])
+                material = np.sum(stiff * self._e_q[name] * self._e_q[other])
+                corners[name, other] = float(geometric + material)
+        self._second = _Second(block, borders, corners)
+        return self._second
+
+    def add_tangent(self, matrix: PETSc.Mat, free: npt.NDArray[np.bool_]) -> None:
+        """Add ∂²Π/∂w², summed facet by facet, on the free dofs."""
+        if not len(self._start):
+            return
+        sums = np.add.reduceat(self._second_derivatives().block, self._start, axis=0)
+        dofs = self._dofs[self._start]
+        keep = free[dofs].astype(float)
+        sums *= keep[:, :, None] * keep[:, None, :]
+        rows = dofs.astype(PETSc.IntType)
+        matrix.setValuesLocalRCV(rows, rows, sums, PETSc.InsertMode.ADD_VALUES)
+
+    # --- global scalars ------------------------------------------------------------------------
+
+    def conjugate(self, name: str) -> float:
+        """This rank's −∂Π/∂q of a global scalar; zero where it does not enter."""
+        if name not in self._e_q:
+            return 0.0
+        return -float(np.sum(self.length * self.force * self._e_q[name]))
+
+    def add_load(self, name: str, b: Floats) -> None:
+        """Add ∂²Π/∂w∂q to local coefficients (owned and ghosts)."""
+        if name in self._e_q:
+            self._add(b, self._second_derivatives().borders[name])
+
+    def corner(self, first: str, second: str) -> float:
+        """This rank's ∂²Π/∂q∂r of two global scalars."""
+        if first not in self._e_q or second not in self._e_q:
+            return 0.0
+        return self._second_derivatives().corners[first, second]
+
+    # --- memory of converged steps ---------------------------------------------------------
+
+    def state(self) -> dict[str, Floats]:
+        """Axial forces, from which the next step's first tangent is built."""
+        return {"force": self.stiffness * self.strain}
+
+    def extrapolate(self, states: list[dict[str, Floats]], weights: Floats) -> None:
+        """Predicted force from a weighted sum of remembered states."""
+        self._second = None
+        self._predicted = sum(
+            (weight * state["force"] for weight, state in zip(weights, states, strict=True)),
+            np.zeros(len(self.strain)),
+        )

@@ -1,0 +1,1 @@
+"""How positions follow from the unknowns."""

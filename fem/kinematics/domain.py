@@ -1,0 +1,125 @@
+"""A distributed mesh with the names of its regions and surfaces."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import ufl
+from mpi4py import MPI
+
+from fem import compat
+from geometry.mesh.data import MeshData, facet_positions
+
+QUADRATURE_DEGREE = {"quadrilateral": 5, "hexahedron": 5, "tetrahedron": 4}
+"""Three Gauss points a direction on bricks: exact for the volume of the quadratic chamber wall."""
+
+
+class Domain:
+    """A `MeshData` spread over the ranks of a communicator.
+
+    Every rank holds the whole `MeshData` and finds its part by input numbers, so that nothing is
+    ever located by coordinates.
+
+    Attributes:
+        data: the mesh as arrays.
+        comm: communicator.
+        mesh: the dolfinx mesh.
+        cells: input number of every local cell.
+        owned: number of cells this rank owns (they come first).
+        local_cell: local number of every input cell, -1 where it is not owned here.
+    """
+
+    def __init__(self, data: MeshData, comm: MPI.Comm = MPI.COMM_WORLD) -> None:
+        self.data = data
+        self.comm = comm
+        self.mesh = compat.create_mesh(comm, data.cell_type, data.nodes, data.cells)
+        self.cells = compat.input_cells(self.mesh)
+        self.owned = compat.owned_cells(self.mesh)
+        self.local_cell = np.full(len(data.cells), -1, dtype=np.int64)
+        self.local_cell[self.cells[: self.owned]] = np.arange(self.owned)
+        self._facet_tags, self._facet_ids = self._tag_facets()
+
+    def _tag_facets(self) -> tuple[Any, dict[str, tuple[int, ...]]]:
+        """Tag every boundary facet with its combination of names; a facet may have several."""
+        data = self.data
+        names: dict[tuple[int, int], tuple[str, ...]] = {}
+        for name in sorted(data.facets):
+            for cell, facet in data.facets[name].tolist():
+                names[cell, facet] = (*names.get((cell, facet), ()), name)
+        combinations = sorted(set(names.values()))
+        number = {combination: i + 1 for i, combination in enumerate(combinations)}
+        facets = compat.cell_facets(self.mesh)
+        tagged: dict[int, int] = {}
+        for (cell, facet), combination in names.items():
+            local = self.local_cell[cell]
+            if local >= 0:
+                tagged[int(facets[local, facet])] = number[combination]
+        tags = compat.meshtags(
+            self.mesh, self.mesh.topology.dim - 1, list(tagged), list(tagged.values())
+        )
+        ids = {
+            name: tuple(i for combination, i in number.items() if name in combination)
+            for name in data.facets
+        }
+        return tags, ids
+
+    @property
+    def degree(self) -> int:
+        """Quadrature degree of the measures."""
+        return QUADRATURE_DEGREE[self.data.cell_type]
+
+    def dx(self) -> Any:
+        """Measure of the whole body."""
+        return ufl.Measure("dx", domain=self.mesh, metadata={"quadrature_degree": self.degree})
+
+    def ds(self, name: str) -> Any:
+        """Measure of a named surface on the boundary.
+
+        Raises:
+            KeyError: the mesh has no surface of this name.
+        """
+        ids = self._facet_ids[name]
+        return ufl.Measure(
+            "ds",
+            domain=self.mesh,
+            subdomain_data=self._facet_tags,
+            subdomain_id=ids if len(ids) > 1 else ids[0],
+            metadata={"quadrature_degree": self.degree},
+        )
+
+    def cell_values(self, by_region: dict[str, float]) -> npt.NDArray[np.float64]:
+        """One value per local cell from a value per region; zero in regions not named.
+
+        Raises:
+            KeyError: the mesh has no such region.
+        """
+        table = np.zeros(max(self.data.regions.values()) + 1)
+        for region, value in by_region.items():
+            table[self.data.regions[region]] = value
+        return table[self.data.cell_region[self.cells]]
+
+    def surface_nodes(self, name: str) -> npt.NDArray[np.int64]:
+        """Input numbers of the nodes on a named surface, sorted."""
+        return np.unique(self.data.facet_nodes(name))
+
+    def surface_weights(self, name: str) -> npt.NDArray[np.float64]:
+        """Area weight of every input node, ∫ φ_a dA over a named surface, in mm²; (n,)."""
+        data = self.data
+        pairs = data.facets[name]
+        weights = np.zeros(len(data.nodes))
+        if not len(pairs):
+            return weights
+        for facet, positions in enumerate(facet_positions(data.cell_type)):
+            cells = pairs[pairs[:, 1] == facet, 0]
+            if not len(cells):
+                continue
+            points, quadrature, spans = compat.facet_quadrature(data.cell_type, facet, self.degree)
+            values, gradients = compat.tabulate_gradient(data.cell_type, points)
+            x = data.nodes[data.cells[cells]]
+            jacobian = np.einsum("cai,qad,de->cqie", x, gradients, spans, optimize=True)
+            area = np.linalg.norm(np.cross(jacobian[..., 0], jacobian[..., 1]), axis=-1)
+            part = np.einsum("cq,q,qa->ca", area, quadrature, values[:, positions])
+            np.add.at(weights, data.cells[cells][:, positions], part)
+        return weights

@@ -1,0 +1,219 @@
+"""Uniform bending: the section and the cell, whose neighbours along the axis are like them.
+
+Positions are components x' = (X + u, Y + v, w) in a frame that turns with the section at the rate
+ω = (k, 0, τ) and moves along its own z at the rate λ0. Then
+
+    F = ∇x' + (λ0 e_z + ω × x') ⊗ e_z,
+
+exact for a prismatic body that bends and twists uniformly. λ0 is the stretch at the pin, where
+v = 0 is held: without it v + c and λ0 − k c would be the same state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import ufl
+
+from fem.kinematics.domain import Domain
+from fem.kinematics.kinematics import Carry, Kinematics
+
+Floats = npt.NDArray[np.float64]
+
+CURVATURE, STRETCH, TWIST = "curvature", "stretch", "twist"
+AXES = {CURVATURE: 0, TWIST: 2}
+
+
+class Uniform(Kinematics):
+    """What section and cell share.
+
+    Args:
+        domain: the mesh.
+        fields: names of the fields that the effects ask for.
+        length: length L of the actuator between its caps, mm.
+        twisted: the winding may twist the body: τ, and w of a section, are unknowns.
+        components: number of displacement components.
+        extent: length along z of what is modelled, mm.
+
+    Attributes:
+        length: L, mm.
+        extent: length along z of what is modelled, mm.
+        twisted: τ is an unknown.
+    """
+
+    def __init__(
+        self,
+        domain: Domain,
+        fields: Iterable[str],
+        length: float,
+        twisted: bool,
+        components: int,
+        extent: float,
+    ) -> None:
+        super().__init__(domain, fields, components)
+        self.length, self.extent, self.twisted = length, extent, twisted
+        self.copies *= length / extent
+        self.natural = (CURVATURE, STRETCH, *((TWIST,) if twisted else ()))
+        self.pins = ((domain.data.points["pin"], 1),)
+        for name in self.natural:
+            self.scalar(name)
+        self.scalars[STRETCH].value = 1.0
+
+    def _spin(self) -> Any:
+        """ω as a UFL vector."""
+        zero = ufl.constantvalue.Zero()
+        return ufl.as_vector(
+            [self.scalar(CURVATURE), zero, self.scalar(TWIST) if self.twisted else zero]
+        )
+
+    def _relative(self) -> tuple[Any, Any]:
+        """x' and its gradient, 3×3."""
+        raise NotImplementedError
+
+    @property
+    def x(self) -> Any:
+        """Position in the turning frame, a UFL vector in mm."""
+        return self._relative()[0]
+
+    @property
+    def F(self) -> Any:
+        """Deformation gradient, a UFL 3×3 tensor, its rows in the turning frame."""
+        x, gradient = self._relative()
+        column = ufl.cross(self._spin(), x)
+        zero = ufl.constantvalue.Zero()
+        stretch = self.scalar(STRETCH)
+        along = [column[0], column[1], stretch + column[2]]
+        return gradient + ufl.as_matrix([[zero, zero, entry] for entry in along])
+
+    def volume_density(self, surface: str) -> Any:
+        """Density per reference area of the volume that a closed cavity surface encloses.
+
+        With g = λ0 e_z + ω × x', J = det ∇x' + (x'_X × x'_Y) · g. The first part is the divergence
+        of x'_1 times a row of the cofactor; g has no divergence and is the curl of
+        A = (−k |x'|²/2, λ0 x'_1, −τ |x'|²/2), so the second part is A along the wall's trace in
+        the section. N points out of the solid. Mirror planes and periodic ends add nothing.
+        """
+        x, gradient = self._relative()
+        normal = ufl.FacetNormal(self.domain.mesh)
+        along = ufl.dot(gradient, ufl.as_vector([-normal[1], normal[0], 0]))
+        square = ufl.dot(x, x) / 2
+        trace = self.scalar(STRETCH) * x[0] * along[1] - self.scalar(CURVATURE) * square * along[0]
+        if self.twisted:
+            trace -= self.scalar(TWIST) * square * along[2]
+        return -trace - self._bulge(x, gradient, normal)
+
+    def _bulge(self, x: Any, gradient: Any, normal: Any) -> Any:
+        """Flux of the first part; nothing where nothing depends on z."""
+        return ufl.constantvalue.Zero()
+
+    def size_of(self, scalar: str) -> float:
+        """A change of a natural scalar that strains like a stretch of one."""
+        height = float(np.ptp(self.domain.data.nodes[:, :2], axis=0).max())
+        return {STRETCH: 1.0}.get(scalar, 1 / height)
+
+    def carry(self) -> Carry:
+        """Stretch and spin at the present state."""
+        values = {name: float(self.scalars[name].value) for name in self.natural}
+        spin = np.zeros(3)
+        axes = np.eye(3)
+        rates = {STRETCH: (axes[2], np.zeros(3))}
+        for name, axis in AXES.items():
+            if name in values:
+                spin[axis] = values[name]
+                rates[name] = (np.zeros(3), axes[axis])
+        return Carry(values[STRETCH], spin, rates)
+
+
+class Section(Uniform):
+    """Nothing depends on z; a two-dimensional mesh, and forces per mm of length.
+
+    Args:
+        domain: mesh of quadrilaterals with the point "pin".
+        fields: names of the fields that the effects ask for.
+        length: L, mm.
+        twisted: τ and w(X, Y) join the unknowns.
+    """
+
+    def __init__(
+        self, domain: Domain, fields: Iterable[str], length: float, twisted: bool = False
+    ) -> None:
+        super().__init__(domain, fields, length, twisted, 3 if twisted else 2, extent=1.0)
+
+    def _relative(self) -> tuple[Any, Any]:
+        zero = ufl.constantvalue.Zero()
+        position, u = ufl.SpatialCoordinate(self.domain.mesh), self.u
+        rest = (position[0], position[1], zero)
+        x = [rest[i] + u[i] for i in range(self.components)]
+        slopes = [[ufl.grad(u)[i, j] for j in range(2)] for i in range(self.components)]
+        for i in range(2):
+            slopes[i][i] += 1
+        if not self.twisted:
+            x.append(zero)
+            slopes.append([zero, zero])
+        return ufl.as_vector(x), ufl.as_matrix([[*row, zero] for row in slopes])
+
+
+class Cell(Uniform):
+    """A slice that repeats along the axis, with every fiber in it; x' depends on z too.
+
+    Half a section is a slice between mirror planes. A whole section is a full pitch that repeats:
+    x' at its end is tied to x' at its start. Half a turn about the y axis through a point where a
+    fiber crosses x = 0 maps a helix onto itself, so that u = w = 0 there is no constraint, but
+    takes away what rigid motion is left.
+
+    Args:
+        domain: mesh of a slice from z = 0, with the points "pin" and "crown".
+        fields: names of the fields that the effects ask for.
+        length: L, mm.
+        twisted: τ is an unknown.
+    """
+
+    def __init__(
+        self, domain: Domain, fields: Iterable[str], length: float, twisted: bool = False
+    ) -> None:
+        extent = float(np.ptp(domain.data.nodes[:, 2]))
+        super().__init__(domain, fields, length, twisted, 3, extent)
+        data = domain.data
+        if not data.half:
+            if domain.comm.size > 1:
+                raise ValueError("a slice with tied ends is solved on one rank")
+            pin = data.points["pin"]
+            self.pins += ((pin, 0), (pin, 2), (data.points["crown"], 0))
+            start, end = (data.facet_nodes(name) for name in ("section_root", "section_tip"))
+            pairs = np.unique(np.column_stack([end.ravel(), start.ravel()]), axis=0)
+            self.ties = (self.node_dofs[pairs[:, 0]].ravel(), self.node_dofs[pairs[:, 1]].ravel())
+
+    def _relative(self) -> tuple[Any, Any]:
+        position, u = ufl.SpatialCoordinate(self.domain.mesh), self.u
+        x = ufl.as_vector([position[0] + u[0], position[1] + u[1], u[2]])
+        plane = ufl.as_matrix([[1, 0, 0], [0, 1, 0], [0, 0, 0]])
+        return x, plane + ufl.grad(u)
+
+    def _bulge(self, x: Any, gradient: Any, normal: Any) -> Any:
+        return x[0] * ufl.dot(ufl.cofac(gradient), normal)[0]
+
+
+class CurvatureAngle:
+    """θ = k L, a functional of the curvature alone.
+
+    Args:
+        body: kinematics of uniform bending.
+    """
+
+    def __init__(self, body: Uniform) -> None:
+        self._body = body
+
+    def value(self) -> float:
+        """At the present state, rad."""
+        return float(self._body.scalars[CURVATURE].value) * self._body.length
+
+    def row(self) -> Floats:
+        """∂θ/∂w on the owned dofs: none."""
+        return np.zeros(self._body.owned)
+
+    def slope(self, scalar: str) -> float:
+        """∂θ/∂q of a global scalar."""
+        return self._body.length if scalar == CURVATURE else 0.0

@@ -1,0 +1,146 @@
+"""States of a scene at equilibrium: captured, put back, found under a load, and judged."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fem import compat
+from fem.march.frames import Frames
+from fem.march.predictor import Predictor
+from fem.march.records import (
+    MODES,
+    Functional,
+    State,
+    measure,
+)
+from fem.scene import Scene
+from fem.solver.border import Closure
+from fem.solver.closures import Conjugate, Stationary, Target
+from fem.solver.newton import Newton, Outcome
+
+TINY = 1e-5
+"""Strain to a neighbour that shows a slope: its square is lost, round-off is not seen."""
+
+
+class Equilibrium:
+    """A scene and what finds its equilibria.
+
+    Args:
+        scene: the scene.
+        newton: its solver.
+        frames: rod frames; None where the kinematics turns by itself.
+        followed: functional that requests refer to (the bending angle), or None.
+    """
+
+    def __init__(
+        self, scene: Scene, newton: Newton, frames: Frames | None, followed: Functional | None
+    ) -> None:
+        self.scene, self.newton = scene, newton
+        self.followed = followed
+        self.predictor = Predictor(scene, frames)
+        self._frames = frames
+        comm, volumetric = scene.domain.comm, int(np.count_nonzero(scene.volumetric))
+        self._volumetric = int(compat.total(comm, volumetric))
+
+    def capture(self) -> State:
+        """The present state of the scene."""
+        scene = self.scene
+        scalars = {name: scene.scalar(name) for name in scene.body.scalars}
+        measures = {measure("value", name): value for name, value in scalars.items()}
+        for name in scalars:
+            if name not in scene.natural:  # there it is zero
+                measures[measure("conjugate", name)] = scene.conjugate(name)
+        if self.followed is not None:
+            measures["followed"] = self.followed.value()
+        return State(
+            w=scene.w.copy(),
+            scalars=scalars,
+            measures=measures,
+            shape=self._frames.fit(scene.body.displacement()) if self._frames else None,
+            discrete={key: item.state() for key, item in scene.discrete.items()},
+        )
+
+    def restore(self, state: State) -> None:
+        """Put the scene back to a captured state, exactly."""
+        for name, value in state.scalars.items():
+            self.scene.set_scalar(name, value)
+        self.scene.set(state.w)
+
+    def _natural(self) -> list[Stationary]:
+        """One equation for each natural scalar."""
+        return [Stationary(self.scene, name) for name in self.scene.natural]
+
+    def neighbour(self, base: State, scalar: str) -> State:
+        """A state near another along its linear response to a scalar; the scene is left at that."""
+        scene, body = self.scene, self.scene.body
+        self.restore(base)
+        for discrete in scene.discrete.values():
+            discrete.predict(None)
+        rate, natural = self.newton.response(scalar, scene.natural, self._natural())
+        nodal = body.with_ghosts(rate)[body.node_dofs[body.owned_nodes]]
+        top = float(np.max(np.abs(nodal), initial=0.0))
+        largest = max(scene.domain.comm.allgather(top)) / body.span
+        for name, value in natural.items():
+            largest = max(largest, abs(value) / body.size_of(name))
+        step = TINY / max(largest, 1e-300)
+        scene.set_scalar(scalar, base.scalars[scalar] + step)
+        for name, value in natural.items():
+            scene.set_scalar(name, base.scalars[name] + step * value)
+        scene.set(base.w + step * rate)
+        state = self.capture()
+        self.restore(base)
+        return state
+
+    def find(
+        self, scalar: str, kind: str, target: float, along: tuple[list[State], str, float]
+    ) -> Outcome:
+        """Predict and solve for one equilibrium.
+
+        Args:
+            scalar: the load that is driven.
+            kind: what is given: its 'value', its 'conjugate' or 'followed'.
+            target: what that is to be.
+            along: states from which the start is extrapolated, a measure and its value there.
+        """
+        start = self.predictor.start(*along)
+        unknown: list[str] = list(self.scene.natural)
+        closures: list[Closure] = list(self._natural())
+        if kind == "value":
+            self.scene.set_scalar(scalar, target)
+            return self.newton.solve(start, unknown, closures)
+        if kind == "conjugate":
+            closures.append(Conjugate(self.scene, scalar, target))
+        else:
+            assert self.followed is not None
+            closures.append(Target(self.followed, target))
+        return self.newton.solve(start, [*unknown, scalar], closures)
+
+    def judge(self, state: State, before: State, scalar: str) -> None:
+        """Write the stability of the state just found into its measures.
+
+        Unstable modes are the negative eigenvalues of the Hessian of the potential in all fields
+        and natural scalars, with the loads held at their values, whatever was given when the state
+        was found. d conjugate / d value is negative beyond a limit point; there, one of the modes
+        is gone where the conjugate is held instead.
+
+        Args:
+            state: the present state, found by the last solve.
+            before: the state before it.
+            scalar: the load that is driven.
+        """
+        rate = measure("rate", scalar)
+        state.measures[rate] = before.measures.get(rate, 1.0)
+        modes = self._modes()
+        if modes != before.measures.get(MODES, 0):
+            # not by an old factor, nor with forces that were predicted
+            near = self.neighbour(state, scalar)
+            modes = self._modes()
+            change = [
+                near.measures[name] - state.measures[name]
+                for name in (measure("conjugate", scalar), measure("value", scalar))
+            ]
+            state.measures[rate] = change[0] / change[1]
+        state.measures[MODES] = modes
+
+    def _modes(self) -> int:
+        return self.newton.negative_pivots(self.scene.natural) - self._volumetric

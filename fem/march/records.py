@@ -1,0 +1,203 @@
+"""What a march is told, what it remembers and what it reports."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from fem.march.frames import Shape
+
+if TYPE_CHECKING:
+    from fem.solver.newton import Outcome
+
+Floats = npt.NDArray[np.float64]
+
+
+MODES = "modes"
+"""Name of the measure that counts unstable modes."""
+
+
+class Functional(Protocol):
+    """A scalar measure with its gradient, such as the bending angle."""
+
+    def value(self) -> float:
+        """At the present state."""
+
+    def row(self) -> Floats:
+        """∂/∂w on the owned dofs."""
+
+    def slope(self, scalar: str) -> float:
+        """∂/∂q of a global scalar."""
+
+
+@dataclasses.dataclass
+class State:
+    """A converged state, this rank's part.
+
+    Attributes:
+        w: owned coefficients.
+        scalars: values of the global scalars.
+        measures: values that ramps and requests refer to, by name.
+        shape: rod description of the displacement; None where the kinematics turns by itself.
+        discrete: memory of the discrete potentials, by effect.
+    """
+
+    w: Floats
+    scalars: dict[str, float]
+    measures: dict[str, float]
+    shape: Shape | None
+    discrete: dict[str, dict[str, Floats]]
+
+
+@dataclasses.dataclass(frozen=True)
+class Ramp:
+    """One load: a scalar driven to a target, directly or through its conjugate.
+
+    Attributes:
+        scalar: name of the global scalar, such as 'pressure'.
+        target: its final value, or its conjugate's (the chamber volume).
+        drive: 'value'; 'conjugate' to find the scalar so that its conjugate follows the ramp; or
+            'followed' to find it so that the followed functional does.
+        first: first increment of the driven quantity; None: from the linear response.
+        largest: greatest increment; None: no limit but the convergence.
+        stops: values of the driven quantity to be hit exactly.
+        at: values of the followed functional to be hit exactly.
+        until: value of the followed functional at which the ramp ends; None: at the target.
+    """
+
+    scalar: str
+    target: float
+    drive: str = "value"
+    first: float | None = None
+    largest: float | None = None
+    stops: tuple[float, ...] = ()
+    at: tuple[float, ...] = ()
+    until: float | None = None
+
+    @property
+    def key(self) -> str:
+        """Name of the measure that it drives."""
+        return measure(self.drive, self.scalar)
+
+
+def measure(kind: str, scalar: str) -> str:
+    """Name of what is driven: 'followed', or the value or the conjugate of a scalar."""
+    return kind if kind == "followed" else f"{kind} {scalar}"
+
+
+@dataclasses.dataclass(frozen=True)
+class Rules:
+    """Incrementation as in Abaqus and CalculiX.
+
+    Attributes:
+        easy: iterations up to which the next increment grows by `grow`.
+        slow: iterations from which it shrinks by `shrink`.
+        cut: factor after a failed increment.
+        cutbacks: consecutive failed increments after which the march gives up; on a falling
+            branch beyond a limit point, which only explains why a load is not reached, all of them.
+        turn: greatest change of the followed functional an increment may aim at.
+        first_turn: the same for an increment from the linear response.
+        memory: states from which the next is extrapolated: 3 on a smooth path, more where steps are
+            short; 2 where kinks are to be expected, across which a parabola misleads and foresees
+            limit points.
+        least: least increment after a failure, relative to the whole ramp; after slow convergence
+            also to the ramp's first.
+        jump: how much further, in units of the step that was expected, the conjugate may go in an
+            increment of the value; beyond it Newton may have found another branch.
+        swell: greatest relative change of the conjugate in an increment that drives it in place
+            of the value.
+        beyond: how far beyond a limit point a falling branch is followed, as a factor of the
+            conjugate.
+    """
+
+    easy: int = 5
+    grow: float = 1.5
+    slow: int = 8
+    shrink: float = 0.6
+    cut: float = 0.25
+    cutbacks: int = 6
+    turn: float = np.deg2rad(60.0)
+    first_turn: float = np.deg2rad(20.0)
+    memory: int = 3
+    least: float = 1e-5
+    jump: float = 2.0
+    swell: float = 0.3
+    beyond: float = 4.0
+
+
+@dataclasses.dataclass(frozen=True)
+class Critical:
+    """Where a body loses its stability, or gains it back, with all loads held.
+
+    Attributes:
+        kind: 'limit': a load that is driven has a greatest or a least value here, and the mode is
+            gone where its conjugate is held instead; 'bifurcation': another branch starts here, and
+            the mode is there however the load is driven.
+        scalar: the load that is driven.
+        value: its value, interpolated at a limit; that of the first state beyond a bifurcation.
+        conjugate: its conjugate there, such as the chamber volume.
+        followed: the followed functional there, if there is one.
+        before: unstable modes before it.
+        after: unstable modes beyond it.
+    """
+
+    kind: str
+    scalar: str
+    value: float
+    conjugate: float
+    followed: float | None
+    before: int
+    after: int
+
+
+@dataclasses.dataclass
+class Report:
+    """How a march ended.
+
+    Attributes:
+        status: 'converged'; 'stopped' where the load cannot be reached; or 'failed'.
+        reason: why not converged, or empty.
+        steps: converged increments.
+        iterations: Newton iterations, failed increments included.
+        factorisations: tangents factorised for them.
+        cutbacks: failed increments.
+        per_step: iterations of each converged increment.
+        critical: where stability was lost or gained, in the order of the march.
+        self_contact: measures where the body begins to pass through itself; None: it does not.
+        detour: the ramp under way has turned from the value of its scalar to the conjugate.
+    """
+
+    status: str = "converged"
+    reason: str = ""
+    steps: int = 0
+    iterations: int = 0
+    factorisations: int = 0
+    cutbacks: int = 0
+    per_step: list[int] = dataclasses.field(default_factory=list)
+    critical: list[Critical] = dataclasses.field(default_factory=list)
+    self_contact: dict[str, float] | None = None
+    detour: bool = False
+
+    def __post_init__(self) -> None:
+        # a checkpoint gives back mappings
+        self.critical = [c if isinstance(c, Critical) else Critical(**c) for c in self.critical]
+
+
+class Causes(Protocol):
+    """Tells what fails physically; it knows the effects, the march does not."""
+
+    def inverted(self) -> str:
+        """Where an element is turned inside out at the present iterate; empty where none is."""
+
+    def explain(
+        self,
+        states: list[State],
+        rest: State,
+        critical: list[Critical],
+        outcome: Outcome,
+        inverted: str,
+    ) -> str:
+        """The reason of a failure in words; collective."""

@@ -1,0 +1,211 @@
+"""Whether a bent body passes through itself, from its stations alone."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from fem.kinematics.kinematics import Kinematics
+from fem.kinematics.uniform import (
+    CURVATURE,
+    STRETCH,
+    TWIST,
+    Uniform,
+)
+from fem.march.frames import Frames, Shape
+from fem.march.records import State
+
+Floats = npt.NDArray[np.float64]
+
+DIRECTIONS = 24
+"""Sides of the polygon that stands for a section's outline."""
+HALVINGS = 20
+"""Halvings of an increment in which the first contact lies."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Pose:
+    """A body in space as n sections, each a convex polygon of `DIRECTIONS` sides.
+
+    Attributes:
+        z: reference positions along the axis, mm, rising, (n,).
+        centre: deformed positions of the axis point (0, 0, z), mm, (n, 3).
+        rotation: of the sections, (n, 3, 3).
+        reach: greatest n · x over a section's own frame for every direction n, mm, (n, m).
+    """
+
+    z: Floats
+    centre: Floats
+    rotation: Floats
+    reach: Floats
+
+
+def directions() -> Floats:
+    """Normals of a polygon's sides, (m, 2)."""
+    angle = 2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
+    return np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def _corners(reach: Floats) -> Floats:
+    """Corners of the polygons, (n, m, 2): where a side meets the next one."""
+    normal, step = directions(), 2 * np.pi / DIRECTIONS
+    along = (np.roll(reach, -1, axis=1) - reach * np.cos(step)) / np.sin(step)
+    tangent = np.column_stack([-normal[:, 1], normal[:, 0]])
+    corners: Floats = reach[:, :, None] * normal + along[:, :, None] * tangent
+    return corners
+
+
+def clearance(pose: Pose, most: float = np.inf) -> float:
+    """Least distance of a body's sections from its slices elsewhere, mm; negative: inside.
+
+    A slice lies between two neighbouring sections. Distances are those from planes: exact where
+    bodies touch, too small far away; none is reported beyond the size of a section. Sections
+    closer along the axis than one and a half times that size are neighbours, and not compared.
+
+    Args:
+        pose: the body.
+        most: mm; greater distances are reported as this one, and cost less.
+    """
+    corners = _corners(pose.reach)
+    size = float(np.ptp(corners, axis=1).max())
+    turned = np.einsum("nab,nmb->nma", pose.rotation[:, :, :2], corners)
+    points = pose.centre[:, None] + turned
+    radius = np.linalg.norm(corners, axis=2).max()
+    middles = points.mean(axis=1)
+    wide = np.linalg.norm(points - middles[:, None], axis=2).max(axis=1)
+    slices, halves = (middles[1:] + middles[:-1]) / 2, np.maximum(wide[1:], wide[:-1])
+    halves = halves + np.linalg.norm(np.diff(middles, axis=0), axis=1) / 2
+    between = np.linalg.norm(middles[:, None] - slices, axis=2) - wide[:, None] - halves
+    far = np.abs(pose.z[:, None] - (pose.z[1:] + pose.z[:-1]) / 2) > 1.5 * size
+    least = min(size, most)
+    # balls around section and slice are apart: a bound that most pairs pass
+    candidates = far & (between < least)
+    for j in np.flatnonzero(candidates.any(axis=0)):
+        some = points[candidates[:, j]].reshape(-1, 3)
+        below = (some - pose.centre[j]) @ pose.rotation[j]
+        above = (some - pose.centre[j + 1]) @ pose.rotation[j + 1]
+        axial = np.maximum(-below[:, 2], above[:, 2])
+        middle = (below[:, :2] + above[:, :2]) / 2
+        near = np.maximum(axial, np.linalg.norm(middle, axis=1) - radius) < least
+        if not near.any():
+            continue
+        reach = (pose.reach[j] + pose.reach[j + 1]) / 2
+        beside = np.max(middle[near] @ directions().T - reach, axis=1)
+        least = min(least, float(np.maximum(axial[near], beside).min()))
+    return least
+
+
+class Rod(Protocol):
+    """What a model's states are as rods."""
+
+    def pose(self, old: State, new: State, share: float) -> Pose:
+        """Between two states: the old one at 0, the new one at 1; collective."""
+
+
+class BodyRod:
+    """The three-dimensional body, by its stations.
+
+    Args:
+        body: its kinematics.
+        frames: its stations.
+    """
+
+    def __init__(self, body: Kinematics, frames: Frames) -> None:
+        self._body, self._frames = body, frames
+
+    def pose(self, old: State, new: State, share: float) -> Pose:
+        """Bent station by station."""
+        assert old.shape is not None
+        assert new.shape is not None
+        shape = new.shape
+        if share != 1:
+            shape = self._frames.between(old.shape, new.shape, share)
+        return Pose(self._frames.z, shape.centre, shape.rotation, self._reach(shape))
+
+    def _reach(self, shape: Shape) -> Floats:
+        normal, body = directions(), self._body
+        reach = self._frames.greatest(shape, normal)
+        if body.domain.data.half:
+            mirrored = (DIRECTIONS // 2 - np.arange(DIRECTIONS)) % DIRECTIONS
+            reach = np.maximum(reach, reach[:, mirrored])
+        return reach
+
+
+class UniformRod:
+    """Section or cell: an arc or helix between straight caps.
+
+    Args:
+        body: its kinematics.
+        cap: length of each of the caps, mm.
+    """
+
+    def __init__(self, body: Uniform, cap: float) -> None:
+        self._body = body
+        nodes = body.domain.data.nodes
+        self._nodes, self._dofs = nodes[:, :2], body.node_dofs[:, :2]
+        spacing = float(np.ptp(self._nodes, axis=0).max()) / 4
+        counts = [max(1, int(np.ceil(length / spacing))) for length in (cap, body.length)]
+        caps, middle = (np.linspace(0, 1, count + 1) for count in counts)
+        length = body.length
+        z = [-cap * (1 - caps[:-1]), length * middle, length + cap * caps[1:]]
+        self._z = np.concatenate(z)
+
+    def pose(self, old: State, new: State, share: float) -> Pose:
+        """Curvature, stretch, twist and section between the states."""
+        scalars = {
+            name: (1 - share) * old.scalars[name] + share * new.scalars[name]
+            for name in self._body.natural
+        }
+        w = (1 - share) * old.w + share * new.w
+        spin = np.array([scalars[CURVATURE], 0.0, scalars.get(TWIST, 0.0)])
+        along = np.clip(self._z, 0.0, self._body.length)
+        rotation, centre = _helix(along, spin, scalars[STRETCH])
+        centre = centre + rotation[:, :, 2] * (self._z - along)[:, None]
+        bent = (self._z >= 0) & (self._z <= self._body.length)
+        reach = np.where(bent[:, None], self._reach(w[self._dofs]), self._reach(0.0))
+        return Pose(self._z, centre, rotation, reach)
+
+    def _reach(self, moved: Floats | float) -> Floats:
+        x = self._nodes + moved
+        if self._body.domain.data.half:
+            x = np.vstack([x, x * [-1, 1]])
+        reach: Floats = (x @ directions().T).max(axis=0)
+        return reach
+
+
+def _helix(along: Floats, spin: Floats, stretch: float) -> tuple[Floats, Floats]:
+    """Rotations exp(z spin ×) and centres ∫ rotation · stretch e_z dz at some z."""
+    rate = float(np.linalg.norm(spin))
+    axis = spin / rate if rate else np.array([1.0, 0.0, 0.0])
+    x, y, z = axis
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    angle = (rate * along)[:, None, None]
+    rotation = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
+    # sin a / a and so on by sinc: no limit needed without spin
+    half = angle / 2
+    sinc, versine = np.sinc(angle / np.pi), np.sin(half) * np.sinc(half / np.pi)
+    mean = np.eye(3) + versine * cross + (1 - sinc) * (cross @ cross)
+    return rotation, stretch * along[:, None] * mean[:, :, 2]
+
+
+def first_contact(rod: Rod, old: State, new: State) -> float | None:
+    """Share of an increment after which a body touches itself first; None where it does not.
+
+    Args:
+        rod: the states as rods.
+        old: a state that does not touch itself.
+        new: the next one.
+    """
+    if clearance(rod.pose(old, new, 1.0), 0.0) >= 0:
+        return None
+    low, high = 0.0, 1.0
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        if clearance(rod.pose(old, new, middle), 0.0) < 0:
+            high = middle
+        else:
+            low = middle
+    return high

@@ -1,0 +1,1 @@
+"""What is read off states: measures, diagnosis, checkpoints."""

@@ -1,0 +1,61 @@
+"""What a user reads off a contact: how much of a surface touches, and how deep it lies in."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import numpy.typing as npt
+from mpi4py import MPI
+
+from fem.effects.contact import Contact
+from fem.scene import Scene
+from geometry.mesh.reference import area_vectors, facet_rules, shape_functions
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclasses.dataclass(frozen=True)
+class Touch:
+    """A contact at a state, of the whole body.
+
+    Attributes:
+        gap: least gap, mm; negative where the obstacle yields.
+        area: area at rest of what touches, mm².
+    """
+
+    gap: float
+    area: float
+
+
+class Probe:
+    """Reads a contact at the points of quadrature.
+
+    Args:
+        scene: the scene.
+        contact: one of its effects.
+    """
+
+    def __init__(self, scene: Scene, contact: Contact) -> None:
+        self._body, self._obstacle = scene.body, contact.obstacle
+        self._numbers = contact.obstacle.numbers()
+        domain = scene.domain
+        data = domain.data
+        pairs = np.concatenate([data.facets[name] for name in contact.surfaces])
+        vectors = np.concatenate([area_vectors(data, name)[1] for name in contact.surfaces])
+        mine = np.flatnonzero(domain.local_cell[pairs[:, 0]] >= 0)
+        points, _, _ = facet_rules(data.cell_type)
+        self._values = shape_functions(data.cell_type, points)[0][pairs[mine, 1]]
+        self._nodes = data.cells[pairs[mine, 0]]
+        self._area = np.linalg.norm(vectors[mine], axis=2)
+
+    def read(self) -> Touch:
+        """The contact at the present state; collective."""
+        body = self._body
+        comm = body.domain.comm
+        nodes = body.domain.data.nodes[self._nodes] + body.w.x.array[body.node_dofs[self._nodes]]
+        x = np.einsum("nqa,nai->inq", self._values, nodes)
+        gap = np.asarray(self._obstacle.gap(x, self._numbers))
+        least = comm.allreduce(float(gap.min(initial=np.inf)), MPI.MIN)
+        area = comm.allreduce(float(self._area[gap < 0].sum()), MPI.SUM)
+        return Touch(least, body.copies * area)

@@ -1,0 +1,383 @@
+"""Newton's method on PETSc SNES for the fields and a few global scalars."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from fem.solver.border import Border, Closure
+from fem.solver.factor import Factor
+
+Floats = npt.NDArray[np.float64]
+
+NEAR, NEAR_RATIO, CHORD_RATIO = 1e-3, 0.02, 0.1
+"""A factor is used again below this residual, after this reduction, and while it reduces so."""
+
+INVERTED = "an element turned inside out (least det F {:.3g})"
+FADED = 1e-3
+"""Forces count no less than so much of the greatest before: unloaded, nothing else is left."""
+PATIENCE = 6
+"""Iterations after which a residual that grows makes Newton take the true tangent."""
+
+
+class Problem(Protocol):
+    """What Newton needs of a scene."""
+
+    matrix: PETSc.Mat
+    free: npt.NDArray[np.bool_]
+    volumetric: npt.NDArray[np.bool_]
+    volume_scale: float
+    force_noise: float
+    force_floor: float
+    discrete: dict[str, Any]
+    body: Any
+
+    def set(self, w: Floats) -> None:
+        """Take the owned coefficients as the state."""
+
+    def set_scalar(self, name: str, value: float) -> None:
+        """Set a global scalar."""
+
+    def scalar(self, name: str) -> float:
+        """Value of a global scalar."""
+
+    def residual(self) -> tuple[Floats, float]:
+        """R, owned part, and a scale of the forces in it."""
+
+    def assemble_tangent(self) -> PETSc.Mat:
+        """K at the present state."""
+
+    def load(self, name: str) -> Floats:
+        """∂R/∂q of a scalar, owned part."""
+
+    def det_f(self) -> float:
+        """Least det F over all ranks."""
+
+    def norm(self, values: Floats) -> float:
+        """Euclidean norm over all ranks."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Settings:
+    """Limits of one Newton solve.
+
+    Attributes:
+        tolerance: of forces, relative to reactions and fiber forces (a thousandth of the greatest
+            so far at least) but no finer than round-off, and of volumes, relative to the volume of
+            an element; each for itself.
+        iterations: most iterations.
+        hybrid: use the predicted fiber force in the geometric stiffness.
+        reuse: take the last factor again where it converges fast; a solve costs a twentieth of
+            a factorisation.
+    """
+
+    tolerance: float = 1e-8
+    iterations: int = 11
+    hybrid: bool = True
+    reuse: bool = True
+
+
+@dataclasses.dataclass
+class Outcome:
+    """How a Newton solve ended.
+
+    Attributes:
+        converged: True when every residual is below its tolerance.
+        iterations: linear solves.
+        factorisations: tangents assembled and factorised for them.
+        reason: why not, in words; empty when converged.
+        history: force, volume and closure residual of every iterate, relative.
+        least_det_f: least det F of the last iterate.
+    """
+
+    converged: bool
+    iterations: int
+    factorisations: int
+    reason: str
+    history: list[tuple[float, float, float]]
+    least_det_f: float
+
+
+class Newton:
+    """Full Newton steps on the bordered vector (w, q), K factorised once an iteration.
+
+    The scalars are eliminated: K a = r, K B = columns, then a small dense system. Rows and
+    columns of the border may differ.
+
+    Args:
+        problem: residual, tangent and scalars.
+        comm: communicator.
+        settings: limits.
+
+    Attributes:
+        seconds: wall time by phase.
+    """
+
+    def __init__(self, problem: Problem, comm: MPI.Comm, settings: Settings) -> None:
+        self.problem = problem
+        self.comm = comm
+        self.settings = settings
+        self.factor = Factor(problem.matrix)
+        self._assembly = {"residual": 0.0, "tangent": 0.0}
+        self._b = problem.matrix.createVecRight()
+        self._x = problem.matrix.createVecRight()
+        self._owned = self._b.getLocalSize()
+        self.schur: Floats = np.zeros((0, 0))
+        """Schur complement of the unknown scalars at the last tangent, in the order given."""
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Wall time by phase."""
+        return {**self._assembly, **self.factor.seconds}
+
+    def solve(
+        self, w: Floats, unknown: Sequence[str] = (), closures: Sequence[Closure] = ()
+    ) -> Outcome:
+        """Find w and the unknown scalars from a starting guess.
+
+        Args:
+            w: owned coefficients to start from.
+            unknown: names of the scalars that are found; they start from their present values.
+            closures: as many equations.
+
+        Returns:
+            The outcome; when converged the problem holds the solution.
+
+        Raises:
+            ValueError: numbers of unknown scalars and closures differ.
+        """
+        if len(unknown) != len(closures):
+            raise ValueError("every unknown scalar needs one closing equation")
+        return _Solve(self, list(unknown), list(closures)).run(w)
+
+    def negative_pivots(self, natural: Sequence[str] = ()) -> int:
+        """Number of negative eigenvalues of the last tangent (Sylvester's inertia).
+
+        Args:
+            natural: names of the scalars, the first of the unknown ones, that count as fields.
+        """
+        block = self.schur[: len(natural), : len(natural)]
+        # scaled rows are similar to a symmetric matrix, so that the eigenvalues are real
+        bad = int(np.sum(np.linalg.eigvals(block).real < 0)) if len(natural) else 0
+        return self.factor.negative_pivots + bad
+
+    def border(self, unknown: Sequence[str], closures: Sequence[Closure]) -> Border:
+        """Rows and columns of scalars at the present state and factor."""
+        columns = [self.problem.load(name) for name in unknown]
+        free = self.problem.free[: self._owned]
+        return Border(columns, unknown, closures, free, self.factor.solve_many, self.comm)
+
+    def response(
+        self, scalar: str, unknown: Sequence[str] = (), closures: Sequence[Closure] = ()
+    ) -> tuple[Floats, dict[str, float]]:
+        """Rates of the fields and of unknown scalars with a given one, along the equilibrium.
+
+        The tangent at the present state is assembled and factorised for it.
+        """
+        self.problem.assemble_tangent()
+        self.factor.renew()
+        border = self.border(unknown, closures)
+        self.schur = border.schur
+        a = self.solve_linear(self.problem.load(scalar))
+        sides = np.array([closure.slope(scalar) for closure in closures])
+        a, q = border.eliminate(a, sides)
+        return -a, dict(zip(unknown, -q, strict=True))
+
+    def solve_linear(self, r: Floats) -> Floats:
+        """K⁻¹ r with the present factor, owned part."""
+        self._b.array_w[:] = r
+        self.factor.solve(self._b, self._x)
+        return self._x.array_r.copy()
+
+
+class _Solve:
+    """One SNES solve: the callbacks share its state."""
+
+    def __init__(self, newton: Newton, unknown: list[str], closures: list[Closure]) -> None:
+        self.newton = newton
+        self.problem = newton.problem
+        self.comm = newton.comm
+        self.unknown = unknown
+        self.closures = closures
+        self.last = self.comm.rank == self.comm.size - 1
+        self.owned = newton._owned
+        self.history: list[tuple[float, float, float]] = []
+        self.scale = 0.0
+        self.least = np.inf
+        self.solves = 0
+        self.tangents: list[int] = []
+        self.reason = ""
+
+    # --- vectors -------------------------------------------------------------------------------
+
+    def split(self, x: PETSc.Vec) -> tuple[Floats, Floats]:
+        """Fields (owned part) and scalars (on every rank) of a bordered vector."""
+        array = x.array_r
+        scalars = array[self.owned :].copy()
+        if self.unknown and self.comm.size > 1:
+            scalars = self.comm.bcast(scalars if self.last else None, root=self.comm.size - 1)
+        return array[: self.owned].copy(), scalars
+
+    def join(self, x: PETSc.Vec, w: Floats, scalars: Floats) -> None:
+        """Write fields and scalars into a bordered vector."""
+        array = x.array_w
+        array[: self.owned] = w
+        if self.last and self.unknown:
+            array[self.owned :] = scalars
+
+    # --- callbacks -----------------------------------------------------------------------------
+
+    def function(self, _snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
+        """Bordered residual; NaN where an element is turned inside out."""
+        start = time.perf_counter()
+        problem = self.problem
+        w, scalars = self.split(x)
+        for name, value in zip(self.unknown, scalars, strict=True):
+            problem.set_scalar(name, float(value))
+        problem.set(w)
+        self.least = problem.det_f()
+        if not self.least > 0:
+            self.join(f, np.full(self.owned, np.nan), np.full(len(self.unknown), np.nan))
+            self.history.append((np.nan, np.nan, np.nan))
+            self.newton._assembly["residual"] += time.perf_counter() - start
+            return
+        r, scale = problem.residual()
+        self.scale = max(scale, 1e-30)
+        r[~problem.free[: self.owned]] = 0.0
+        g = np.array([closure.value() for closure in self.closures])
+        volumetric = problem.volumetric
+        self.history.append(
+            (
+                problem.norm(r[~volumetric]) / self.scale,
+                problem.norm(r[volumetric]) / problem.volume_scale,
+                float(np.max(np.abs(g), initial=0.0)),
+            )
+        )
+        self.join(f, r, g)
+        self.newton._assembly["residual"] += time.perf_counter() - start
+
+    def jacobian(self, _snes: PETSc.SNES, _x: PETSc.Vec, _a: PETSc.Mat, _p: PETSc.Mat) -> None:
+        """Tangent, its factor, and the border; or the last ones again."""
+        if self.newton.settings.reuse and self.fast():
+            return
+        start = time.perf_counter()
+        problem = self.problem
+        self.tangents.append(len(self.history))
+        if len(self.history) > PATIENCE and max(self.history[-1]) > max(self.history[-2]):
+            # predicted fiber forces can cycle where fibers are very stiff
+            for discrete in problem.discrete.values():
+                discrete.predict(None)
+        problem.assemble_tangent()
+        self.newton._assembly["tangent"] += time.perf_counter() - start
+        self.newton.factor.renew()
+        self.border = self.newton.border(self.unknown, self.closures)
+        self.newton.schur = self.border.schur
+
+    def fast(self) -> bool:
+        """Whether the last factor is likely to reduce the residual tenfold once more."""
+        if not self.tangents or len(self.history) < 2:
+            return False
+        now, before = max(self.history[-1]), max(self.history[-2])
+        if self.tangents[-1] == len(self.history) - 1:
+            # the factor is one iterate old: near the solution its error is that of this step
+            return now < NEAR and now < NEAR_RATIO * before
+        return now < CHORD_RATIO * before
+
+    def apply(self, _pc: PETSc.PC, r: PETSc.Vec, y: PETSc.Vec) -> None:
+        """Solve the bordered system with the factor of K."""
+        self.solves += 1
+        r_w, r_q = self.split(r)
+        a = self.newton.solve_linear(r_w)
+        a, q = self.border.eliminate(a, r_q)
+        self.join(y, a, q)
+        # SNES takes the step x − y, so the correction is −(a, q)
+        self.correct(-a, dict(zip(self.unknown, -q, strict=True)))
+
+    def correct(self, correction: Floats, scalars: dict[str, float]) -> None:
+        """Tell the discrete potentials the correction, ghosts included."""
+        if not self.newton.settings.hybrid or not self.problem.discrete:
+            return
+        full = self.problem.body.with_ghosts(correction)
+        for discrete in self.problem.discrete.values():
+            discrete.predict(full, scalars)
+
+    def test(self, _snes: PETSc.SNES, iteration: int, _norms: tuple[float, ...]) -> int:
+        """Force, volume and closing equations, each for itself."""
+        reasons = PETSc.SNES.ConvergedReason
+        force, volume, closing = self.history[-1]
+        tolerance = self.newton.settings.tolerance
+        if not np.isfinite(force):
+            self.reason = INVERTED.format(self.least)
+            return int(reasons.DIVERGED_FNORM_NAN)
+        resolved = max(tolerance, self.problem.force_noise / self.scale)
+        if force <= resolved and volume <= tolerance and closing <= tolerance:
+            return int(reasons.CONVERGED_FNORM_RELATIVE)
+        if iteration >= self.newton.settings.iterations:
+            self.reason = f"no convergence in {iteration} iterations"
+            return int(reasons.DIVERGED_MAX_IT)
+        if iteration >= 4:
+            size = [max(row) for row in self.history]
+            if size[-1] > 1e3 * min(size[:-1]) and size[-1] > 1:
+                self.reason = "the residual grows"
+                return int(reasons.DIVERGED_DTOL)
+        return int(reasons.CONVERGED_ITERATING)
+
+    # --- run -----------------------------------------------------------------------------------
+
+    def run(self, w: Floats) -> Outcome:
+        """Set up SNES on the bordered vector and solve."""
+        size = self.owned + (len(self.unknown) if self.last else 0)
+        x = PETSc.Vec().createMPI((size, PETSc.DETERMINE), comm=self.comm)
+        f = x.duplicate()
+        shell = PETSc.Mat().createPython(((size, PETSc.DETERMINE),) * 2, comm=self.comm)
+        shell.setPythonContext(object())
+        shell.setUp()
+        snes = PETSc.SNES().create(self.comm)
+        snes.setType(PETSc.SNES.Type.NEWTONLS)
+        prefix = "fiberbend_newton_"
+        snes.setOptionsPrefix(prefix)
+        PETSc.Options().setValue(f"{prefix}snes_linesearch_type", "basic")
+        snes.setFromOptions()
+        snes.setFunction(self.function, f)
+        snes.setJacobian(self.jacobian, shell, shell)
+        snes.setConvergenceTest(self.test)
+        snes.setTolerances(max_it=self.newton.settings.iterations + 1)
+        ksp = snes.getKSP()
+        ksp.setType(PETSc.KSP.Type.PREONLY)
+        pc = ksp.getPC()
+        pc.setType(PETSc.PC.Type.PYTHON)
+        pc.setPythonContext(self)
+        if not self.newton.settings.hybrid:
+            for discrete in self.problem.discrete.values():
+                discrete.predict(None)  # the march may have extrapolated forces
+        self.join(x, w, np.array([self.problem.scalar(name) for name in self.unknown]))
+        try:
+            snes.solve(None, x)
+            converged = snes.getConvergedReason() > 0 and not self.reason
+            if not converged and not self.reason:
+                # SNES stops at a starting guess that is not a number without asking the test
+                self.reason = INVERTED.format(self.least)
+            if converged:
+                self.problem.force_floor = max(self.problem.force_floor, FADED * self.scale)
+        except (PETSc.Error, ZeroDivisionError, np.linalg.LinAlgError) as error:
+            self.reason = f"the linear solve failed ({error})"
+            converged = False
+        finally:
+            # left to Python, PETSc keeps them, and pc holds this and with it the whole problem
+            for item in (pc, ksp, snes, shell, x, f):
+                item.destroy()
+        return Outcome(
+            converged,
+            self.solves,
+            len(self.tangents),
+            self.reason,
+            self.history,
+            float(self.least),
+        )

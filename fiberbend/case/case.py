@@ -1,0 +1,207 @@
+"""What a case says, as frozen models with floats in mm, N, MPa, rad, t/mm³ and mm/s².
+
+The models check single values. `fiberbend.reader.reader.parse_case` is the way in: it also checks
+what several values say together, and reports every problem at once.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
+
+from pydantic import AfterValidator, Field, field_serializer, model_serializer, model_validator
+
+from fiberbend.effects.table import Effect, EffectEntry, unwrap
+from fiberbend.schema.quantities import (
+    Angle,
+    Coefficient,
+    Density,
+    Length,
+    Model,
+    Modulus,
+    Pressure,
+)
+from fiberbend.schema.quantities import SignedPressure as AnyPressure
+
+E = TypeVar("E", bound=Effect)
+
+COEFFICIENTS = ("mu", "c10", "c01", "c1", "c2", "c3")
+"""Coefficients of the laws; `materials.laws.LAWS` says which law has which."""
+
+if TYPE_CHECKING:
+    AnyEffect = Effect
+else:
+    AnyEffect = Annotated[EffectEntry, AfterValidator(unwrap)]
+
+
+class Actuator(Model):
+    """Dimensions of the actuator."""
+
+    section: Literal["hemicircle", "rectangle", "circle"] = "hemicircle"
+    """Shape of the cross-section."""
+    radius: Length | None = None
+    """Radius of the chamber; hemicircle and circle."""
+    width: Length | None = None
+    """Width of the chamber; rectangle."""
+    height: Length | None = None
+    """Height of the chamber; rectangle."""
+    length: Length
+    """Length of the chamber, without the caps."""
+    wall: Length
+    """Thickness of the wall around the chamber."""
+    floor: Length | None = None
+    """Thickness of the floor under the chamber; of a circle the outer part of the wall's thickness
+    over the lowest quarter, none unless said."""
+    sheath: Length | None = None
+    """Thickness of the sheath around everything; none unless said."""
+    cap: Length = 15.0
+    """Length of each of the two solid end caps."""
+    layer: Length | None = None
+    """Thickness of a separate strain-limiting layer under a flat floor; none unless said."""
+
+
+class Material(Model):
+    """A material by name, or a law with its coefficients."""
+
+    name: str | None = None
+    """A named material; written alone where nothing else is said, `wall: elastosil-m4601`."""
+    law: Literal["yeoh", "neo-hooke", "mooney-rivlin"] | None = None
+    """Law of a material that has no name here."""
+    mu: Modulus | None = None
+    """Shear modulus; neo-hooke."""
+    c10: Coefficient | None = None
+    """Coefficient of I1 - 3; mooney-rivlin."""
+    c01: Coefficient | None = None
+    """Coefficient of I2 - 3; mooney-rivlin."""
+    c1: Modulus | None = None
+    """Coefficient of I1 - 3; yeoh."""
+    c2: Coefficient | None = None
+    """Coefficient of (I1 - 3)^2; yeoh."""
+    c3: Coefficient | None = None
+    """Coefficient of (I1 - 3)^3; yeoh."""
+    density: Density | None = None
+    """Density; gravity needs it."""
+    bulk: Modulus | None = None
+    """Bulk modulus of a nearly incompressible material; exactly incompressible unless said."""
+
+    @property
+    def coefficients(self) -> dict[str, float]:
+        """The coefficients that are given, in MPa."""
+        given = {key: getattr(self, key) for key in COEFFICIENTS}
+        return {key: value for key, value in given.items() if value is not None}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_name(cls, data: Any) -> Any:
+        return {"name": data} if isinstance(data, str) else data
+
+    @model_serializer(mode="wrap")
+    def _to_name(self, write: Any) -> Any:
+        return self.name if self.model_fields_set == {"name"} else write(self)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict[str, Any]:
+        """A name alone is allowed too."""
+        return {"anyOf": [{"type": "string"}, handler.resolve_ref_schema(handler(schema))]}
+
+
+class Materials(Model):
+    """Material of each part."""
+
+    wall: Material
+    """Wall and end caps."""
+    floor: Material | None = None
+    """Floor under the chamber, where the actuator has one."""
+    sheath: Material | None = None
+    """Sheath, where the actuator has one."""
+    layer: Material | None = None
+    """Strain-limiting layer, where the actuator has one."""
+
+
+class Mesh(Model):
+    """Fineness and shape of the elements."""
+
+    element: Literal["hexahedron", "tetrahedron"] = "hexahedron"
+    """Swept hexahedra, or tetrahedra."""
+    axial: Length = 1.5
+    """Greatest length of the elements along the axis; a discrete winding wants half its pitch."""
+    section: int = Field(default=1, ge=1, le=16)
+    """Refinement of the cross-section: elements through each thickness."""
+    symmetry: Literal["auto", "half", "full"] = "auto"
+    """Half the body where everything is mirror-symmetric, or as said."""
+
+
+class Solver(Model):
+    """Steps and tolerance of the solution."""
+
+    first_step: Pressure | None = None
+    """First step of the pressure, from the linear response unless said; under pressure control
+    only."""
+    max_step: Pressure | None = None
+    """Greatest step of the pressure; without limit unless said; under pressure control only."""
+    max_turn: Angle | None = None
+    """Greatest change of the bending angle in a step; by the model unless said."""
+    max_cutbacks: int = Field(default=8, ge=0, le=100)
+    """How often in a row a step is cut before the run gives up."""
+    tolerance: float = Field(default=1e-8, gt=0, le=1e-2)
+    """Residual forces and volumes, each in units of its own internal force."""
+
+
+class Output(Model):
+    """What a run leaves beyond its curves."""
+
+    at_angles: tuple[Angle, ...] = Field(default=(), strict=False)
+    """Bending angles that are hit exactly, with pictures and fields."""
+    at_pressures: tuple[AnyPressure, ...] = Field(default=(), strict=False)
+    """Pressures that are hit exactly, with pictures and fields."""
+    stop_at_angle: Angle | None = None
+    """The run ends at this bending angle, before the load's end."""
+    measured: str | None = None
+    """CSV file of measured points that are drawn over the curves and compared with them, with the
+    columns pressure_kPa and angle_deg, or tip_force_N where the tip is blocked; relative to the
+    case file."""
+    pictures: bool = True
+    """Draw pictures."""
+    fields: bool = True
+    """Write fields for ParaView."""
+
+
+class Case(Model):
+    """A whole case."""
+
+    title: str = ""
+    """A line for the reader."""
+    actuator: Actuator
+    """Dimensions."""
+    materials: Materials
+    """Material of each part."""
+    effects: tuple[AnyEffect, ...] = Field(strict=False)
+    """What acts on the body; loads are applied in this order, earlier ones held."""
+    support: Literal["clamped-root"] = "clamped-root"
+    """How the body is held."""
+    model: Literal["analytic", "section", "cell", "body", "auto"] = "auto"
+    """Model to solve; auto takes the cheapest that holds every effect."""
+    mesh: Mesh = Mesh()
+    """Elements."""
+    solver: Solver = Solver()
+    """Steps and tolerance."""
+    output: Output = Output()
+    """What the run leaves."""
+
+    @field_serializer("effects")
+    def _write_effects(self, effects: tuple[Effect, ...]) -> list[dict[str, Any]]:
+        return [
+            {effect.name: effect.model_dump(by_alias=True, exclude_none=True, mode="json")}
+            for effect in effects
+        ]
+
+    def find(self, kind: type[E]) -> E | None:
+        """The effect of a class, or None where the case does not list it."""
+        return next((effect for effect in self.effects if isinstance(effect, kind)), None)
+
+    def resolved(self) -> dict[str, Any]:
+        """The case with every default, as a mapping of plain values with units.
+
+        Returns:
+            What `fiberbend.reader.reader.parse_case` reads back to an equal case.
+        """
+        return self.model_dump(by_alias=True, exclude_none=True, mode="json")

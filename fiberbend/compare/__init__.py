@@ -1,0 +1,1 @@
+"""A run beside other models and measured points."""

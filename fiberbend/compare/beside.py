@@ -1,0 +1,85 @@
+"""What a run is compared with is computed here: the section model, and the user's file."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from fiberbend.case.case import Case
+from fiberbend.case.measured import read_measured
+from fiberbend.compare.check import Check, crosscheck
+from fiberbend.compare.others import Straight
+from fiberbend.effects.table import PressureEffect, StraightEffect
+from fiberbend.models.closed_form import held
+from fiberbend.models.result import RunResult
+
+LEAST_ANGLE = 1.0
+"""Degrees that a run has to bend for a curve of the section model beside it."""
+_PARTS = (0.25, 0.5, 0.75)
+
+
+def check_run(
+    case: Case,
+    model: str,
+    rows: Sequence[dict[str, Any]],
+    solve: Callable[[Case], RunResult] | None = None,
+) -> Check:
+    """Put a run beside the section model, the closed forms and the measured points; no collective.
+
+    Args:
+        case: the case of the run.
+        model: its model.
+        rows: its history.
+        solve: solves a section on this rank alone; without it there is none beside the run.
+    """
+    measured = read_measured(case)
+    pressure = case.find(PressureEffect)
+    if pressure is None or model == "section" or solve is None:
+        return crosscheck(case, model, rows, measured=measured)
+    keys = ("angle_deg", "uniform_angle_deg")
+    furthest = max((row[key] for row in rows for key in keys if row.get(key) is not None), key=abs)
+    if held(case):
+        reached = 1e-3 * max((row["pressure_kPa"] for row in rows), key=abs)
+        if reached == 0:
+            return crosscheck(case, model, rows, measured=measured)
+        straight, reason = _straight(case, reached, solve)
+        return crosscheck(
+            case, model, rows, measured=measured, straight=straight, no_section=reason
+        )
+    if abs(furthest) < LEAST_ANGLE:
+        return crosscheck(case, model, rows, measured=measured)
+    from fiberbend.case.section_beside import as_section, load
+    from fiberbend.control.plant_curve import Curve
+
+    section = as_section(case, load(angle=math.radians(furthest)))
+    result = solve(section)
+    if len(result.rows) < 2:
+        return crosscheck(case, model, rows, measured=measured, no_section=result.reason)
+    columns = ("pressure_kPa", "angle_deg", "chamber_mm3")
+    kpa, degrees, volume = (np.array([row[name] for row in result.rows]) for name in columns)
+    curve = Curve(1e-3 * kpa, np.radians(degrees), volume, result.reason)
+    return crosscheck(case, model, rows, curve, measured, no_section=result.reason)
+
+
+def _straight(
+    case: Case, pressure: float, solve: Callable[[Case], RunResult]
+) -> tuple[Straight | None, str]:
+    """The section held straight up to a pressure in MPa, and why it ends early."""
+    from fiberbend.case.section_beside import as_section, load
+
+    section = as_section(case, load(to=pressure))
+    output = section.output.model_copy(
+        update={"at_pressures": tuple(part * pressure for part in _PARTS)}
+    )
+    effects = (*section.effects, case.find(StraightEffect) or StraightEffect())
+    result = solve(section.model_copy(update={"effects": effects, "output": output}))
+    states = [(row["pressure_kPa"], row.get("blocked_moment_Nmm")) for row in result.rows]
+    known = [(0.0, 0.0), *((1e-3 * p, m) for p, m in states if m is not None and p != 0)]
+    if len(known) < 2:
+        return None, result.reason
+    pressures, moments = np.array(known).T
+    order = np.argsort(pressures)
+    return Straight(pressures[order], moments[order]), result.reason

@@ -1,0 +1,345 @@
+"""Every run beside the other models of the same case, and beside what a user has measured.
+
+Free bending is compared by the pressure for the angle of each row: it is single-valued, every
+model gives it without an inverse, and it goes on where the pressure has its greatest value. A
+blocked tip is compared by its force at the pressure of each row.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analytic.bending import Hemicircle
+from analytic.calibration import calibrate
+from analytic.stress import Floats
+from fiberbend.case.case import Case
+from fiberbend.case.measured import Measured
+from fiberbend.compare import causes as why
+from fiberbend.compare.others import (
+    Other,
+    Straight,
+    bending_models,
+    force_models,
+    through_rows,
+)
+from fiberbend.drawing.overlay import Line, Overlay, Points
+from fiberbend.effects.table import (
+    ContactEffect,
+    GravityEffect,
+    PressureEffect,
+    WindingEffect,
+)
+from fiberbend.models.closed_form import dimensions, held, no_analytic
+from fiberbend.models.resolution import BULGING_PITCH, bulging, resolved
+
+if TYPE_CHECKING:
+    from fiberbend.control.plant_curve import Curve
+
+Row = dict[str, Any]
+
+PAPER_PRESSURE = 11.0
+PAPER_FORCE = 10.5
+"""Percent by which the paper's own models differ from its experiments at most: 10.9 in pressure,
+10.3 in force."""
+_ENDS = 2.0
+_SMEARED = 0.5
+_BULGING = 5.5
+_LEAST_ANGLE = 1.0
+_LEAST_LOSS = 0.5
+_FULL = 0.4
+"""Part of the greatest pressure from which a body lies firmly on roof and post."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Comparison:
+    """A run beside one other model, or beside measured points.
+
+    Attributes:
+        name: as run.json calls the other one.
+        label: as a message calls it.
+        percent: the greatest difference, signed, in per cent of the other one.
+        at: where, such as "180.0°".
+        band: percent within which they are expected to agree; None where that cannot be said.
+        causes: estimates of what sets them apart there.
+    """
+
+    name: str
+    label: str
+    percent: float
+    at: str
+    band: float | None
+    causes: tuple[why.Cause, ...] = ()
+
+    @property
+    def beyond(self) -> bool:
+        """Whether the greatest difference is beyond the band."""
+        return self.band is not None and abs(self.percent) > self.band
+
+    @property
+    def likely(self) -> list[why.Cause]:
+        """The causes that account for a good part of the difference."""
+        return [cause for cause in self.causes if cause.explains(self.percent)]
+
+    def entry(self) -> dict[str, Any]:
+        """As run.json holds it."""
+        entry: dict[str, Any] = {
+            "greatest_percent": round(self.percent, 3),
+            "at": self.at,
+            "band_percent": self.band,
+            "beyond_band": self.beyond,
+        }
+        if self.causes:
+            entry["estimates_percent"] = {c.name: _rounded(c.percent) for c in self.causes}
+        if self.beyond:
+            entry["likely"] = [f"{c.name}: {c.text}" for c in self.likely] or ["unexplained"]
+        return entry
+
+    def line(self) -> str:
+        """As a message tells it."""
+        text = f"run against {self.label}: {self.percent:+.1f} % at {self.at}"
+        if self.band is None:
+            return text
+        if not self.beyond:
+            return f"{text}, within {self.band:g} %"
+        names = ", ".join(cause.name for cause in self.likely)
+        return f"{text}, BEYOND {self.band:g} %: {'likely ' + names if names else 'unexplained'}"
+
+
+@dataclasses.dataclass(frozen=True)
+class Check:
+    """A run beside everything else that is known of its case.
+
+    Attributes:
+        columns: what is added at the end of each row of the history.
+        comparisons: with each other model, and with measured points.
+        angles: what is drawn beside the angle over the pressure, or None.
+        forces: what is drawn beside the tip force over the pressure, or None.
+        missing: models that are not beside it, and why.
+        remarks: what limits the comparison.
+        calibration: effective modulus fitted to measured angles, or why there is none.
+    """
+
+    columns: tuple[Row, ...]
+    comparisons: tuple[Comparison, ...] = ()
+    angles: Overlay | None = None
+    forces: Overlay | None = None
+    missing: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
+    calibration: Mapping[str, Any] | None = None
+
+    def beside(self, rows: Sequence[Row]) -> list[Row]:
+        """The rows with the columns of the other models at their ends."""
+        return [row | more for row, more in zip(rows, self.columns, strict=True)]
+
+    def entry(self) -> dict[str, Any]:
+        """What run.json holds under 'crosscheck'."""
+        entry: dict[str, Any] = {c.name: c.entry() for c in self.comparisons}
+        extra = {"missing": self.missing, "remarks": self.remarks, "calibration": self.calibration}
+        return entry | {key: value for key, value in extra.items() if value}
+
+    def lines(self) -> list[str]:
+        """A few lines for the user."""
+        shown = [c for c in self.comparisons if c.name != "analytic_winding"]
+        lines = [c.line() for c in shown]
+        lines += [
+            f"no {model} model to compare with: {text}" for model, text in self.missing.items()
+        ]
+        lines += self.remarks
+        fit = self.calibration
+        if fit is not None and "reason" in fit:
+            lines.append(f"no μ̄ fitted to the measured angles: {fit['reason']}")
+        elif fit is not None:
+            lines.append(
+                f"measured angles fit μ̄ = {fit['modulus_MPa']:.4g} ± "
+                f"{fit['standard_error_MPa']:.1g} MPa in eq. (19)"
+            )
+        return lines
+
+
+def crosscheck(
+    case: Case,
+    model: str,
+    rows: Sequence[Row],
+    section: Curve | None = None,
+    measured: Measured | None = None,
+    straight: Straight | None = None,
+    no_section: str = "",
+) -> Check:
+    """Put a run beside the other models of its case, and beside measured points.
+
+    Args:
+        case: the case.
+        model: the run's own model.
+        rows: its history, from rest on.
+        section: P(θ) of the section model, for free bending.
+        measured: measured points.
+        straight: the section held straight, for a blocked tip.
+        no_section: why the section model is not given, for the user.
+    """
+    nothing = Check(tuple({} for _ in rows))
+    if case.find(PressureEffect) is None:
+        return nothing
+    blocked = held(case)
+    alone = _alone(case)
+    columns = ("pressure_kPa", "tip_force_N") if blocked else ("angle_deg", "pressure_kPa")
+    others = (
+        force_models(case, model, straight) if blocked else bending_models(case, model, section)
+    )
+    at, run = (_column(rows, name) for name in columns)
+    least = 0.0 if blocked else _LEAST_ANGLE
+    if blocked and case.find(ContactEffect) is not None:
+        least = _FULL * np.abs(at).max()
+    counts = np.abs(at) > least
+    added: list[Row] = [{} for _ in rows]
+    lines, comparisons = [], []
+    for other in others:
+        values = other.value(at)
+        name = f"{other.name}_{'tip_force_N' if blocked else 'kPa'}"
+        for row, value in zip(added, values, strict=True):
+            row[name] = None if np.isnan(value) else float(value)
+        lines += _drawn(other, at, blocked)
+        worst = _worst(run, values, counts)
+        if worst is not None:
+            index, percent = worst
+            where = f"{at[index]:.1f}{' kPa' if blocked else '°'}"
+            limit, causes = None, []
+            if not alone and not (model == "analytic" and other.line):
+                limit = _limit(case, model, other, blocked)
+                causes = why.find(case, model, rows[index], other, float(values[index]))
+            comparisons.append(
+                Comparison(other.name, other.label, percent, where, limit, tuple(causes))
+            )
+    points: tuple[Points, ...] = ()
+    remarks = [] if blocked else _unresolved(case, model, rows, [o.name for o in others])
+    if alone:
+        remarks.append(f"{alone} in this run alone: its differences are shown, not judged")
+    if measured is not None:
+        points = (Points(f"measured ({measured.source})", *measured.shown()),)
+        comparison, outside = _beside_measured(rows, columns, points[0], blocked)
+        comparisons += [comparison] if comparison is not None else []
+        remarks += [outside] if outside else []
+    overlay = Overlay(tuple(lines), points)
+    reasons = {"section": no_section, "analytic": no_analytic(case) or ""}
+    return Check(
+        tuple(added),
+        tuple(comparisons),
+        angles=None if blocked else overlay,
+        forces=overlay if blocked else None,
+        missing={name: text for name, text in reasons.items() if text},
+        remarks=tuple(remarks),
+        calibration=None if measured is None or blocked else _calibration(case, measured),
+    )
+
+
+def _alone(case: Case) -> str:
+    """What acts on the run and on no model beside it; empty for nothing."""
+    if case.find(GravityEffect) is not None:
+        return "gravity acts"
+    return "obstacles act" if case.find(ContactEffect) is not None and not held(case) else ""
+
+
+def band(case: Case, model: str) -> float:
+    """Percent of pressure within which a run's model agrees with the section model.
+
+    The ends of a body cost up to 1.1 %, a winding of 3 mm pitch up to 5.1 %, both on the baseline;
+    other pitches in proportion to `bulging`.
+    """
+    if model == "analytic":
+        return PAPER_PRESSURE
+    least = _ENDS if model == "body" else _SMEARED
+    winding = case.find(WindingEffect)
+    if winding is None or resolved(case, model) == 0:
+        return least
+    scale = bulging(winding.pitch, 360.0) / bulging(BULGING_PITCH, 360.0)
+    return round(max(least, _SMEARED + _BULGING * scale), 2)
+
+
+def _limit(case: Case, model: str, other: Other, blocked: bool) -> float:
+    if other.name == "section" and not (blocked and model == "body"):
+        return band(case, model)
+    return PAPER_FORCE if blocked else PAPER_PRESSURE
+
+
+def _unresolved(case: Case, model: str, rows: Sequence[Row], others: Sequence[str]) -> list[str]:
+    """Agreement with a smeared winding proves nothing where a discrete one is not resolved."""
+    winding = case.find(WindingEffect)
+    if winding is None or winding.representation == "smeared" or model != "body":
+        return []
+    greatest = max(abs(row["angle_deg"]) for row in rows)
+    lost = (1 - resolved(case, model)) * bulging(winding.pitch, greatest)
+    if "section" not in others or lost < _LEAST_LOSS:
+        return []
+    return [
+        f"elements of {case.mesh.axial:g} mm do not resolve a pitch of {winding.pitch:g} mm: "
+        f"agreement with the section model proves nothing, resolved fibers need about {lost:.1f} % "
+        "more pressure"
+    ]
+
+
+def _beside_measured(
+    rows: Sequence[Row], columns: tuple[str, str], points: Points, blocked: bool
+) -> tuple[Comparison | None, str]:
+    """The run at the measured points, and how many of them lie beyond it."""
+    at, target = (points.across, points.up) if blocked else (points.up, points.across)
+    values = through_rows(rows, *columns)(at)
+    outside = int(np.isnan(values).sum())
+    remark = f"{outside} of {len(at)} measured points lie beyond the run" if outside else ""
+    worst = _worst(values, target, np.abs(at) > (0.0 if blocked else _LEAST_ANGLE))
+    if worst is None:
+        return None, remark
+    index, percent = worst
+    where = f"{at[index]:.1f}{' kPa' if blocked else '°'}"
+    limit = PAPER_FORCE if blocked else PAPER_PRESSURE
+    return Comparison("measured", points.label, percent, where, limit), remark
+
+
+def _calibration(case: Case, measured: Measured) -> dict[str, Any]:
+    reason = no_analytic(case)
+    if reason is not None:
+        return {"reason": reason}
+    try:
+        fit = calibrate(measured.pressure, measured.value, Hemicircle(*dimensions(case)))
+    except ValueError as error:
+        return {"reason": str(error)}
+    return {
+        "modulus_MPa": fit.modulus,
+        "standard_error_MPa": fit.error,
+        "scatter_kPa": 1e3 * fit.scatter,
+        "points": fit.points,
+    }
+
+
+def _column(rows: Sequence[Row], name: str) -> Floats:
+    values = [row.get(name) for row in rows]
+    return np.array([np.nan if value is None else value for value in values], dtype=float)
+
+
+def _drawn(other: Other, at: Floats, blocked: bool) -> list[Line]:
+    """The other model's curve over the range of the run."""
+    way = np.linspace(at.min(), at.max(), 121)
+    values = other.value(way)
+    known = ~np.isnan(values)
+    if np.ptp(way) == 0 or known.sum() < 2:
+        return []
+    across, up = (way, values) if blocked else (values, way)
+    return [Line(other.name, other.label, across[known], up[known])]
+
+
+def _worst(run: Floats, other: Floats, counts: NDArray[np.bool_]) -> tuple[int, float] | None:
+    """Where the run differs most from the other one, and by how many per cent of it."""
+    valid = counts & np.isfinite(run) & np.isfinite(other) & (run != 0) & (other != 0)
+    if not valid.any():
+        return None
+    where = np.flatnonzero(valid)
+    percent = 100 * (run[where] / other[where] - 1)
+    most = int(np.argmax(np.abs(percent)))
+    return int(where[most]), float(percent[most])
+
+
+def _rounded(value: float | None) -> float | None:
+    return None if value is None else round(value, 3)

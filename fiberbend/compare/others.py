@@ -1,0 +1,132 @@
+"""The models beside a run, as functions of what they are compared by."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline, PchipInterpolator
+
+from analytic.bending import Hemicircle
+from analytic.stress import Floats
+from fiberbend.case.case import Case
+from fiberbend.models.closed_form import analytic_curves, lever_arm
+
+if TYPE_CHECKING:
+    from fiberbend.control.plant_curve import Curve
+
+ANALYTIC = {"zero-fit": "analytic", "winding": "analytic_winding", "paper": "analytic_paper"}
+"""What columns and run.json call the analytical models."""
+_LABELS = {
+    "zero-fit": "analytic (own rubber)",
+    "winding": "analytic (area to winding)",
+    "paper": "analytic (paper's μ̄)",
+}
+_SLACK = 1e-6
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Straight:
+    """A section that is held straight, its axial stretch free.
+
+    Attributes:
+        pressure: rising pressures from zero on, (n,), MPa.
+        moment: moments about the floor's lower face that hold it, (n,), N mm.
+    """
+
+    pressure: Floats
+    moment: Floats
+
+
+@dataclasses.dataclass(frozen=True)
+class Other:
+    """A model beside the run.
+
+    Attributes:
+        name: as columns and run.json call it.
+        label: as plots and messages call it.
+        value: pressures in kPa of angles in degrees, or tip forces in N of pressures in kPa,
+            elementwise; nan where the model does not reach.
+        line: name among the analytical models; empty for the section model.
+    """
+
+    name: str
+    label: str
+    value: Callable[[Floats], Floats]
+    line: str = ""
+
+
+def bending_models(case: Case, model: str, section: Curve | None) -> list[Other]:
+    """P(θ) of the other models of a case that bends freely.
+
+    Args:
+        case: the case.
+        model: the run's own model, which is none of the others.
+        section: P(θ) of the section model, where there is one.
+    """
+    others = []
+    if section is not None and model != "section":
+        others.append(Other("section", "section model", _through_curve(section)))
+    for line, closed in analytic_curves(case).items():
+        if not (line == "zero-fit" and model == "analytic"):
+            others.append(Other(ANALYTIC[line], _LABELS[line], _closed(closed), line))
+    return others
+
+
+def force_models(case: Case, model: str, straight: Straight | None) -> list[Other]:
+    """F(P) of the other models of a case whose tip is blocked; see `bending_models`."""
+    lever, others = lever_arm(case), []
+    if straight is not None and model != "section":
+        others.append(Other("section", "section model (M/L_f)", _held(straight, lever)))
+    curves = analytic_curves(case)
+    if curves and model != "analytic":
+        others.append(Other("analytic", "κP/L_f", _force(curves["zero-fit"], lever), "zero-fit"))
+    if curves:
+        others.append(
+            Other(
+                "analytic_winding",
+                "κP/L_f (area to winding)",
+                _force(curves["winding"], lever),
+                "winding",
+            )
+        )
+    return others
+
+
+def through_rows(
+    rows: Sequence[dict[str, Any]], key: str, value: str
+) -> Callable[[Floats], Floats]:
+    """A smooth curve of a column over another one; nan outside, and where there are no two rows."""
+    pairs = {row[key]: row[value] for row in rows if row.get(value) is not None}
+    at = np.array(sorted(pairs))
+    if len(at) < 2:
+        return lambda x: np.full(np.shape(x), np.nan)
+    through = PchipInterpolator(at, np.array([pairs[x] for x in at]), extrapolate=False)
+    return lambda x: np.asarray(through(x))
+
+
+def _through_curve(curve: Curve) -> Callable[[Floats], Floats]:
+    order = np.argsort(curve.angle)
+    low, high = np.degrees(curve.angle[order[[0, -1]]])
+    spline = CubicSpline(curve.angle[order], 1e3 * curve.pressure[order])
+
+    def pressure(degrees: Floats) -> Floats:
+        inside = (degrees >= low - _SLACK) & (degrees <= high + _SLACK)
+        return np.where(inside, spline(np.radians(np.clip(degrees, low, high))), np.nan)
+
+    return pressure
+
+
+def _closed(closed: Hemicircle) -> Callable[[Floats], Floats]:
+    return lambda degrees: 1e3 * closed.pressure(np.radians(degrees))
+
+
+def _held(straight: Straight, lever: float) -> Callable[[Floats], Floats]:
+    moment = PchipInterpolator(straight.pressure, straight.moment, extrapolate=False)
+    return lambda kpa: np.asarray(moment(1e-3 * kpa) / lever)
+
+
+def _force(closed: Hemicircle, lever: float) -> Callable[[Floats], Floats]:
+    return lambda kpa: closed.force(1e-3 * kpa, lever)

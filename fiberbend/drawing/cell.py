@@ -1,0 +1,265 @@
+"""What only a cell shows: the rubber that bulges between the fibers, and the fiber's tension."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from fiberbend.drawing.gallery import Gallery
+from fiberbend.drawing.page import figure, nice_above, save
+from fiberbend.states.bend import in_frame
+from fiberbend.states.snapshot import (
+    Scenery,
+    Snapshot,
+    Target,
+    Write,
+)
+from fiberbend.states.stack import Stack, repeated, root_section
+from geometry.actuator import Actuator
+from geometry.mesh.data import Floats
+from geometry.winding.outline import OUTLINES
+
+_PITCHES = 5
+_VIEW = (-0.62, 0.62, -0.48)
+_PLOT = (1000, 640)
+_BAND: dict[str, Any] = {"alpha": 0.16, "linewidth": 0.0}
+_PIECES = {
+    "hemicircle": ("wall", "side", "floor"),
+    "rectangle": ("top", "side", "floor"),
+    "circle": ("upper half", "lower half"),
+}
+"""Names of the outline's pieces."""
+_WINDOW = 2.0
+"""Length in mm over which a tension is averaged, about that of an element."""
+
+
+class Slices:
+    """A few slices of a cell put together and bent.
+
+    Args:
+        scenery: of the cell, with fibers that form lines.
+        snapshots: the states, at least one.
+
+    Raises:
+        ValueError: no state.
+    """
+
+    def __init__(self, scenery: Scenery, snapshots: Sequence[Snapshot]) -> None:
+        if not snapshots:
+            raise ValueError("no state to draw")
+        self._cell, self._snapshots = scenery, snapshots
+        self._section = len(root_section(scenery.mesh).nodes)
+        self._stack: Stack = repeated(scenery, (2 if scenery.mesh.half else 1) * _PITCHES)
+        moved = [self._stack.snapshot(scenery, state) for state in snapshots]
+        self._gallery = Gallery(self._stack.scenery, moved, level=6)
+
+    def bulge(self, target: Target) -> None:
+        """Every state in space, coloured by how far its surface lies outside its own mean.
+
+        The mean is taken along z; shapes are true to scale.
+
+        Raises:
+            fiberbend.drawing.stage.PictureError: nothing can be drawn on this machine.
+        """
+        values = [self._outward(state) for state in self._snapshots]
+        high = nice_above(max(float(np.quantile(np.abs(v), 0.995)) for v in values))
+        captions = [
+            f"{state.caption}\nbulge at the crown {float(np.ptp(self.crown(state)[1])):.2f} mm"
+            for state in self._snapshots
+        ]
+        page = self._gallery.page(
+            title=f"{self._cell.title}: rubber between the fibers, {_PITCHES} pitches",
+            captions=captions,
+            values=values,
+            limits=(-high, high),
+            label="surface outside its mean along the axis (mm); true to scale",
+            toward=_VIEW,
+            colors="RdBu_r",
+        )
+        page.save(target)
+
+    def crown(self, state: Snapshot) -> tuple[Floats, Floats]:
+        """Height of the winding's surface at the crown over one slice.
+
+        Returns:
+            z at rest and height in the turning frame, mm, both (planes,).
+        """
+        mesh = self._cell.mesh
+        height = in_frame(mesh.nodes, state.displacement)[:, 1]
+        line = slice(mesh.points["crown"], None, self._section)
+        return mesh.nodes[line, 2], height[line]
+
+    def _outward(self, state: Snapshot) -> Floats:
+        """Outward distance of the drawn points from their mean along z, mm."""
+        stack = self._stack
+        position = in_frame(self._cell.mesh.nodes, state.displacement)
+        planes = position.reshape(-1, self._section, 3)
+        # Simpson's rule: the planes are the ends and middles of quadratic layers
+        weights = np.ones(len(planes))
+        weights[1:-1] = 2.0
+        weights[1::2] = 4.0
+        mean = np.einsum("p,pni->ni", weights / weights.sum(), planes)
+        off = (planes - mean).reshape(-1, 3)[stack.node] * stack.sign
+        cells = stack.scenery.mesh.cells
+        normals = self._gallery.skin.normals(stack.scenery.mesh.nodes[cells])
+        outward: Floats = (self._gallery.skin.interpolate(off[cells]) * normals).sum(axis=1)
+        return outward
+
+
+def plot_tension(
+    scenery: Scenery,
+    snapshots: Sequence[Snapshot],
+    target: Target,
+    actuator: Actuator,
+    stiffness: float,
+) -> None:
+    """Tension of the fiber along the outline, once around or, by symmetry, half of that.
+
+    Lines are means over the lines of a ribbon, bands their range.
+
+    Args:
+        scenery: of the cell, with fibers that form lines.
+        snapshots: the states, at least one.
+        target: a path, or a file open for writing bytes.
+        actuator: dimensions.
+        stiffness: axial stiffness EA of a fiber, N.
+
+    Raises:
+        ValueError: no state, or one without fiber forces.
+    """
+    from matplotlib import colormaps
+    from matplotlib.patches import Patch
+
+    if not snapshots:
+        raise ValueError("no state to draw")
+    page = figure(_PLOT)
+    rows = (len(snapshots) + 4) // 4
+    axes = page.add_axes((0.09, 0.12, 0.81, 0.77 - 0.04 * rows))
+    shades = colormaps["viridis"](np.linspace(0.0, 0.85, len(snapshots)))
+    is_ribbon = False
+    for state, color in zip(snapshots, shades, strict=True):
+        s, tension = tension_along(scenery, state, actuator)
+        is_ribbon = len(tension) > 1
+        axes.fill_between(s, tension.min(axis=0), tension.max(axis=0), color=color, **_BAND)
+        axes.plot(s, tension.mean(axis=0), color=color, linewidth=2.2, label=state.caption)
+    axes.set_xlim(0.0, float(s[-1]))
+    low, high = axes.get_ylim()
+    axes.set_ylim(min(low, 0.0), high + 0.06 * (high - low))
+    axes.axhline(0.0, color="0.5", linewidth=0.8)
+    _name_pieces(axes, actuator, scenery.mesh.half)
+    way = "to the middle of the floor" if scenery.mesh.half else "once around"
+    page.text(0.5, 0.95, f"{scenery.title}: tension of the fiber", ha="center", fontsize=15)
+    axes.set_xlabel(f"distance along the outline from the crown {way} (mm)", fontsize=13)
+    axes.set_ylabel("axial force (N)", fontsize=13)
+    strain = axes.secondary_yaxis(
+        "right", functions=(lambda n: 100 * n / stiffness, lambda e: e * stiffness / 100)
+    )
+    strain.set_ylabel("strain (%)", fontsize=13)
+    for one in (axes, strain):
+        one.tick_params(labelsize=11)
+    axes.spines["top"].set_visible(False)
+    handles, _ = axes.get_legend_handles_labels()
+    if is_ribbon:
+        handles.append(Patch(color="0.3", label="across its width", **_BAND))
+    above = {"loc": "lower center", "bbox_to_anchor": (0.5, 1.0)}
+    axes.legend(handles=handles, ncols=min(4, len(handles)), frameon=False, fontsize=11, **above)
+    save(page, target)
+
+
+def _name_pieces(axes: Any, actuator: Actuator, half: bool) -> None:
+    """Lines where the outline's pieces meet, and their names where there is room."""
+    names = _PIECES[actuator.section]
+    lengths = [piece.length for piece in OUTLINES[actuator.section](actuator)]
+    if not half:
+        # the last piece goes on into its own mirror image
+        names = (*names, *names[-2::-1])
+        lengths = [*lengths[:-1], 2 * lengths[-1], *lengths[-2::-1]]
+    ends = np.cumsum(lengths)
+    for end in ends[:-1]:
+        axes.axvline(end, color="0.6", linewidth=0.9, linestyle=(0, (4, 3)), zorder=0)
+    for name, end, length in zip(names, ends, lengths, strict=True):
+        if length > 0.045 * ends[-1]:
+            axes.text(
+                end - length / 2,
+                0.985,
+                name,
+                transform=axes.get_xaxis_transform(),
+                ha="center",
+                va="top",
+                color="0.35",
+                fontsize=11,
+            )
+
+
+def tension_along(scenery: Scenery, state: Snapshot, actuator: Actuator) -> tuple[Floats, Floats]:
+    """Tension of a whole fiber by each line of its ribbon, as a running mean.
+
+    A segment that an element's face cuts off short says little by itself.
+
+    Args:
+        scenery: of a cell, with fibers that form lines.
+        state: its state.
+        actuator: dimensions.
+
+    Returns:
+        Arc lengths s on the outline from the crown, (n,), mm, and tensions (lines, n), N.
+
+    Raises:
+        ValueError: no fiber forces.
+    """
+    fibers, force = scenery.lines, state.fiber_force
+    if fibers is None or force is None:
+        raise ValueError("no fiber forces to draw")
+    lines = round(1 / float(fibers.share[0]))
+    helix, line = np.divmod(fibers.curve, lines)
+    perimeter = actuator.winding_perimeter
+    if scenery.mesh.half:
+        # what lies beyond a mirror plane is the image of the other helix's opposite line
+        line, end = np.where(helix == 0, lines - 1 - line, line), perimeter / 2
+        kept = np.ones(len(line), dtype=bool)
+    else:
+        kept, end = helix == 0, perimeter
+    s = np.linspace(0.0, end, 301)
+    low, high = np.clip(s - _WINDOW / 2, 0.0, end), np.clip(s + _WINDOW / 2, 0.0, end)
+    rows = []
+    for number in range(lines):
+        own = np.flatnonzero(kept & (line == number))
+        own = own[np.argsort(fibers.s[own], kind="stable")]
+        ends = np.r_[0.0, np.cumsum(fibers.length[own])]
+        ends *= end / ends[-1]
+        total = np.r_[0.0, np.cumsum(np.diff(ends) * force[own] / fibers.share[own])]
+        rows.append((np.interp(high, ends, total) - np.interp(low, ends, total)) / (high - low))
+    return s, np.array(rows)
+
+
+def draw_cell(
+    scenery: Scenery,
+    snapshots: Sequence[Snapshot],
+    write: Write,
+    actuator: Actuator,
+    stiffness: float,
+) -> list[str]:
+    """Draw fiber_stretch.png and cell_bulge.png.
+
+    Args:
+        scenery: of the cell, with fibers that form lines.
+        snapshots: the states.
+        write: writes a file, such as `RunFolder.write`.
+        actuator: dimensions.
+        stiffness: axial stiffness EA of a fiber, N.
+
+    Returns:
+        The names written.
+
+    Raises:
+        ValueError: no state, or one without fiber forces.
+        fiberbend.drawing.stage.PictureError: nothing can be drawn on this machine.
+    """
+    write(
+        "fiber_stretch.png",
+        lambda file: plot_tension(scenery, snapshots, file, actuator, stiffness),
+    )
+    write("cell_bulge.png", Slices(scenery, snapshots).bulge)
+    return ["fiber_stretch.png", "cell_bulge.png"]

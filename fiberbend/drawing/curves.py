@@ -1,0 +1,300 @@
+"""Curves of a run: bending angle and tip force against pressure, and the path of the tip.
+
+Rows are those of history.csv; what a row does not hold is left out.
+"""
+
+from __future__ import annotations
+
+import functools
+import textwrap
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from fiberbend.drawing.labels import Labels
+from fiberbend.drawing.overlay import (
+    MODELS,
+    Line,
+    Overlay,
+    Points,
+)
+from fiberbend.drawing.page import figure, save
+from fiberbend.states.snapshot import Target, Write
+from geometry.mesh.data import Floats
+
+Row = Mapping[str, float | None]
+
+SIZE = (1000, 700)
+"""Width and height of a plot in pixels."""
+_BLUE, _RED = "#1f5a99", "#c0392b"
+_MEASURED = "#111111"
+_STYLES = dict(
+    zip(
+        MODELS,
+        [("#2e7d32", "-"), ("#7b4fa3", "--"), ("#a8641a", "-."), ("#6b6b6b", ":")],
+        strict=True,
+    )
+)
+_SAME_ANGLE = 0.05
+_LONG = 40
+_ROOM = 2.0
+_TINY = 1e-6
+_ANGLE = ("pressure_kPa", "angle_deg")
+_PATH = ("tip_z_mm", "tip_y_mm", "pressure_kPa")
+_FORCE = ("pressure_kPa", "tip_force_N")
+
+
+def plot_pressure_angle(
+    rows: Sequence[Row],
+    target: Target,
+    angles: Sequence[float] = (),
+    title: str = "",
+    reason: str | None = None,
+    overlay: Overlay | None = None,
+    name: str = "",
+) -> None:
+    """Bending angle against pressure, with a mark at every requested angle that was reached.
+
+    Args:
+        rows: rows of the history with pressure_kPa and angle_deg.
+        target: a path, or a file open for writing bytes.
+        angles: requested angles in degrees.
+        title: title of the case.
+        reason: why the run ended early, or None.
+        overlay: other models and measured points.
+        name: of the run's own curve.
+
+    Raises:
+        ValueError: no row holds both values.
+    """
+    data = _columns(rows, _ANGLE)
+    page, axes = _axes(title, reason, "pressure P (kPa)", "bending angle θ (°)")
+    labels = _curves(axes, data, overlay, name)
+    reached = []
+    for angle in angles:
+        nearest = int(np.abs(data[1] - angle).argmin())
+        if abs(data[1][nearest] - angle) <= _SAME_ANGLE:
+            reached.append((data[0][nearest], angle))
+    for point in reached:
+        axes.plot(*point, "o", color=_RED, markersize=9, zorder=4)
+    labels.avoid_points(*np.array(reached).reshape(-1, 2).T)
+    for pressure, angle in reached:
+        text = f"{angle:g}° at {pressure:.1f} kPa"
+        labels.beside(text, np.array([pressure]), np.array([angle]))
+    _name_curves(labels, data, overlay, name)
+    save(page, target)
+
+
+def plot_tip_path(
+    rows: Sequence[Row], target: Target, title: str = "", reason: str | None = None
+) -> None:
+    """Path of the tip in the plane of bending, z to the right, y up, one scale.
+
+    Dots are the steps; the curve through them is a spline.
+
+    Args:
+        rows: rows of the history with tip_z_mm, tip_y_mm and pressure_kPa.
+        target: a path, or a file open for writing bytes.
+        title: title of the case.
+        reason: why the run ended early, or None.
+
+    Raises:
+        ValueError: no row holds all three values.
+    """
+    z, y, pressure = _columns(rows, _PATH)
+    page, axes = _axes(title, reason, "z (mm)", "y (mm)")
+    axes.plot(*_smooth(z, y), "-", color=_BLUE, linewidth=1.8)
+    axes.plot(z, y, "o", color=_BLUE, markersize=4)
+    for i, name in {0: "start", len(z) - 1: "end"}.items():
+        axes.plot(z[i], y[i], "o", color=_RED, markersize=9, zorder=3)
+        above = 14 if y[i] >= y.mean() else -24
+        _label(axes, f"{name}: {pressure[i]:.1f} kPa", (z[i], y[i]), (0, above), "center")
+    reach = 0.62 * max(float(np.ptp(z)), float(np.ptp(y)), 10.0)
+    axes.set_aspect("equal")
+    axes.set_ylim((y.min() + y.max()) / 2 - reach, (y.min() + y.max()) / 2 + reach)
+    reach *= SIZE[0] / SIZE[1]
+    axes.set_xlim((z.min() + z.max()) / 2 - reach, (z.min() + z.max()) / 2 + reach)
+    save(page, target)
+
+
+def plot_tip_force(
+    rows: Sequence[Row],
+    target: Target,
+    title: str = "",
+    reason: str | None = None,
+    overlay: Overlay | None = None,
+    name: str = "",
+) -> None:
+    """Tip force of the whole body against pressure.
+
+    Args:
+        rows: rows of the history with pressure_kPa and tip_force_N.
+        target: a path, or a file open for writing bytes.
+        title: title of the case.
+        reason: why the run ended early, or None.
+        overlay: other models and measured points.
+        name: of the run's own curve.
+
+    Raises:
+        ValueError: no row holds both values.
+    """
+    data = _columns(rows, _FORCE)
+    page, axes = _axes(title, reason, "pressure P (kPa)", "tip force (N)")
+    labels = _curves(axes, data, overlay, name)
+    end = data[0][-1:], data[1][-1:]
+    labels.beside(f"{end[1][0]:.3g} N at {end[0][0]:.1f} kPa", *end)
+    _name_curves(labels, data, overlay, name)
+    save(page, target)
+
+
+def draw_plots(
+    rows: Sequence[Row],
+    write: Write,
+    angles: Sequence[float] = (),
+    title: str = "",
+    reason: str | None = None,
+    beside_angles: Overlay | None = None,
+    beside_forces: Overlay | None = None,
+    name: str = "",
+) -> list[str]:
+    """Draw pressure_angle.png, tip_path.png and, with a tip force, tip_force.png.
+
+    Args:
+        rows: rows of the history; a plot whose columns are empty is not drawn.
+        write: writes a file, such as `RunFolder.write`.
+        angles: requested angles in degrees.
+        title: title of the case.
+        reason: why the run ended early, or None.
+        beside_angles: what is drawn beside the angle over the pressure.
+        beside_forces: what is drawn beside the tip force over the pressure.
+        name: of the run's own curve where others are beside it, such as "body model".
+
+    Returns:
+        The names written.
+    """
+    angle = functools.partial(plot_pressure_angle, angles=angles, overlay=beside_angles, name=name)
+    force = functools.partial(plot_tip_force, overlay=beside_forces, name=name)
+    plots: dict[str, tuple[Callable[..., None], tuple[str, ...]]] = {
+        "pressure_angle.png": (angle, _ANGLE),
+        "tip_path.png": (plot_tip_path, _PATH),
+        "tip_force.png": (force, _FORCE),
+    }
+    drawn = []
+    for name, (plot, columns) in plots.items():
+        if any(_complete(row, columns) for row in rows):
+            write(name, functools.partial(plot, rows, title=title, reason=reason))
+            drawn.append(name)
+    return drawn
+
+
+def _complete(row: Row, columns: Sequence[str]) -> bool:
+    return all(row.get(name) is not None for name in columns)
+
+
+def _columns(rows: Sequence[Row], names: Sequence[str]) -> list[Floats]:
+    full = [[row[name] for name in names] for row in rows if _complete(row, names)]
+    if not full:
+        raise ValueError(f"no row of the history holds {', '.join(names)}")
+    return list(np.array(full, dtype=float).T)
+
+
+def _smooth(z: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """A spline through the points, its parameter their distance along the way."""
+    from scipy.interpolate import CubicSpline
+
+    way = np.r_[0.0, np.cumsum(np.hypot(np.diff(z), np.diff(y)))]
+    kept = np.r_[True, np.diff(way) > 1e-9]
+    if kept.sum() < 3:
+        return z, y
+    fine = np.linspace(0.0, way[-1], 400)
+    curve = CubicSpline(way[kept], np.column_stack([z, y])[kept])(fine)
+    return curve[:, 0], curve[:, 1]
+
+
+def _axes(title: str, reason: str | None, across: str, up: str) -> tuple[Any, Any]:
+    page = figure(SIZE)
+    axes = page.add_axes((0.1, 0.11, 0.86, 0.77))
+    axes.set_title(title, fontsize=15, pad=24 if reason else 10)
+    if reason:
+        note = f"ended early: {textwrap.shorten(reason, 110, placeholder=' …')}"
+        axes.text(0.5, 1.015, note, transform=axes.transAxes, ha="center", color=_RED, fontsize=10)
+    axes.set_xlabel(across, fontsize=13)
+    axes.set_ylabel(up, fontsize=13)
+    axes.tick_params(labelsize=11)
+    axes.grid(color="0.9")
+    axes.spines[["top", "right"]].set_visible(False)
+    return page, axes
+
+
+def _label(
+    axes: Any, text: str, point: tuple[float, float], shift: tuple[float, float], side: str
+) -> None:
+    axes.annotate(text, point, shift, textcoords="offset points", ha=side, fontsize=12)
+
+
+def _curves(axes: Any, data: Sequence[Floats], overlay: Overlay | None, name: str) -> Labels:
+    """Draw the run's curve and what is beside it; set the limits.
+
+    Returns:
+        Labels that keep off all of it.
+    """
+    overlay = overlay or Overlay()
+    _range(axes, data, overlay)
+    labels = Labels(axes)
+    for line in overlay.lines:
+        color, style = _STYLES[line.name]
+        axes.plot(line.across, line.up, style, color=color, linewidth=1.1, zorder=2)
+        labels.avoid(line.across, line.up)
+    axes.plot(*data, "o-", color=_BLUE, markersize=4, linewidth=1.8, clip_on=False, zorder=3)
+    labels.avoid(data[0], data[1], weight=3.0)
+    for points in overlay.points:
+        axes.plot(points.across, points.up, "x", color=_MEASURED, markersize=7, zorder=3.5)
+        labels.avoid_points(points.across, points.up)
+    return labels
+
+
+def _name_curves(
+    labels: Labels, data: Sequence[Floats], overlay: Overlay | None, name: str
+) -> None:
+    """Names of all curves, where there is more than one."""
+    if overlay is None or not (overlay.lines or overlay.points):
+        return
+    if name:
+        labels.along(name, data[0], data[1], _BLUE)
+    for line in overlay.lines:
+        labels.along(_shown(line.label), line.across, line.up, _STYLES[line.name][0])
+    for points in overlay.points:
+        text = points.label if len(points.label) <= _LONG else f"{points.label[:_LONG]}…"
+        order = np.argsort(-np.abs(points.up))
+        labels.beside(text, points.across[order], points.up[order], _MEASURED, 11)
+
+
+def _shown(label: str) -> str:
+    """Signs as matplotlib sets them."""
+    return label.replace("μ̄", r"$\bar{\mu}$").replace("L_f", "$L_f$")
+
+
+def _range(axes: Any, data: Sequence[Floats], overlay: Overlay) -> None:
+    """Show the origin, the run, all measured points, and room for labels.
+
+    Other models may go beyond: of the pressures they get as much room again as the run.
+    """
+    for axis, change in enumerate((axes.set_xlim, axes.set_ylim)):
+        own = np.concatenate([[0.0], data[axis], *(p[axis] for p in map(_pair, overlay.points))])
+        low, high = float(own.min()), float(own.max())
+        others = [_pair(line)[axis] for line in overlay.lines]
+        if others:
+            beside = np.concatenate(others)
+            low, high = (
+                min(low, max(float(beside.min()), _ROOM * low)),
+                max(high, min(float(beside.max()), _ROOM * high)),
+            )
+        if low > -_TINY * (high - low):
+            low = 0.0
+        room = 0.12 * (high - low) or 1.0
+        change(low - (room if low < 0 else 0), high + room)
+
+
+def _pair(curve: Line | Points) -> tuple[Floats, Floats]:
+    return curve.across, curve.up

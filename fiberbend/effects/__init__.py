@@ -1,0 +1,1 @@
+"""The effects that a case can list."""

@@ -1,0 +1,143 @@
+"""From a case to the paper's closed forms: the analytical lines that are drawn beside any run."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import Any
+
+from analytic.bending import Hemicircle
+from analytic.stress import Floats, Stress, wound
+from fiberbend.case import convert
+from fiberbend.case.case import Case
+from fiberbend.case.case import Material as MaterialSpec
+from fiberbend.effects.table import HoopsEffect, WindingEffect, hold_straight
+from materials.laws import energy_slopes
+
+LIMITING = 10.0
+"""Stretching stiffness of floor and layer over the wall's from which y = 0 counts as inextensible;
+the paper's combined base has 50 times the wall's, a floor of the wall's rubber 0.7 times."""
+
+
+def no_analytic(case: Case) -> str | None:
+    """Why no analytical line stands for a case, or None where all do."""
+    actuator = case.actuator
+    if actuator.section != "hemicircle":
+        return f"the closed form of bending is for a hemicircle, not for a {actuator.section}"
+    if case.find(WindingEffect) is None and case.find(HoopsEffect) is None:
+        return "no winding holds the circumference, which the closed form keeps fixed"
+    stiffness = _stiffness(case)
+    share = (stiffness["floor"] + stiffness.get("layer", 0.0)) / stiffness["wall"]
+    if share < LIMITING:
+        return (
+            f"floor and layer together stretch only {share:.2g} times as hard as the wall, "
+            f"{LIMITING:g} times expected: y = 0 is no inextensible line"
+        )
+    return None
+
+
+def analytic_curves(case: Case) -> dict[str, Hemicircle]:
+    """The analytical models of a case; none where `no_analytic` says why.
+
+    Returns:
+        'zero-fit': eq. (19) with the wall's own law and the sheath, nothing fitted;
+        'winding': the same with the pressure acting on all inside the winding;
+        'paper': eq. (19) without its extra L and with the paper's μ̄, whatever the case's rubber.
+        A floor that limits the stretch by itself enters as the wall's rubber: its own stiffness
+        is what holds the line y = 0. Any other floor has its own law.
+    """
+    if no_analytic(case) is not None:
+        return {}
+    materials, sheath = case.materials, case.actuator.sheath
+    size = dimensions(case)
+    own: dict[str, Any] = {"stress": _stress(materials.wall)}
+    if materials.floor is not None and not floor_limits(case):
+        own["floor_stress"] = _stress(materials.floor)
+    if sheath is not None and materials.sheath is not None:
+        own |= {"sheath": sheath, "sheath_stress": _stress(materials.sheath)}
+    return {
+        "zero-fit": Hemicircle(*size, **own),
+        "winding": Hemicircle(*size, **own, acts="winding"),
+        "paper": Hemicircle(*size),
+    }
+
+
+def assumptions(case: Case) -> list[str]:
+    """What of a case the closed form leaves out, one sentence each."""
+    remarks = []
+    winding = case.find(WindingEffect)
+    if winding is not None:
+        remarks.append("the winding holds the circumference rigidly; its pitch does not enter")
+        if winding.pattern != "double-helix":
+            remarks.append("the twist of a single helix is not in it")
+    if floor_limits(case):
+        remarks.append("the floor enters as rubber of the wall on an inextensible line at y = 0")
+    specs = dict(case.materials).values()
+    if any(spec is not None and convert.material(spec).bulk is not None for spec in specs):
+        remarks.append("every material counts as incompressible")
+    return remarks
+
+
+def held(case: Case) -> bool:
+    """The actuator cannot bend: its tip force is asked for, not its angle."""
+    return hold_straight(case.effects)
+
+
+def lever_arm(case: Case) -> float:
+    """L_f in mm: from the end of the chamber to the middle of the post, or the whole cap."""
+    strips = convert.strips(convert.tip_support(case))
+    return case.actuator.cap - (strips.post_length / 2 if strips is not None else 0.0)
+
+
+def dimensions(case: Case) -> tuple[float, float, float, float]:
+    """(a, b, t, L) of a hemicircle, mm."""
+    actuator = case.actuator
+    radius, floor = actuator.radius, actuator.floor
+    assert radius is not None
+    assert floor is not None
+    return radius, floor, actuator.wall, actuator.length
+
+
+def chamber_moment(model: Hemicircle) -> float:
+    """∫ y dA of the chamber, mm³: κ of eq. (21), and dV/dθ of a section that keeps its shape."""
+    return dataclasses.replace(model, acts="chamber").kappa
+
+
+def face_height(case: Case) -> float:
+    """Height of the centroid of the tip cap's outer face: a half disk on a rectangle, mm."""
+    radius, floor, wall, _ = dimensions(case)
+    sheath = case.actuator.sheath or 0.0
+    r, bottom = radius + wall + sheath, -(case.actuator.layer or 0.0) - sheath
+    disk, box = math.pi * r**2 / 2, 2 * r * (floor - bottom)
+    centroids = floor + 4 * r / (3 * math.pi), (floor + bottom) / 2
+    return (disk * centroids[0] + box * centroids[1]) / (disk + box)
+
+
+def _stress(spec: MaterialSpec) -> Stress:
+    """Axial stress of a material whose circumference is held.
+
+    λ, 1, 1/λ give I1 = I2 = 1 + λ² + λ⁻², so that a law W(I1, I2) is the law W(I1) with the slope
+    ∂W/∂I1 + ∂W/∂I2.
+    """
+    material = convert.material(spec)
+
+    def slope(invariant: Floats) -> Floats:
+        first, second = energy_slopes(material, invariant, invariant)
+        return first + second
+
+    return wound(slope)
+
+
+def floor_limits(case: Case) -> bool:
+    """The floor alone is stiff enough to be the inextensible line."""
+    stiffness = _stiffness(case)
+    return stiffness["floor"] >= LIMITING * stiffness["wall"]
+
+
+def _stiffness(case: Case) -> dict[str, float]:
+    """Shear modulus times area of each region of a hemicircle, at rest, N."""
+    areas = convert.dimensions(case.actuator).region_areas()
+    specs = {part: spec for part, spec in dict(case.materials).items() if spec is not None}
+    return {
+        part: convert.material(specs[part]).initial_shear_modulus * areas[part] for part in areas
+    }

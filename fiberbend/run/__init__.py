@@ -1,0 +1,1 @@
+"""A run from a case to its folder."""

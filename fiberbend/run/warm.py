@@ -1,0 +1,141 @@
+"""States of the section model from which a body takes its start and its direction."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import numpy.typing as npt
+from mpi4py import MPI
+
+from fem.kinematics.uniform import CURVATURE, STRETCH
+from fem.march.frames import Frames
+from fem.march.guide import Guide
+from fem.march.records import Rules, State, measure
+from fem.scene import Scene
+from fem.solver.newton import Outcome
+from fiberbend.case.case import Case
+from fiberbend.case.section_beside import as_section
+from fiberbend.effects.table import (
+    BlockedTipEffect,
+    ContactEffect,
+    PressureEffect,
+    WindingEffect,
+)
+from fiberbend.models.kinds import make_mesh
+from fiberbend.run.assembly import assemble
+
+Floats = npt.NDArray[np.float64]
+
+PRESSURE = "pressure"
+STEERED_TURN = math.radians(90)
+"""Greatest change of the angle in a step that leans on the section, unless the case says."""
+STEERED_FIRST = math.radians(15)
+STEERED_GROWTH = 3.0
+BEYOND = 1.15
+"""The section goes so much further than the angle that ends a run: a body differs a little."""
+
+
+@dataclasses.dataclass(frozen=True)
+class SectionStates:
+    """m states of a section with n nodes, from rest on.
+
+    Attributes:
+        nodes: of its mesh, (n, 2), mm.
+        measures: by name, what a march may drive, of the whole actuator, (m,).
+        curvature: k, 1/mm, (m,).
+        stretch: λ0, (m,).
+        displacement: u and v, mm, (m, n, 2).
+    """
+
+    nodes: Floats
+    measures: dict[str, Floats]
+    curvature: Floats
+    stretch: Floats
+    displacement: Floats
+
+    def guide(self, scene: Scene, frames: Frames, length: float) -> Guide:
+        """The guide of a body."""
+        measures = {}
+        for name, values in self.measures.items():
+            share = scene.body.copies if name.startswith("conjugate") else 1.0
+            measures[name] = values / share
+        return Guide(
+            scene.body,
+            frames,
+            length,
+            self.nodes,
+            measures,
+            self.curvature,
+            self.stretch,
+            self.displacement,
+        )
+
+
+def steered(rules: Rules, case: Case) -> Rules:
+    """Rules of a march with a guide: a short first step, from which the ends are learnt."""
+    turn = case.solver.max_turn
+    return dataclasses.replace(
+        rules,
+        turn=turn or STEERED_TURN,
+        first_turn=turn or STEERED_FIRST,
+        grow=STEERED_GROWTH,
+    )
+
+
+def guides(case: Case) -> bool:
+    """Whether a section bends as the body of a case does, between its ends."""
+    winding = case.find(WindingEffect)
+    return (
+        case.find(PressureEffect) is not None
+        and case.find(BlockedTipEffect) is None
+        and case.find(ContactEffect) is None
+        and (winding is None or winding.pattern == "double-helix")
+    )
+
+
+def section_states(case: Case) -> SectionStates | None:
+    """March the section of a case through the case's load; on one rank.
+
+    Args:
+        case: a case for which `guides` holds.
+
+    Returns:
+        The states; None where the section does not get anywhere.
+    """
+    pressure = case.find(PressureEffect)
+    assert pressure is not None
+    if pressure.angle is not None:
+        pressure = pressure.model_copy(update={"angle": BEYOND * pressure.angle})
+    section = as_section(case, pressure)
+    stop = case.output.stop_at_angle
+    if stop is not None and pressure.angle is None:
+        output = section.output.model_copy(update={"stop_at_angle": BEYOND * stop})
+        section = section.model_copy(update={"output": output})
+    states: list[State] = []
+
+    def keep(state: State, _outcome: Outcome) -> None:
+        states.append(state)
+
+    mesh = make_mesh(section, "section")
+    assembly = assemble(section, "section", mesh, MPI.COMM_SELF, keep, lambda _: None)
+    states.append(assembly.march.states[0])
+    assembly.march.run(assembly.ramps)
+    if len(states) < 4:
+        return None
+    copies = assembly.scene.body.copies
+    names = [measure(kind, PRESSURE) for kind in ("value", "followed", "conjugate")]
+    measures = {}
+    for name in names:
+        values = np.array([state.measures[name] for state in states])
+        if np.all(np.diff(values) > 0):
+            measures[name] = values * (copies if name.startswith("conjugate") else 1.0)
+    dofs = assembly.scene.body.node_dofs
+    return SectionStates(
+        mesh.nodes,
+        measures,
+        np.array([state.scalars[CURVATURE] for state in states]),
+        np.array([state.scalars[STRETCH] for state in states]),
+        np.array([state.w[dofs] for state in states]),
+    )

@@ -1,0 +1,1 @@
+"""Quantities with units, problems and paths of a case."""

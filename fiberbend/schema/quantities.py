@@ -1,0 +1,103 @@
+"""Building blocks of the case schema: quantities with units, and the base of all its models."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import PydanticCustomError, core_schema
+
+from fiberbend.schema.units import KINDS, parse, show
+
+Sign = Literal["above zero", "zero or above", "other than zero", "any"]
+
+
+class Model(BaseModel):
+    """A part of a case: frozen, and without room for keys that nobody reads."""
+
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, strict=True, allow_inf_nan=False, use_attribute_docstrings=True
+    )
+
+
+@dataclasses.dataclass(frozen=True)
+class Quantity:
+    """Annotation of a float that a case holds as text with a unit.
+
+    Attributes:
+        kind: a key of `fiberbend.schema.units.KINDS`.
+        sign: which values are allowed.
+    """
+
+    kind: str
+    sign: Sign = "above zero"
+
+    @property
+    def expected(self) -> str:
+        """What a message says that it expected."""
+        kind = KINDS[self.kind]
+        return f'{kind.name} with its unit such as "{kind.example}"'
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        """Read with `parse`, write with `show`."""
+        return core_schema.no_info_plain_validator_function(
+            self._read,
+            serialization=core_schema.plain_serializer_function_ser_schema(
+                lambda value: show(value, self.kind)
+            ),
+        )
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Text that begins with a number and goes on with a unit."""
+        return {
+            "type": "string",
+            "pattern": r"^\s*[+-]?[0-9.]+([eE][+-]?[0-9]+)?\s*[^\s0-9.].*$",
+            "examples": [KINDS[self.kind].example],
+        }
+
+    def _read(self, text: Any) -> float:
+        try:
+            value = parse(text, self.kind)
+        except ValueError as error:
+            raise PydanticCustomError("quantity", "{message}", {"message": str(error)}) from None
+        allowed = {
+            "above zero": value > 0,
+            "zero or above": value >= 0,
+            "other than zero": value != 0,
+            "any": True,
+        }
+        if not allowed[self.sign]:
+            message = f"expected {KINDS[self.kind].name} {self.sign}"
+            raise PydanticCustomError("quantity", "{message}", {"message": message})
+        return value
+
+
+Length = Annotated[float, Quantity("length")]
+"""mm, above zero."""
+Width = Annotated[float, Quantity("length", "zero or above")]
+"""mm, zero allowed."""
+Position = Annotated[float, Quantity("length", "any")]
+"""mm, of either sign."""
+Pressure = Annotated[float, Quantity("pressure")]
+"""MPa, above zero."""
+SignedPressure = Annotated[float, Quantity("pressure", "other than zero")]
+"""MPa; negative is a vacuum."""
+Modulus = Annotated[float, Quantity("modulus")]
+"""MPa, above zero."""
+Coefficient = Annotated[float, Quantity("modulus", "other than zero")]
+"""MPa; the higher coefficients of a law can be negative."""
+Angle = Annotated[float, Quantity("angle", "other than zero")]
+"""rad."""
+Volume = Annotated[float, Quantity("volume")]
+"""mm³, above zero."""
+Density = Annotated[float, Quantity("density")]
+"""t/mm³, above zero."""
+Bedding = Annotated[float, Quantity("bedding")]
+"""MPa/mm, above zero."""
+Acceleration = Annotated[float, Quantity("acceleration")]
+"""mm/s², above zero."""

@@ -1,0 +1,1 @@
+"""States of a run as arrays, and what is recovered from them."""

@@ -1,0 +1,67 @@
+"""The fibers as lines in the position of a state, with their tension.
+
+pyvista is imported where it is used: a run without output does without it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from geometry.mesh.data import Floats, MeshData
+from geometry.mesh.reference import gauss, shape_functions
+from geometry.winding.embed import EmbeddedFibers
+
+_JOINT = 1e-6
+"""Distance in mm within which segments of a curve touch."""
+
+
+def fiber_lines(
+    mesh: MeshData,
+    fibers: EmbeddedFibers,
+    displacement: Floats | None = None,
+    force: Floats | None = None,
+) -> Any:
+    """The fibers as a pyvista.PolyData of polylines in the deformed position.
+
+    A polyline follows a curve along z and ends where the curve leaves the mesh. Point data:
+    tension_N, the axial force of the line itself, the mean of both sides at a joint;
+    fiber_tension_N, the same of a whole fiber, of which a ribbon's line is a part. Cell data:
+    curve, its number.
+
+    Args:
+        mesh: the mesh.
+        fibers: segments along curves, sorted by curve and z.
+        displacement: by node number, (n, 3), mm; none for the undeformed position.
+        force: axial force of each segment, (segments,), N.
+    """
+    import pyvista as pv
+
+    points = _segment_points(mesh, fibers, mesh.nodes)
+    gap = np.linalg.norm(points[1:, 0] - points[:-1, 2], axis=1)
+    fresh = np.r_[True, (fibers.curve[1:] != fibers.curve[:-1]) | (gap > _JOINT)]
+    if displacement is not None:
+        points = _segment_points(mesh, fibers, mesh.nodes + displacement)
+    last = np.r_[fresh[1:], True]
+    # start and middle of every segment, and the end of the last one of a polyline
+    kept = np.column_stack([np.ones_like(last), np.ones_like(last), last]).ravel()
+    sizes = 2 * np.diff(np.r_[np.flatnonzero(fresh), len(fresh)]) + 1
+    lines = np.insert(np.arange(kept.sum()), np.cumsum(sizes) - sizes, sizes)
+    data = pv.PolyData(points.reshape(-1, 3)[kept], lines=lines)
+    data.cell_data["curve"] = fibers.curve[fresh]
+    if force is not None:
+        for name, value in (("tension_N", force), ("fiber_tension_N", force / fibers.share)):
+            start = np.where(fresh, value, (value + np.roll(value, 1)) / 2)
+            data.point_data[name] = np.column_stack([start, value, value]).ravel()[kept]
+    return data
+
+
+def _segment_points(mesh: MeshData, fibers: EmbeddedFibers, nodes: Floats) -> Floats:
+    """Start, middle and end of every segment, (segments, 3, 3)."""
+    first = gauss(fibers.points.shape[1])[0][0]
+    tangent = fibers.tangents[:, :1]
+    steps = np.array([0.0, 0.5, 1.0])[:, None]
+    values = shape_functions(mesh.cell_type, fibers.points[:, :1] + (steps - first) * tangent)[0]
+    points: Floats = values @ nodes[mesh.cells[fibers.cell]]
+    return points

@@ -1,0 +1,97 @@
+"""What a state of a run hands to files and pictures: plain arrays, free of the solver."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import IO
+
+from geometry.mesh.data import Floats, MeshData
+from geometry.winding.embed import EmbeddedFibers
+from materials.laws import Material
+
+Target = Path | IO[bytes]
+"""A path, or a file open for writing bytes."""
+
+Write = Callable[[str, Callable[[IO[bytes]], object]], None]
+"""Takes a name and a function that fills the file of that name, as `RunFolder.write` does."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Scenery:
+    """What all states of a run share.
+
+    Attributes:
+        mesh: hexahedra or tetrahedra of the body; of a section quadrilaterals, of a cell a slice.
+        materials: material of each region.
+        fibers: segments of the winding, or None without one.
+        smeared: True when the segments stand for a membrane and form no lines.
+        title: title of the case.
+        uniform: the mesh is a section or a slice that goes on alike along the axis; its states are
+            given in the turning frame.
+
+    Raises:
+        ValueError: a region without material, or a section that is taken for a solid.
+    """
+
+    mesh: MeshData
+    materials: Mapping[str, Material]
+    fibers: EmbeddedFibers | None
+    smeared: bool
+    title: str
+    uniform: bool = False
+
+    def __post_init__(self) -> None:
+        if self.mesh.nodes.shape[1] != 3 and not self.uniform:
+            raise ValueError("the mesh of a section is no body in space: expected a solid")
+        bare = sorted(set(self.mesh.regions) - set(self.materials))
+        if bare:
+            raise ValueError(f"region {bare[0]!r} has no material")
+
+    @property
+    def lines(self) -> EmbeddedFibers | None:
+        """The segments that form lines, or None."""
+        return None if self.smeared else self.fibers
+
+
+@dataclasses.dataclass(frozen=True)
+class Snapshot:
+    """One converged state of n nodes and m cells with k nodes each.
+
+    Attributes:
+        label: short name for files, such as "90deg"; letters, digits, ".", "-" and "_".
+        step: number of the load step.
+        pressure_kpa: chamber pressure in kPa.
+        angle_deg: bending angle in degrees.
+        displacement: by input node number, (n, 3), mm.
+        multiplier: p of W = ψ(Ī1, Ī2) + p (J − 1) at the nodes of each cell, (m, k), MPa.
+        fiber_force: axial force of each segment, (segments,), N, or None without a winding.
+        curvature: k of a model of uniform bending, 1/mm; its displacement, (n, 2) or (n, 3), has
+            components in the frame that turns with the section.
+        stretch: λ0 of the axis there.
+        twist: τ there, rad/mm.
+
+    Raises:
+        ValueError: a label that no file can bear.
+    """
+
+    label: str
+    step: int
+    pressure_kpa: float
+    angle_deg: float
+    displacement: Floats
+    multiplier: Floats
+    fiber_force: Floats | None
+    curvature: float = 0.0
+    stretch: float = 1.0
+    twist: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.label or not all(c.isalnum() or c in ".-_" for c in self.label):
+            raise ValueError(f"label {self.label!r}: expected letters, digits, '.', '-' or '_'")
+
+    @property
+    def caption(self) -> str:
+        """Pressure and angle in words."""
+        return f"P = {self.pressure_kpa:.1f} kPa,  θ = {self.angle_deg:.0f}°"

@@ -1,0 +1,276 @@
+"""Sections and slices of uniform bending put together to a body in space."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fiberbend.states.bend import Bend, in_frame
+from fiberbend.states.recovery import NodalFields, SplitNodes, split_nodes
+from fiberbend.states.snapshot import Scenery, Snapshot
+from geometry.bodies.extrude import sweep
+from geometry.bodies.stations import slice_stations
+from geometry.mesh.data import Floats, Ints, MeshData
+from geometry.winding.embed import EmbeddedFibers
+
+_MIRRORED = (1.0, 1.0, -1.0)
+_TURNED = (-1.0, 1.0, -1.0)
+
+
+@dataclasses.dataclass(frozen=True)
+class Stack:
+    """A body in space of which every part is an image of one section or slice.
+
+    Attributes:
+        scenery: mesh, materials and fibers of the body, n nodes and m hexahedra.
+        node: node of the section or slice that each node stands for, (n,).
+        sign: signs of the components in the turning frame there, (n, 3).
+        mirror: True for the nodes in a mirror plane z = const, (n,).
+        cell: cell that each cell stands for, (m,).
+        order: places of its nodes in the node list of that cell, (m, 27).
+        segment: fiber segment that each segment stands for, (segments,), or None.
+    """
+
+    scenery: Scenery
+    node: Ints
+    sign: Floats
+    mirror: NDArray[np.bool_]
+    cell: Ints
+    order: Ints
+    segment: Ints | None
+
+    def snapshot(self, base: Scenery, state: Snapshot) -> Snapshot:
+        """A state of the section or slice as one of the body in space.
+
+        Args:
+            base: the section or slice.
+            state: its state.
+        """
+        mesh = self.scenery.mesh
+        position = in_frame(base.mesh.nodes, state.displacement)[self.node] * self.sign
+        force = state.fiber_force
+        return Snapshot(
+            label=state.label,
+            step=state.step,
+            pressure_kpa=state.pressure_kpa,
+            angle_deg=state.angle_deg,
+            displacement=Bend.of(state).place(position, mesh.nodes[:, 2]) - mesh.nodes,
+            multiplier=self.at_cells(state.multiplier),
+            fiber_force=None if force is None or self.segment is None else force[self.segment],
+        )
+
+    def fields(self, nodes: SplitNodes, fields: NodalFields, state: Snapshot) -> NodalFields:
+        """Recovered fields of the section or slice as those of the body, stress turned with it.
+
+        Args:
+            nodes: `split_alike` of the section or slice.
+            fields: its fields.
+            state: its state.
+        """
+        copies = self._copies
+        source = np.empty(len(copies.node), dtype=np.int64)
+        source[copies.cells.ravel()] = nodes.cells[self.cell[:, None], self.order].ravel()
+        rotation = Bend.of(state).frames(self.scenery.mesh.nodes[:, 2])[0] * self.sign[:, None, :]
+        rotation = rotation[copies.node]
+        stress = fields.cauchy[source]
+        # one side alone leaves some of the shear that the other one takes away
+        in_plane = self.mirror[copies.node]
+        stress[in_plane, 2, :2] = stress[in_plane, :2, 2] = 0.0
+        return NodalFields(
+            jacobian=fields.jacobian[source],
+            stretches=fields.stretches[source],
+            cauchy=rotation @ stress @ rotation.swapaxes(1, 2),
+            multiplier=fields.multiplier[source],
+        )
+
+    @functools.cached_property
+    def _copies(self) -> SplitNodes:
+        return split_nodes(self.scenery.mesh)
+
+    def at_cells(self, values: Floats) -> Floats:
+        """Values at the nodes of every cell of the body from those of the section or slice.
+
+        Args:
+            values: at its cells, (cells, k, ...).
+
+        Returns:
+            Array (m, 27, ...).
+        """
+        return values[self.cell[:, None], self.order]
+
+
+def swept(scenery: Scenery, length: float, number: int, turned: bool = False) -> Stack:
+    """A section swept along z.
+
+    Args:
+        scenery: of the section.
+        length: of the body, mm.
+        number: layers of hexahedra.
+        turned: the other half of a half section is its image by half a turn about y, as under a
+            single helix, and is added; by a mirror plane it is left to whoever draws.
+    """
+    section = scenery.mesh
+    node, cell = np.arange(len(section.nodes)), np.arange(len(section.cells))
+    sign, order = np.ones((len(node), 3)), np.tile(np.arange(9), (len(cell), 1))
+    if turned:
+        section, node, sign, cell, order = _both_halves(section)
+    mesh = sweep(section, slice_stations(length, number))
+    planes = 2 * number + 1
+    return Stack(
+        scenery=_solid(scenery, mesh, None),
+        node=np.tile(node, planes),
+        sign=np.tile(sign, (planes, 1)),
+        mirror=np.zeros(len(mesh.nodes), dtype=bool),
+        cell=np.tile(cell, number),
+        order=np.tile(order, (number, 3)),
+        segment=None,
+    )
+
+
+def repeated(scenery: Scenery, number: int) -> Stack:
+    """Slices put together along z.
+
+    Each is the mirror image of the one before where half of the section is modelled, else alike.
+
+    Args:
+        scenery: of the slice.
+        number: slices.
+    """
+    slab = scenery.mesh
+    section = root_section(slab)
+    quads, nodes = len(section.cells), len(section.nodes)
+    layers, extent = len(slab.cells) // quads, float(slab.nodes[-1, 2])
+    mesh = sweep(section, slice_stations(number * extent, number * layers))
+
+    tile, plane = np.divmod(np.arange(len(mesh.nodes)) // nodes, 2 * layers)
+    flipped = slab.half & (tile % 2 == 1)
+    plane = np.where(flipped, 2 * layers - plane, plane)
+    sign = np.where(flipped[:, None], _MIRRORED, 1.0)
+    tiles, cells = np.divmod(np.arange(len(mesh.cells)), len(slab.cells))
+    cell = np.empty_like(cells)
+    cell[_copy(slab, quads, tiles, cells)] = cells
+    forward = np.arange(27)
+    backward = forward.reshape(3, 9)[::-1].ravel()
+    turned = slab.half & (tiles % 2 == 1)
+    segment, fibers = None, None
+    if scenery.lines is not None:
+        segment, fibers = _segments(scenery.lines, slab, quads, number)
+    return Stack(
+        scenery=_solid(scenery, mesh, fibers),
+        node=plane * nodes + np.arange(len(mesh.nodes)) % nodes,
+        sign=sign,
+        mirror=slab.half & (plane % (2 * layers) == 0),
+        cell=cell,
+        order=np.where(turned[:, None], backward, forward),
+        segment=segment,
+    )
+
+
+def split_alike(mesh: MeshData) -> SplitNodes:
+    """`split_nodes` of a section or slice, the ends of a slice that goes on alike being one."""
+    if mesh.half or mesh.cell_type == "quadrilateral":
+        return split_nodes(mesh)
+    last = len(mesh.nodes) - len(root_section(mesh).nodes)
+    tied = np.where(mesh.cells >= last, mesh.cells - last, mesh.cells)
+    return split_nodes(dataclasses.replace(mesh, cells=tied))
+
+
+def root_section(slab: MeshData) -> MeshData:
+    """The quadrilaterals of a slice's end z = 0; its nodes and cells are the first of the slice."""
+    quads = len(slab.facets["section_root"])
+    cells = slab.cells[:quads, :9]
+    facets = {}
+    for name, pairs in slab.facets.items():
+        sides = pairs[(pairs[:, 0] < quads) & (pairs[:, 1] > 0) & (pairs[:, 1] < 5)]
+        if len(sides):
+            facets[name] = sides - [0, 1]
+    return MeshData(
+        cell_type="quadrilateral",
+        nodes=slab.nodes[: int(cells.max()) + 1, :2],
+        cells=cells,
+        regions=slab.regions,
+        cell_region=slab.cell_region[:quads],
+        facets=facets,
+        half=slab.half,
+        points=slab.points,
+    )
+
+
+def _solid(scenery: Scenery, mesh: MeshData, fibers: EmbeddedFibers | None) -> Scenery:
+    return dataclasses.replace(scenery, mesh=mesh, fibers=fibers, uniform=False)
+
+
+def _both_halves(half: MeshData) -> tuple[MeshData, Ints, Floats, Ints, Ints]:
+    """A whole section from a half, and node, sign, cell and order as of a `Stack`."""
+    nodes, cells = len(half.nodes), len(half.cells)
+    shared = np.zeros(nodes, dtype=bool)
+    shared[half.facet_nodes("symmetry").ravel()] = True
+    added = np.flatnonzero(~shared)
+    number = np.arange(nodes)
+    number[added] = nodes + np.arange(len(added))
+    backward = np.arange(9).reshape(3, 3)[:, ::-1].ravel()
+    # the second and third side change places
+    side = np.array([0, 2, 1, 3])
+    facets = {
+        name: np.concatenate([pairs, np.column_stack([pairs[:, 0] + cells, side[pairs[:, 1]]])])
+        for name, pairs in half.facets.items()
+        if name != "symmetry"
+    }
+    mesh = dataclasses.replace(
+        half,
+        nodes=np.concatenate([half.nodes, half.nodes[added] * [-1.0, 1.0]]),
+        cells=np.concatenate([half.cells, number[half.cells][:, backward]]),
+        cell_region=np.tile(half.cell_region, 2),
+        facets=facets,
+        half=False,
+    )
+    sign = np.ones((len(mesh.nodes), 3))
+    sign[nodes:] = _TURNED
+    order = np.repeat([np.arange(9), backward], cells, axis=0)
+    return mesh, np.r_[np.arange(nodes), added], sign, np.tile(np.arange(cells), 2), order
+
+
+def _copy(slab: MeshData, quads: int, tile: Ints, cell: Ints) -> Ints:
+    """Numbers in the body of cells of the slice, in its copies of some numbers."""
+    layers = len(slab.cells) // quads
+    layer = cell // quads
+    layer = np.where(slab.half & (tile % 2 == 1), layers - 1 - layer, layer)
+    return (tile * layers + layer) * quads + cell % quads
+
+
+def _segments(
+    fibers: EmbeddedFibers, slab: MeshData, quads: int, number: int
+) -> tuple[Ints, EmbeddedFibers]:
+    """Fiber segments in all copies of a slice, sorted by curve and z, and what each stands for."""
+    count, extent = len(fibers.cell), float(slab.nodes[-1, 2])
+    tile, segment = np.repeat(np.arange(number), count), np.tile(np.arange(count), number)
+    flipped = slab.half & (tile % 2 == 1)
+    whole = EmbeddedFibers(
+        **{field.name: getattr(fibers, field.name)[segment] for field in dataclasses.fields(fibers)}
+    )
+    flip = np.array([1.0, 1.0, -1.0])
+    # a mirrored segment runs the other way, so that all run toward growing z
+    points = np.where(
+        flipped[:, None, None], [0.0, 0.0, 1.0] + whole.points[:, ::-1] * flip, whole.points
+    )
+    tangents = np.where(flipped[:, None, None], -whole.tangents[:, ::-1] * flip, whole.tangents)
+    lines = round(1 / float(fibers.share[0]))
+    image = (1 - whole.curve // lines) * lines + lines - 1 - whole.curve % lines
+    z = tile * extent + np.where(flipped, extent - whole.z, whole.z)
+    curve = np.where(flipped, image, whole.curve)
+    copies = dataclasses.replace(
+        whole,
+        cell=_copy(slab, quads, tile, whole.cell),
+        points=points,
+        tangents=tangents,
+        weights=np.where(flipped[:, None], whole.weights[:, ::-1], whole.weights),
+        curve=curve,
+        z=z,
+    )
+    order = np.lexsort((z, curve))
+    return segment[order], EmbeddedFibers(
+        **{field.name: getattr(copies, field.name)[order] for field in dataclasses.fields(copies)}
+    )

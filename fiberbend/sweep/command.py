@@ -1,0 +1,160 @@
+"""The command `fiberbend sweep`: a case at many points, resumable, by one process or several."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections import Counter
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from types import FrameType
+
+from fiberbend.run import launch
+from fiberbend.run.folder import RunFolder
+from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.sweep.points import Sweep, read_sweep
+from fiberbend.sweep.store import Store
+from fiberbend.sweep.workers import (
+    Crew,
+    Event,
+    serve,
+    work,
+)
+
+FAILED = 2
+INTERRUPTED = 130
+Say = Callable[[str], None]
+
+
+def run_sweep(
+    path: Path,
+    out: Path,
+    settings: Sequence[str] = (),
+    jobs: int = 1,
+    retry: bool = False,
+    say: Say = print,
+) -> int:
+    """Solve the points of a sweep that are not finished, then write its table and pictures.
+
+    Args:
+        path: the sweep file.
+        out: folder of the sweep.
+        settings: changes to the base case.
+        jobs: processes that solve at once; one works in this process.
+        retry: run failed points again.
+        say: takes lines for the user.
+
+    Returns:
+        The exit code: 0, 2 if a point failed, 130 if interrupted.
+
+    Raises:
+        CaseError: a file or a point is wrong, or the folder cannot be used; nothing has run.
+    """
+    if launch.size() > 1:
+        raise CaseError(
+            [Problem("fiberbend sweep", "under mpirun, expected -j for more processes")]
+        )
+    sweep = read_sweep(path, settings)
+    store = Store.open(out)
+    if retry:
+        for point in sweep.points:
+            store.forget(point)
+    before = sum(store.result(point) is not None for point in sweep.points)
+    say(f"{len(sweep.points)} points, {before} finished before")
+    interrupted = False
+    try:
+        _solve(sweep, store, path, settings, jobs, _Teller(len(sweep.points), before, say))
+    except KeyboardInterrupt:
+        interrupted = True
+    _write(sweep, store, say, pictures=not interrupted)
+    return _summary(sweep, store, interrupted, say)
+
+
+def run_worker(path: Path, out: Path, settings: Sequence[str]) -> int:
+    """Be one worker process of a sweep."""
+    return serve(read_sweep(path, settings).points, Store.open(out))
+
+
+class _Teller:
+    """Says what happens, a line a point."""
+
+    def __init__(self, count: int, finished: int, say: Say) -> None:
+        self._count, self._finished, self._say = count, finished, say
+
+    def __call__(self, event: Event) -> None:
+        if "done" in event:
+            self._finished += 1
+            reason = f": {event['reason']}" if event["reason"] else ""
+            self._say(
+                f"[{self._finished:3d}/{self._count}] {event['done']}  {event['status']}"
+                f"  {event['wall_s']:.2f} s{reason}"
+            )
+        elif "wait" in event:
+            self._say(f"another process is solving {', '.join(event['wait'])}; waiting")
+        elif "died" in event:
+            where = f" in {event['died']}" if event["died"] else ""
+            self._say(f"a worker died{where} (code {event['code']})")
+
+
+def _solve(
+    sweep: Sweep, store: Store, path: Path, settings: Sequence[str], jobs: int, tell: _Teller
+) -> None:
+    left = sum(store.result(point) is None for point in sweep.points)
+    if min(jobs, left) < 2:
+        work(sweep.points, store, tell)
+        return
+    command = [sys.executable, "-m", "fiberbend", "sweep", str(path), "--out", str(store.path)]
+    command += ["--worker", *(part for setting in settings for part in ("--set", setting))]
+
+    def stop(_number: int, _frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    previous = {number: signal.signal(number, stop) for number in (signal.SIGTERM, signal.SIGHUP)}
+    try:
+        Crew(command, min(jobs, left), sweep.points, store, tell).run()
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)
+
+
+def _summary(sweep: Sweep, store: Store, interrupted: bool, say: Say) -> int:
+    runs = {point.name: store.result(point) for point in sweep.points}
+    counts = Counter("not run" if run is None else run["status"] for run in runs.values())
+    say(f"{len(runs)} points: " + ", ".join(f"{n} {status}" for status, n in counts.items()))
+    for name, run in runs.items():
+        if run is not None and run["status"] == "failed":
+            say(f"failed: {name}: {run['reason']}")
+    if interrupted:
+        say("interrupted; the same command goes on where it was")
+        return INTERRUPTED
+    return FAILED if counts["failed"] or counts["not run"] else 0
+
+
+# --- table and pictures ------------------------------------------------------------------------
+
+
+def _write(sweep: Sweep, store: Store, say: Say, pictures: bool) -> None:
+    from fiberbend.sweep.table import as_csv, collect, quantities
+    from fiberbend.sweep.trends import as_markdown
+
+    rows, folder = collect(sweep, store), RunFolder(store.path)
+    told = quantities(sweep.report, rows)
+    folder.write_text("sweep.csv", as_csv(rows))
+    folder.write_text("trends.md", as_markdown(sweep.columns, rows, told))
+    for index, name in enumerate(sweep.report.history):
+        if all(row.get(name) is None for row in rows):
+            say(f"report.history.{index}: no point has a column {name}")
+    say(f"table in {store.path / 'sweep.csv'}")
+    if pictures:
+        from fiberbend.sweep.plots import draw
+
+        drawn = [quantity for quantity in told if quantity.kind in sweep.report.maps]
+        names = draw(
+            sweep.title,
+            sweep.columns,
+            rows,
+            drawn,
+            lambda name, fill: folder.write(f"maps/{name}", fill),
+        )
+        if names:
+            say(f"maps in {store.path / 'maps'}")

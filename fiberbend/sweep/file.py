@@ -1,0 +1,100 @@
+"""What a sweep file says: a base case, the fields that vary, and what is reported.
+
+The models check the file's own values. `fiberbend.sweep.points.read_sweep` is the way in: it also
+checks the case of every point, and reports every problem at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, field_validator
+from pydantic_core import PydanticCustomError
+
+from fiberbend.schema.problems import Problem
+from fiberbend.schema.quantities import Angle, Model, Pressure
+
+Quantity = Literal["pressure", "stretch", "blocked-force"]
+
+Values = Annotated[tuple[Any, ...], Field(strict=False)]
+
+MOST_POINTS = 10_000
+"""A grid with more points is taken for a mistake."""
+
+
+class Report(Model):
+    """What the table and the maps of a sweep hold beside status, angle and time."""
+
+    angles: tuple[Angle, ...] = Field(default=(), strict=False)
+    """Bending angles at which the pressure is reported; every point hits them exactly."""
+    force_at: Pressure | None = None
+    """Pressure at which the blocked force is reported; none unless said."""
+    history: tuple[str, ...] = Field(default=(), strict=False)
+    """Further columns of history.csv, at the end of each point."""
+    maps: tuple[Quantity, ...] = Field(
+        default=("pressure", "stretch", "blocked-force"), strict=False
+    )
+    """Quantities that are drawn, where the table holds them."""
+
+
+class SweepFile(Model):
+    """A sweep file."""
+
+    title: str = ""
+    """A line for the reader."""
+    case: Any
+    """The base case: the path of a case file, seen from the sweep file, or a case itself."""
+    set: dict[str, Any] = Field(default={})
+    """Changes to the base case that all points share, by dotted path."""
+    vary: dict[str, Values] = Field(default={})
+    """Values of each field, by dotted path; every combination is a point."""
+    zip: dict[str, Values] = Field(default={})
+    """Values of fields that change together: the first of each, the second of each, …"""
+    points: tuple[dict[str, Any], ...] = Field(default=(), strict=False)
+    """Points one by one, each as dotted paths with values."""
+    report: Report = Report()
+    """What is reported."""
+
+    @field_validator("case")
+    @classmethod
+    def _path_or_mapping(cls, case: Any) -> Any:
+        if not isinstance(case, str | dict):
+            raise PydanticCustomError("case", "expected the path of a case file, or a case")
+        return case
+
+
+def contradictions(file: SweepFile) -> Iterator[Problem]:
+    """What is wrong with a sweep file beyond its single values."""
+    for part, fields in (("vary", file.vary), ("zip", file.zip)):
+        for path, values in fields.items():
+            if not values:
+                yield Problem(f"{part}.{path}", "no value, expected at least one")
+    for index, settings in enumerate(file.points):
+        if not settings:
+            yield Problem(f"points.{index}", "nothing set, expected paths with values")
+    parts: Mapping[str, set[str]] = {
+        "points": {path for settings in file.points for path in settings},
+        "zip": {*file.zip},
+        "vary": {*file.vary},
+    }
+    seen: dict[str, str] = {}
+    for part, paths in parts.items():
+        for path in sorted(paths):
+            if path in seen:
+                yield Problem(f"{part}.{path}", f"given under {seen[path]} too, expected once")
+            seen.setdefault(path, part)
+    if not seen:
+        yield Problem("vary", "nothing varies, expected fields under vary, zip or points")
+    lengths = {path: len(values) for path, values in file.zip.items()}
+    first = next(iter(lengths), "")
+    for path, length in lengths.items():
+        if length != lengths[first]:
+            yield Problem(
+                f"zip.{path}", f"{length} values, expected {lengths[first]} as zip.{first} has"
+            )
+    count = max(len(file.points), 1) * max(lengths.get(first, 1), 1)
+    for values in file.vary.values():
+        count *= max(len(values), 1)
+    if count > MOST_POINTS:
+        yield Problem("vary", f"{count} points, expected at most {MOST_POINTS}")

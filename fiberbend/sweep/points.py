@@ -1,0 +1,289 @@
+"""From a sweep file to its points: one checked case each, all problems at once."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+import functools
+import hashlib
+import itertools
+import json
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from fiberbend.case.case import Case
+from fiberbend.effects.table import PressureEffect, StraightEffect
+from fiberbend.models.choice import UNIFORM, choose_model
+from fiberbend.reader.reader import (
+    apply_setting,
+    load_yaml,
+    parse_case,
+    put,
+)
+from fiberbend.schema.problems import CaseError, Problem, from_pydantic
+from fiberbend.schema.units import parse, show
+from fiberbend.sweep.fields import (
+    Column,
+    columns,
+    labels,
+    point_name,
+    value_at,
+)
+from fiberbend.sweep.file import Report, SweepFile, contradictions
+
+
+@dataclasses.dataclass(frozen=True)
+class Point:
+    """One case of a sweep.
+
+    Attributes:
+        name: name of its run folder, made from its values.
+        case: the checked case.
+        blocked: the same held straight under the pressure at which the blocked force is reported,
+            or None where the force is not asked for or the model cannot say it.
+    """
+
+    name: str
+    case: Case
+    blocked: Case | None = None
+
+    @functools.cached_property
+    def digest(self) -> str:
+        """Hash of the resolved cases: a result belongs to a point if it has the same."""
+        content = [case.resolved() for case in (self.case, self.blocked) if case is not None]
+        text = json.dumps(content, sort_keys=True, ensure_ascii=False)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+@dataclasses.dataclass(frozen=True)
+class Sweep:
+    """A checked sweep.
+
+    Attributes:
+        title: a line for the reader.
+        points: the points in the order of the file, the last varied field fastest.
+        columns: the varied fields, each with its value at every point.
+        report: what is reported.
+    """
+
+    title: str
+    points: tuple[Point, ...]
+    columns: tuple[Column, ...]
+    report: Report
+
+
+@dataclasses.dataclass(frozen=True)
+class _Setting:
+    """One changed field of a point.
+
+    Attributes:
+        path: dotted path in the case.
+        value: as YAML holds it.
+        origin: where the sweep file says so, `vary.actuator.radius.2`.
+    """
+
+    path: str
+    value: Any
+    origin: str
+
+
+def read_sweep(path: Path | str, settings: Iterable[str] = ()) -> Sweep:
+    """Read a sweep file and check the case of every point.
+
+    Args:
+        path: the YAML file.
+        settings: changes to the base case, `actuator.floor=3 mm`, after those of the file.
+
+    Raises:
+        CaseError: everything that is wrong with the file and with its points.
+    """
+    path = Path(path)
+    try:
+        file = SweepFile.model_validate(load_yaml(path))
+    except ValidationError as error:
+        raise CaseError(from_pydantic(error, SweepFile)) from None
+    problems = list(contradictions(file))
+    if problems:
+        raise CaseError(problems)
+    base = _base(file, path, settings)
+    points = list(_settings(file))
+    where = "case" if isinstance(file.case, dict) else file.case
+    cases = _check_all(base, points, file.report, where)
+    names = labels(list(dict.fromkeys(s.path for point in points for s in point)))
+    resolved = [case.resolved() for case in cases]
+    found_columns = columns(names, resolved)
+    result = []
+    for case, content in zip(cases, resolved, strict=True):
+        values = {label: value_at(content, field) for field, label in names.items()}
+        result.append(Point(point_name(values), case, _blocked(case, file.report)))
+    _no_point_twice(result)
+    return Sweep(file.title, tuple(result), found_columns, file.report)
+
+
+def _base(file: SweepFile, path: Path, settings: Iterable[str]) -> dict[str, Any]:
+    inline = isinstance(file.case, dict)
+    base = copy.deepcopy(file.case) if inline else load_yaml(path.parent / file.case)
+    problems: list[Problem] = []
+    for field, value in file.set.items():
+        try:
+            put(base, field, copy.deepcopy(value))
+        except CaseError as error:
+            problems += (Problem(f"set.{p.path}", p.text) for p in error.problems)
+    for setting in settings:
+        try:
+            apply_setting(base, setting)
+        except CaseError as error:
+            problems += error.problems
+    if problems:
+        raise CaseError(problems)
+    return base
+
+
+def _settings(file: SweepFile) -> Iterator[tuple[_Setting, ...]]:
+    """The changed fields of every point."""
+    parts: list[list[list[_Setting]]] = []
+    if file.points:
+        parts.append(
+            [
+                [_Setting(path, value, f"points.{i}.{path}") for path, value in entry.items()]
+                for i, entry in enumerate(file.points)
+            ]
+        )
+    if file.zip:
+        count = len(next(iter(file.zip.values())))
+        parts.append(
+            [
+                [_Setting(path, values[i], f"zip.{path}.{i}") for path, values in file.zip.items()]
+                for i in range(count)
+            ]
+        )
+    for path, values in file.vary.items():
+        parts.append([[_Setting(path, v, f"vary.{path}.{i}")] for i, v in enumerate(values)])
+    for combination in itertools.product(*parts):
+        yield tuple(setting for part in combination for setting in part)
+
+
+def _check_all(
+    base: dict[str, Any], points: list[tuple[_Setting, ...]], report: Report, where: str
+) -> list[Case]:
+    """The case of every point, or all their problems."""
+    cases: list[Case] = []
+    wrong: dict[Problem, list[int]] = {}
+    for index, settings in enumerate(points):
+        try:
+            cases.append(_case(base, settings, report))
+        except CaseError as error:
+            for problem in error.problems:
+                wrong.setdefault(problem, []).append(index)
+    if wrong:
+        raise CaseError(_told(wrong, points, where))
+    return cases
+
+
+def _told(
+    wrong: dict[Problem, list[int]], points: list[tuple[_Setting, ...]], where: str
+) -> Iterator[Problem]:
+    """Problems of points by what they hang on, as few as possible.
+
+    A problem of every point that has a value is told once, where the value stands; one of all
+    points, as one of the base case or of the report; any other by the values of its point.
+    """
+    with_origin: dict[str, set[int]] = {}
+    for index, settings in enumerate(points):
+        for setting in settings:
+            with_origin.setdefault(setting.origin, set()).add(index)
+    for problem, indices in wrong.items():
+        left = set(indices)
+        spots = {}
+        for index in indices:
+            for setting in points[index]:
+                if f"{problem.path}.".startswith(f"{setting.path}."):
+                    spots[setting.origin] = setting.origin + problem.path[len(setting.path) :]
+        for origin, spot in spots.items():
+            if with_origin[origin] <= set(indices):
+                left -= with_origin[origin]
+                yield Problem(spot, problem.text)
+        if len(left) == len(points):
+            reported = problem.path.startswith("report.")
+            yield Problem(problem.path if reported else f"{where}: {problem.path}", problem.text)
+        else:
+            for index in sorted(left):
+                values = ", ".join(f"{s.path} {s.value}" for s in points[index])
+                yield Problem(f"point {index + 1} ({values})", str(problem))
+
+
+def _case(base: dict[str, Any], settings: tuple[_Setting, ...], report: Report) -> Case:
+    data = copy.deepcopy(base)
+    problems: list[Problem] = []
+    for setting in settings:
+        try:
+            put(data, setting.path, copy.deepcopy(setting.value))
+        except CaseError as error:
+            problems += (Problem(setting.path, str(problem)) for problem in error.problems)
+    if problems:
+        raise CaseError(problems)
+    added = _request(data, report.angles)
+    try:
+        return parse_case(data)
+    except CaseError as error:
+        raise CaseError(
+            Problem(added.get(problem.path, problem.path), problem.text)
+            for problem in error.problems
+        ) from None
+
+
+def _blocked(case: Case, report: Report) -> Case | None:
+    model, _ = choose_model(case)
+    if report.force_at is None or model not in UNIFORM or case.find(StraightEffect) is not None:
+        return None
+    data = case.resolved()
+    for entry in data["effects"]:
+        if PressureEffect.name in entry:
+            entry[PressureEffect.name] = {"to": show(report.force_at, "pressure")}
+    data["effects"].append({StraightEffect.name: {}})
+    data |= {"model": model, "output": {"pictures": False, "fields": False}}
+    try:
+        return parse_case(data)
+    except CaseError as error:
+        raise CaseError(Problem("report.force_at", str(p)) for p in error.problems) from None
+
+
+def _request(data: dict[str, Any], angles: tuple[float, ...]) -> dict[str, str]:
+    """Ask a case for the reported angles too, so that their pressures are no interpolation.
+
+    Returns:
+        For each place in the case that this has made, its place in the sweep file.
+    """
+    output = data.setdefault("output", {}) if angles else None
+    given = output.setdefault("at_angles", []) if isinstance(output, dict) else None
+    if not isinstance(given, list):
+        return {}
+    there = set()
+    for text in given:
+        try:
+            there.add(parse(text, "angle"))
+        except ValueError:
+            continue
+    added = {}
+    for index, angle in enumerate(angles):
+        if angle not in there:
+            added[f"output.at_angles.{len(given)}"] = f"report.angles.{index}"
+            given.append(show(angle, "angle"))
+    return added
+
+
+def _no_point_twice(points: list[Point]) -> None:
+    first: dict[str, int] = {}
+    problems = []
+    for number, point in enumerate(points, start=1):
+        for key in (point.digest, point.name):
+            if first.setdefault(key, number) != number:
+                problems.append(
+                    Problem(f"point {number}", f"the same as point {first[key]}, {point.name}")
+                )
+                break
+    if problems:
+        raise CaseError(problems)

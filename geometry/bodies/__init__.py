@@ -1,0 +1,1 @@
+"""Solids swept from a section, by arrays or by gmsh."""

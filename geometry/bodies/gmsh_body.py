@@ -1,0 +1,84 @@
+"""The actuator's body meshed by gmsh, in a subprocess because gmsh can hang."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from geometry.actuator import Actuator
+from geometry.mesh.data import Floats, MeshData
+from geometry.mesh.errors import MeshError
+from geometry.sections.size import MeshSize, Strips, check_size
+
+_LAST_LINES = 5
+_MPI_VARIABLES = ("OMPI_", "PMIX_", "PMI_", "MPI_", "HYDRA_", "MPIEXEC_")
+
+
+def build_body(
+    actuator: Actuator,
+    size: MeshSize,
+    strips: Strips | None = None,
+    winding: Sequence[Floats] | None = None,
+    msh_path: Path | None = None,
+    time_limit: float = 120.0,
+) -> MeshData:
+    """Mesh the whole body with gmsh.
+
+    Surfaces are those of `geometry.bodies.stations.body_stations`; regions "wall", "floor",
+    "layer", "sheath". Hexahedra are sorted along z.
+
+    Args:
+        actuator: dimensions.
+        size: fineness, element type, half or full body.
+        strips: strips for a blocked tip.
+        winding: points (n, 3) in mm of each fiber, drawn into the .msh as group "winding".
+        msh_path: where to save gmsh's own file, or None.
+        time_limit: seconds after which gmsh is killed.
+
+    Raises:
+        ValueError: dimensions that this mesh cannot hold.
+        MeshError: gmsh failed or did not end in time.
+    """
+    check_size(actuator, size, strips)
+    with tempfile.TemporaryDirectory(prefix="fiberbend-mesh-") as folder:
+        spec, out = Path(folder) / "spec.json", Path(folder) / "mesh.npz"
+        description = {
+            "actuator": dataclasses.asdict(actuator),
+            "size": dataclasses.asdict(size),
+            "strips": dataclasses.asdict(strips) if strips else None,
+            "winding": [curve.tolist() for curve in winding or ()],
+            "msh_path": str(Path(msh_path).resolve()) if msh_path else None,
+        }
+        spec.write_text(json.dumps(description))
+        _run([sys.executable, "-m", "geometry.bodies.gmsh_worker", str(spec), str(out)], time_limit)
+        return MeshData.load(out)
+
+
+def _run(command: list[str], time_limit: float) -> None:
+    # gmsh may be linked with MPI, and a child of a rank must not join that rank's job
+    env = {k: v for k, v in os.environ.items() if not k.startswith(_MPI_VARIABLES)}
+    root = str(Path(__file__).resolve().parent.parent)
+    env["PYTHONPATH"] = os.pathsep.join(p for p in (root, env.get("PYTHONPATH")) if p)
+    try:
+        done = subprocess.run(
+            command,
+            env=env,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            timeout=time_limit,
+        )
+    except subprocess.TimeoutExpired as error:
+        raise MeshError(f"gmsh did not finish within its time limit of {time_limit:g} s") from error
+    if done.returncode != 0:
+        lines = [line for line in done.stdout.splitlines() if line.strip()]
+        last = " | ".join(lines[-_LAST_LINES:])
+        raise MeshError(f"gmsh ended with code {done.returncode}: {last}")

@@ -1,0 +1,1 @@
+"""A mesh as arrays, and its reference elements."""

@@ -1,0 +1,1 @@
+"""Cross-sections: their outlines and block-structured quads."""

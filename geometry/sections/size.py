@@ -1,0 +1,123 @@
+"""How fine a mesh is, and whether it can hold the dimensions of an actuator."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator
+
+from geometry.actuator import Actuator
+
+MAX_ASPECT = 25.0
+_ROUNDING = 1e-9
+
+
+@dataclasses.dataclass(frozen=True)
+class MeshSize:
+    """Fineness of a mesh.
+
+    Attributes:
+        axial: target length of the elements along z in mm.
+        section: refinement of the section; n gives n quads through wall, floor and sheath, 4 n
+            along a quarter arc, 3 n along the half floor of a hemicircle and along the shorter of
+            half width and height of a rectangle; tetrahedra have edges of axial / n.
+        element: "hexahedron" or "tetrahedron".
+        half: mesh x ≥ 0 only.
+
+    Raises:
+        ValueError: a value outside these meanings.
+    """
+
+    axial: float = 1.5
+    section: int = 1
+    element: str = "hexahedron"
+    half: bool = True
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.axial) and self.axial > 0):
+            raise ValueError(f"axial {self.axial} mm: expected a positive length")
+        if self.section < 1:
+            raise ValueError(f"section refinement {self.section}: expected at least 1")
+        if self.element not in ("hexahedron", "tetrahedron"):
+            raise ValueError(f"element {self.element!r}: expected 'hexahedron' or 'tetrahedron'")
+
+
+@dataclasses.dataclass(frozen=True)
+class Strips:
+    """Strips of the outer surface on which a blocked tip is held; lengths in mm.
+
+    Attributes:
+        roof_half_width: the roof is |x| ≤ this on the top of the outer surface, 0 ≤ z ≤ L.
+        post_length: the post is the last part of the tip cap's underside, this long. The underside
+            of a circle is |x| ≤ roof_half_width.
+    """
+
+    roof_half_width: float
+    post_length: float
+
+
+def elements_through(thickness: str, size: MeshSize) -> int:
+    """Number of quads through a "wall", "floor", "sheath" or "layer"."""
+    return 1 if thickness == "layer" else size.section
+
+
+def too_thin(actuator: Actuator, size: MeshSize) -> Iterator[tuple[str, str]]:
+    """Thicknesses whose elements would be too flat.
+
+    Yields:
+        Name of the dimension, and a message with the least value it can have with this mesh.
+    """
+    for name in ("wall", "floor", "sheath", "layer"):
+        thickness = getattr(actuator, name)
+        if thickness is None:
+            continue
+        least = size.axial * elements_through(name, size) / MAX_ASPECT
+        if thickness < least:
+            yield (
+                name,
+                f"{thickness:g} mm is too thin for elements {size.axial:g} mm long: "
+                f"expected at least {least:g} mm",
+            )
+        elif name == "floor" and 0 < (above := wall_above_floor(actuator)) < least:
+            most = f"{actuator.wall - least:g} mm or all of the wall, {actuator.wall:g} mm"
+            yield (
+                name,
+                f"{thickness:g} mm leaves {above:.3g} mm of the wall, too thin for elements "
+                f"{size.axial:g} mm long: expected at most {most}",
+            )
+
+
+def wall_above_floor(actuator: Actuator) -> float:
+    """Thickness in mm of the wall between a circle's chamber and its floor; else 0."""
+    if actuator.section != "circle" or actuator.floor is None:
+        return 0.0
+    above = actuator.wall - actuator.floor
+    return above if above > _ROUNDING * actuator.wall else 0.0
+
+
+def check_size(actuator: Actuator, size: MeshSize, strips: Strips | None = None) -> None:
+    """Refuse a mesh whose elements would be too flat, or strips that do not fit.
+
+    Raises:
+        ValueError: says which dimension, and the least value it can have with this mesh.
+    """
+    for name, text in too_thin(actuator, size):
+        raise ValueError(f"{name} {text}")
+    if strips is None:
+        return
+    widest = actuator.profile.widest_roof
+    if not 0 < strips.roof_half_width < widest:
+        raise ValueError(
+            f"roof half width {strips.roof_half_width:g} mm: expected more than 0 and less than "
+            f"{widest:.4g} mm"
+        )
+    if not 0 < strips.post_length < actuator.cap:
+        raise ValueError(
+            f"post length {strips.post_length:g} mm: expected more than 0 and less than the cap, "
+            f"{actuator.cap:g} mm"
+        )
+
+
+def divisions(length: float, target: float) -> int:
+    """Number of elements not longer than `target` that fill a length."""
+    return max(1, math.ceil(length / target - 1e-9))

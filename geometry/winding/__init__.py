@@ -1,0 +1,1 @@
+"""The fibers' helices and how they lie in the faces of elements."""

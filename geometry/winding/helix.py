@@ -1,0 +1,119 @@
+"""Helical fibers on the outside of wall and floor (and layer)."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+
+from geometry.actuator import Actuator
+from geometry.mesh.data import Floats
+from geometry.winding.outline import position, tangent
+
+PATTERNS: dict[str, tuple[int, ...]] = {
+    "double-helix": (1, -1),
+    "single-helix-right": (1,),
+    "single-helix-left": (-1,),
+}
+"""Hand of each helix: 1 right-handed about +z, −1 left-handed."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Winding:
+    """A winding of one or two helices, each starting at the top (x = 0) at z = 0.
+
+    On the developed surface (arc length s of the outline, z) a helix is a straight line that rises
+    by the pitch over one perimeter. s runs clockwise seen from +z, so a right-handed helix is
+    z = −pitch s / S + k pitch. A fiber is a ribbon: parallel lines spread over its width.
+
+    Attributes:
+        pattern: "double-helix", "single-helix-right" or "single-helix-left".
+        pitch: rise of a turn in mm.
+        width: width of the ribbon in mm; 0 gives a single line.
+        lines: number of lines of a ribbon.
+
+    Raises:
+        ValueError: an unknown pattern, or a number without meaning.
+    """
+
+    pattern: str
+    pitch: float
+    width: float
+    lines: int = 5
+
+    def __post_init__(self) -> None:
+        if self.pattern not in PATTERNS:
+            raise ValueError(f"pattern {self.pattern!r}: expected one of {', '.join(PATTERNS)}")
+        if not (math.isfinite(self.pitch) and self.pitch > 0):
+            raise ValueError(f"pitch {self.pitch} mm: expected a positive length")
+        if not (math.isfinite(self.width) and self.width >= 0):
+            raise ValueError(f"width {self.width} mm: expected a length, 0 or more")
+        if self.lines < 1:
+            raise ValueError(f"lines {self.lines}: expected at least 1")
+
+    @property
+    def hands(self) -> tuple[int, ...]:
+        """Hand of each helix."""
+        return PATTERNS[self.pattern]
+
+    @property
+    def lines_per_fiber(self) -> int:
+        """Number of lines of each ribbon; 1 when it has no width."""
+        return 1 if self.width == 0 else self.lines
+
+    @property
+    def curves(self) -> int:
+        """Number of curves: helices × lines; curve = helix number × lines + line."""
+        return len(self.hands) * self.lines_per_fiber
+
+    def rises(self, actuator: Actuator) -> Floats:
+        """Shift along z in mm of each line of a ribbon, (lines,): its offset is perpendicular."""
+        n, s = self.lines_per_fiber, actuator.winding_perimeter
+        offsets = (np.arange(n) - (n - 1) / 2) * self.width / n
+        return offsets * math.hypot(s, self.pitch) / s
+
+    def turn_length(self, actuator: Actuator) -> float:
+        """Length of one turn in mm, √(S² + pitch²)."""
+        return math.hypot(actuator.winding_perimeter, self.pitch)
+
+    def curve_length(self, actuator: Actuator) -> float:
+        """Length of each curve in mm over the chamber's length, L/pitch √(S² + pitch²)."""
+        return actuator.length / self.pitch * self.turn_length(actuator)
+
+    def density(self, actuator: Actuator) -> float:
+        """Fiber length per area and helix in 1/mm, √(S² + pitch²) / (S pitch)."""
+        return self.turn_length(actuator) / (actuator.winding_perimeter * self.pitch)
+
+    def points(self, actuator: Actuator, curve: int, number: int) -> tuple[Floats, Floats]:
+        """Exact points and unit tangents of a curve from z = 0 to z = L.
+
+        Args:
+            actuator: dimensions.
+            curve: number of the curve, see `curves`.
+            number: number of points, evenly spaced in arc length.
+
+        Returns:
+            Points (number, 3) in mm and unit tangents (number, 3) toward growing z.
+        """
+        hand = self.hands[curve // self.lines_per_fiber]
+        rise = self.rises(actuator)[curve % self.lines_per_fiber]
+        perimeter = actuator.winding_perimeter
+        z = np.linspace(0.0, actuator.length, number)
+        s = -hand * (z - rise) * perimeter / self.pitch
+        turn = self.turn_length(actuator)
+        along = -hand * perimeter / turn * tangent(actuator, s)
+        upward = np.full((number, 1), self.pitch / turn)
+        return np.column_stack([position(actuator, s), z]), np.hstack([along, upward])
+
+
+def check_winding(actuator: Actuator, winding: Winding) -> None:
+    """Refuse a winding that makes no full turn on the body.
+
+    Raises:
+        ValueError: the pitch is longer than the chamber.
+    """
+    if winding.pitch > actuator.length:
+        raise ValueError(
+            f"pitch {winding.pitch:g} mm: expected at most the length, {actuator.length:g} mm"
+        )
