@@ -4,20 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from bench.contact_runs import Solved
+from bench.fig11 import Fig11
 from fiberbend.drawing.page import COLORS, figure, save
 from fiberbend.effects.contact import obstacles
 from fiberbend.models.kinds import make_mesh
 from fiberbend.reader.reader import as_case
 from geometry.mesh.data import FACET_VERTICES, vertex_positions
-
-if TYPE_CHECKING:
-    from bench.contact import Fig11
-    from bench.contact_runs import Solved
 
 Floats = npt.NDArray[np.float64]
 

@@ -18,13 +18,10 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+from bench.hard_cases import HARD, MODELS, ORDERS, Hard
+from bench.hard_infsup import LADDERS, fault
+
 ROOT = Path(__file__).resolve().parent.parent
-if str(ROOT) not in sys.path:
-    sys.path.insert(0, str(ROOT))
-
-from tests.hard.cases import HARD, MODELS, ORDERS, Hard  # noqa: E402
-from tests.hard.infsup import LADDERS, fault  # noqa: E402
-
 PAGE = ROOT / "docs" / "stability.md"
 LIMIT = 600
 """Seconds after which a case hangs."""
@@ -50,7 +47,7 @@ def one(hard: Hard, model: str) -> dict[str, Any]:
     """The record of a case, or of its crash."""
     start = time.monotonic()
     record: dict[str, Any] | None
-    record, problem = call("tests.hard.solve", hard.name, model)
+    record, problem = call("bench.hard_solve", hard.name, model)
     if record is not None:
         return record
     return {
@@ -80,7 +77,7 @@ def out_of_order(records: Sequence[dict[str, Any]]) -> list[str]:
 def inf_sup(index: int) -> tuple[str, str]:
     """Line of the table of inf-sup constants, and what is wrong with it."""
     ladder = LADDERS[index]
-    found, problem = call("tests.hard.infsup", str(index))
+    found, problem = call("bench.hard_infsup", str(index))
     label = f"| {ladder.name} | {ladder.model} | {ladder.angle:g} |"
     if found is None:
         return f"{label} **{problem}** | | |", problem

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fiberbend.version import __version__ as __version__
+
 if TYPE_CHECKING:
     from fiberbend.case.case import Case
-    from fiberbend.run.runner import RunResult
-
-__version__ = metadata.version("fiberbend")
+    from fiberbend.models.result import RunResult
 
 
 def run(

@@ -13,9 +13,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
-from fiberbend import __version__
 from fiberbend.control.settings import add_options
 from fiberbend.run import launch
+from fiberbend.version import __version__
 
 WRONG_INPUT = 1
 FAILED = 2

@@ -7,15 +7,10 @@ import numpy as np
 from fem import compat
 from fem.march.frames import Frames
 from fem.march.predictor import Predictor
-from fem.march.records import (
-    MODES,
-    Functional,
-    State,
-    measure,
-)
+from fem.march.records import MODES, State, measure
 from fem.scene import Scene
 from fem.solver.border import Closure
-from fem.solver.closures import Conjugate, Stationary, Target
+from fem.solver.closures import Conjugate, Functional, Stationary, Target
 from fem.solver.newton import Newton, Outcome
 
 TINY = 1e-5

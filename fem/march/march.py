@@ -17,18 +17,10 @@ from fem.march.limit_points import (
     softens,
 )
 from fem.march.predictor import distinct, lagrange
-from fem.march.records import (
-    Causes,
-    Critical,
-    Functional,
-    Ramp,
-    Report,
-    Rules,
-    State,
-    measure,
-)
+from fem.march.records import Causes, Critical, Ramp, Report, Rules, State, measure
 from fem.march.selfcontact import Rod, first_contact
 from fem.scene import Scene
+from fem.solver.closures import Functional
 from fem.solver.newton import Newton, Outcome
 
 JUMPED = "Newton went to another branch"

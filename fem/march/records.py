@@ -3,34 +3,19 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from fem.march.frames import Shape
-
-if TYPE_CHECKING:
-    from fem.solver.newton import Outcome
+from fem.solver.newton import Outcome
 
 Floats = npt.NDArray[np.float64]
 
 
 MODES = "modes"
 """Name of the measure that counts unstable modes."""
-
-
-class Functional(Protocol):
-    """A scalar measure with its gradient, such as the bending angle."""
-
-    def value(self) -> float:
-        """At the present state."""
-
-    def row(self) -> Floats:
-        """∂/∂w on the owned dofs."""
-
-    def slope(self, scalar: str) -> float:
-        """∂/∂q of a global scalar."""
 
 
 @dataclasses.dataclass

@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 import numpy.typing as npt
 
-from fem.march.records import Functional
 from fem.scene import Scene
 
 Floats = npt.NDArray[np.float64]
+
+
+class Functional(Protocol):
+    """A scalar measure with its gradient, such as the bending angle."""
+
+    def value(self) -> float:
+        """At the present state."""
+
+    def row(self) -> Floats:
+        """∂/∂w on the owned dofs."""
+
+    def slope(self, scalar: str) -> float:
+        """∂/∂q of a global scalar."""
 
 
 class Conjugate:

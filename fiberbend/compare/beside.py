@@ -52,7 +52,7 @@ def check_run(
     if abs(furthest) < LEAST_ANGLE:
         return crosscheck(case, model, rows, measured=measured)
     from fiberbend.case.section_beside import as_section, load
-    from fiberbend.control.plant_curve import Curve
+    from fiberbend.models.result import Curve
 
     section = as_section(case, load(angle=math.radians(furthest)))
     result = solve(section)

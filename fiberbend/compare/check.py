@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,9 +36,7 @@ from fiberbend.effects.table import (
 )
 from fiberbend.models.closed_form import dimensions, held, no_analytic
 from fiberbend.models.resolution import BULGING_PITCH, bulging, resolved
-
-if TYPE_CHECKING:
-    from fiberbend.control.plant_curve import Curve
+from fiberbend.models.result import Curve
 
 Row = dict[str, Any]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
@@ -13,9 +13,7 @@ from analytic.bending import Hemicircle
 from analytic.stress import Floats
 from fiberbend.case.case import Case
 from fiberbend.models.closed_form import analytic_curves, lever_arm
-
-if TYPE_CHECKING:
-    from fiberbend.control.plant_curve import Curve
+from fiberbend.models.result import Curve
 
 ANALYTIC = {"zero-fit": "analytic", "winding": "analytic_winding", "paper": "analytic_paper"}
 """What columns and run.json call the analytical models."""

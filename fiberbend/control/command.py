@@ -12,26 +12,22 @@ import numpy as np
 
 from analytic.bending import Hemicircle
 from analytic.calibration import calibrate
-from analytic.control.filter import AngleFilter, LinearTable
-from analytic.control.loop import Trace, simulate
+from analytic.control.filter import AngleFilter
+from analytic.control.loop import simulate
 from analytic.control.metrics import (
-    PAPER,
-    SineMetrics,
-    StepMetrics,
     sine_metrics,
     step_metrics,
 )
 from analytic.control.plant import ActuatorCurve, ArcCurve, Plant
 from analytic.stress import effective
-from fiberbend import __version__
 from fiberbend.case.case import Case
 from fiberbend.control.export import (
     short_table,
-    shown_time,
     table_csv,
     table_header,
     trace_csv,
 )
+from fiberbend.control.result import ControlResult, FilterFit
 from fiberbend.control.settings import Settings, refusals
 from fiberbend.models.closed_form import analytic_curves, no_analytic
 from fiberbend.run import launch
@@ -39,139 +35,6 @@ from fiberbend.run.folder import RunFolder
 from fiberbend.schema.problems import CaseError, Problem
 
 CONTROL_FILE = "control.json"
-
-
-@dataclasses.dataclass(frozen=True)
-class FilterFit:
-    """The filter of a loop and how it came about.
-
-    Attributes:
-        filter: the filter.
-        source: what it inverts, one line.
-        modulus: μ̄, MPa, or nan where it inverts a curve.
-        modulus_error: standard error of the fit of μ̄, MPa, or nan.
-        departure: greatest |filter(P) − θ| over the plant's curve, rad.
-    """
-
-    filter: AngleFilter
-    source: str
-    modulus: float
-    modulus_error: float
-    departure: float
-
-
-@dataclasses.dataclass(frozen=True)
-class ControlResult:
-    """What a control run has found.
-
-    Attributes:
-        settings: what was asked.
-        fit: the filter.
-        table: the filter as a short table.
-        steps: trace of the step response.
-        sine: trace of the sine.
-        step_metrics: measures of the first.
-        sine_metrics: measures of the second.
-    """
-
-    settings: Settings
-    fit: FilterFit
-    table: LinearTable
-    steps: Trace
-    sine: Trace
-    step_metrics: StepMetrics
-    sine_metrics: SineMetrics
-
-    def lines(self) -> list[str]:
-        """The result as lines of text, beside the paper's numbers."""
-        step, sine = self.step_metrics, self.sine_metrics
-        low, high = np.degrees(self.settings.steps.levels)
-        bottom, *_, top = np.degrees(self.settings.sine.levels)
-        return [
-            f"filter:  {self.fit.source}",
-            f"         up to {math.degrees(self.fit.departure):.1f}° off the plant's own curve",
-            f"         table of {len(self.table.angle)} points, error {self.table.error:.1e} rad",
-            f"steps:   {low:g} and {high:g}°: filling {shown_time(step.fill_s)} "
-            f"(paper {shown_time(PAPER['fill_s'])}), emptying {shown_time(step.vent_s)} "
-            f"({shown_time(PAPER['vent_s'])})",
-            f"         undesired switching {_percent(step.undesired)} of the time "
-            f"({_percent(PAPER['undesired_steps'])})",
-            f"sine:    {bottom:g} to {top:g}°, {self.settings.sine.frequency:g} Hz: delay "
-            f"{shown_time(sine.delay_s)} ({shown_time(PAPER['delay_s'])})",
-            f"         undesired switching {_percent(sine.undesired)} of the time "
-            f"({_percent(PAPER['undesired_sine'])})",
-        ]
-
-    def report(self) -> dict[str, Any]:
-        """Content of control.json."""
-        settings, step, sine = self.settings, self.step_metrics, self.sine_metrics
-        p, zone = settings.pneumatics, settings.controller.zone
-        low, high = np.degrees(settings.steps.levels)
-        bottom, *_, top = np.degrees(settings.sine.levels)
-        content = {
-            "version": __version__,
-            "plant": {
-                "curve": settings.plant,
-                "supply_kPa": 1e3 * p.supply,
-                "atmosphere_kPa": 1e3 * p.atmosphere,
-                "inlet_dm3_per_s_bar": p.inlet,
-                "outlet_dm3_per_s_bar": p.outlet,
-                "critical_ratio": p.critical_ratio,
-                "dead_time_ms": 1e3 * p.dead_time,
-                "dead_volume_mm3": p.dead_volume,
-                "exponent": p.exponent,
-                "lag_ms": 1e3 * p.lag,
-            },
-            "filter": {
-                "inverts": settings.filter,
-                "source": self.fit.source,
-                "modulus_MPa": self.fit.modulus,
-                "modulus_error_MPa": self.fit.modulus_error,
-                "mismatch_percent": 100 * settings.mismatch,
-                "error_rad": self.fit.filter.error,
-                "departure_from_plant_deg": math.degrees(self.fit.departure),
-                "table_points": len(self.table.angle),
-                "table_error_rad": self.table.error,
-            },
-            "controller": {
-                "rate_Hz": settings.controller.rate,
-                "dead_zone_rad": zone.offset,
-                "dead_zone_divisor": zone.divisor,
-                "inside": settings.controller.inside,
-            },
-            "sensor": {"noise_kPa": 1e3 * settings.sensor.noise, "seed": settings.sensor.seed},
-            "steps": {
-                "low_deg": low,
-                "high_deg": high,
-                "hold_s": settings.steps.hold,
-                "cycles": settings.steps.cycles,
-                "fill_ms": 1e3 * step.fill_s,
-                "vent_ms": 1e3 * step.vent_s,
-                "undesired_percent": 100 * step.undesired,
-                "openings": step.openings,
-                "plant_error_deg": math.degrees(step.error_rad),
-            },
-            "sine": {
-                "low_deg": bottom,
-                "high_deg": top,
-                "frequency_Hz": settings.sine.frequency,
-                "cycles": settings.sine.cycles,
-                "delay_ms": 1e3 * sine.delay_s,
-                "plant_delay_ms": 1e3 * sine.plant_delay_s,
-                "undesired_percent": 100 * sine.undesired,
-                "openings": sine.openings,
-                "error_rms_deg": math.degrees(sine.error_rad),
-                "plant_error_rms_deg": math.degrees(sine.plant_error_rad),
-            },
-            "paper": {
-                "fill_ms": 1e3 * PAPER["fill_s"],
-                "vent_ms": 1e3 * PAPER["vent_s"],
-                "steps_undesired_percent": 100 * PAPER["undesired_steps"],
-                "delay_ms": 1e3 * PAPER["delay_s"],
-                "sine_undesired_percent": 100 * PAPER["undesired_sine"],
-            },
-        }
-        return {name: _rounded(value) for name, value in content.items()}
 
 
 def run_control(
@@ -299,16 +162,3 @@ def _write(result: ControlResult, case: Case, folder: RunFolder) -> None:
 
 def _off(mismatch: float) -> str:
     return f", {100 * mismatch:+g} % off" if mismatch else ""
-
-
-def _percent(part: float) -> str:
-    return f"{100 * part:.2f} %"
-
-
-def _rounded(value: Any) -> Any:
-    """Numbers to nine digits, none as null: JSON has no nan."""
-    if isinstance(value, dict):
-        return {name: _rounded(inner) for name, inner in value.items()}
-    if isinstance(value, float):
-        return None if math.isnan(value) else float(f"{value:.9g}")
-    return value

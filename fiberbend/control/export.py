@@ -11,7 +11,7 @@ import numpy as np
 
 from analytic.control.filter import AngleFilter, LinearTable
 from analytic.control.loop import Trace
-from fiberbend import __version__
+from fiberbend.version import __version__
 
 COLUMNS = (
     "run",

@@ -2,34 +2,13 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 import numpy as np
-import numpy.typing as npt
 
 from fiberbend.case.case import Case
 from fiberbend.case.section_beside import as_section, load
 from fiberbend.effects.table import PressureEffect, StraightEffect
+from fiberbend.models.result import Curve
 from fiberbend.run.runner import run_case
-
-Floats = npt.NDArray[np.float64]
-
-
-@dataclasses.dataclass(frozen=True)
-class Curve:
-    """States of a uniformly bending actuator, from rest on.
-
-    Attributes:
-        pressure: MPa, (n,).
-        angle: θ = k L, rad, (n,).
-        volume: chamber, mm³, (n,).
-        reason: why it ends early; empty otherwise.
-    """
-
-    pressure: Floats
-    angle: Floats
-    volume: Floats
-    reason: str = ""
 
 
 def section_curve(case: Case, pressure: PressureEffect | None = None) -> Curve:

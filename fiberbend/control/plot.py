@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -11,11 +11,9 @@ from analytic.control.controller import Valves
 from analytic.control.loop import Trace
 from analytic.stress import Floats
 from fiberbend.control.export import shown_time
+from fiberbend.control.result import ControlResult
 from fiberbend.drawing.page import figure, save
 from fiberbend.states.snapshot import Target
-
-if TYPE_CHECKING:
-    from fiberbend.control.command import ControlResult
 
 SIZE = (1500, 900)
 """Width and height in pixels."""

@@ -18,9 +18,9 @@ from fem.kinematics.uniform import (
     Uniform,
 )
 from fem.march.frames import Frames
-from fem.march.records import Functional
 from fem.results.measures import BendingAngle
 from fem.scene import Scene
+from fem.solver.closures import Functional
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.table import StraightEffect, WindingEffect

@@ -1,10 +1,15 @@
-"""What every run hands back, whichever model it has solved."""
+"""What every run hands back, and the curve of a uniformly bending actuator."""
 
 from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -28,3 +33,20 @@ class RunResult:
     def last(self, column: str) -> float:
         """Value of a column at the end."""
         return float(self.rows[-1][column])
+
+
+@dataclasses.dataclass(frozen=True)
+class Curve:
+    """States of a uniformly bending actuator, from rest on.
+
+    Attributes:
+        pressure: MPa, (n,).
+        angle: θ = k L, rad, (n,).
+        volume: chamber, mm³, (n,).
+        reason: why it ends early; empty otherwise.
+    """
+
+    pressure: Floats
+    angle: Floats
+    volume: Floats
+    reason: str = ""

@@ -85,7 +85,7 @@ def parse_case(data: Mapping[str, Any]) -> Case:
         case = Case.model_validate(data)
         parts = Parts.of(case)
     except ValidationError as error:
-        problems += from_pydantic(error)
+        problems += from_pydantic(error, Case)
         parts = _valid_parts(data) if isinstance(data, Mapping) else Parts()
     problems += check(parts)
     if problems or case is None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import platform
 import resource
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
@@ -13,7 +13,6 @@ from scipy.optimize import brentq
 from analytic.bending import BACKWARD, FORWARD, Hemicircle
 from analytic.path import tip
 from analytic.stress import Floats
-from fiberbend import __version__
 from fiberbend.case.case import Case
 from fiberbend.case.measured import read_measured
 from fiberbend.compare.check import crosscheck
@@ -27,13 +26,11 @@ from fiberbend.models.closed_form import (
     lever_arm,
     no_analytic,
 )
-from fiberbend.models.result import RunResult
+from fiberbend.models.result import Curve, RunResult
 from fiberbend.run import launch
 from fiberbend.run.folder import RunFolder
 from fiberbend.run.progress import Progress
-
-if TYPE_CHECKING:
-    from fiberbend.control.plant_curve import Curve
+from fiberbend.version import __version__
 
 _STEPS = 40
 _GRID = 181

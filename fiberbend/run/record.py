@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fem import compat
-from fiberbend import __version__
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.contact import obstacles, stiffness
 from fiberbend.models.closed_form import lever_arm
+from fiberbend.version import __version__
 
 
 def versions() -> dict[str, str]:

@@ -11,7 +11,6 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from fiberbend.case.case import Case
 from fiberbend.schema.quantities import Model, Quantity
 
 _PLAIN = {
@@ -68,7 +67,7 @@ def found(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def from_pydantic(error: ValidationError, root: type[Model] = Case) -> Iterator[Problem]:
+def from_pydantic(error: ValidationError, root: type[Model]) -> Iterator[Problem]:
     """The problems that pydantic found.
 
     Args:

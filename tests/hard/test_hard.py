@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from tests.hard.cases import HARD, MODELS, Hard, find
-from tests.hard.solve import Record, faults, solve
+from bench.hard_cases import HARD, MODELS, Hard, find
+from bench.hard_solve import Record, faults, solve
 
 ALL = [
     pytest.param(

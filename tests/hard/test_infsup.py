@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import scipy.sparse as sp
 
-from tests.hard.infsup import LADDERS, Ladder, constants, fault, least
+from bench.hard_infsup import LADDERS, Ladder, constants, fault, least
 
 
 @pytest.mark.parametrize(

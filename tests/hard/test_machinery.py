@@ -11,6 +11,8 @@ from petsc4py import PETSc
 
 import fem.march.march
 import fem.solver.newton
+from bench.hard_cases import find
+from bench.hard_procedures import unloaded
 from fem.march.predictor import Predictor
 from fem.march.records import Rules
 from fem.scene import Scene
@@ -19,8 +21,6 @@ from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case
 from fiberbend.run import assembly
 from fiberbend.run.runner import run_case
-from tests.hard.cases import find
-from tests.hard.procedures import unloaded
 
 Patch = pytest.MonkeyPatch
 

@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from fiberbend import run
-from fiberbend.run.runner import RunResult
+from fiberbend.models.result import RunResult
 
 SMALL: dict[str, Any] = {
     "title": "A short actuator",

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from fiberbend import run
-from fiberbend.run.runner import RunResult
+from fiberbend.models.result import RunResult
 from tests.run.conftest import small
 
 COLUMNS = ("angle_deg", "axis_stretch", "crown_stretch", "chamber_mm3", "fiber_max_N", "tip_z_mm")

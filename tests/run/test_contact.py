@@ -14,10 +14,10 @@ from fem.march.records import Ramp, State
 from fem.solver.newton import Outcome
 from fiberbend import run
 from fiberbend.models.kinds import make_mesh
+from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import as_case
 from fiberbend.run.assembly import assemble
 from fiberbend.run.folder import read_history
-from fiberbend.run.runner import RunResult
 from fiberbend.schema.problems import CaseError
 from tests.conftest import MpiRun
 from tests.run.conftest import small, write_case

@@ -29,9 +29,8 @@ from fiberbend.compare.check import (
     crosscheck,
 )
 from fiberbend.compare.others import Straight
-from fiberbend.control.plant_curve import Curve
 from fiberbend.models.closed_form import analytic_curves
-from fiberbend.models.result import RunResult
+from fiberbend.models.result import Curve, RunResult
 from fiberbend.reader.reader import parse_case
 from fiberbend.run.runner import run_case
 

@@ -8,8 +8,8 @@ import pytest
 
 from fem.march.records import Critical, Report
 from fiberbend import run
+from fiberbend.models.result import RunResult
 from fiberbend.run import messages
-from fiberbend.run.runner import RunResult
 from tests.run.conftest import small
 
 QUIET = {"pictures": False, "fields": False}

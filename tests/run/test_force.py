@@ -11,9 +11,9 @@ from mpi4py import MPI
 from fem.results.measures import UniformAngle
 from fiberbend import run
 from fiberbend.models.kinds import make_mesh
+from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import as_case
 from fiberbend.run.assembly import assemble
-from fiberbend.run.runner import RunResult
 from tests.run.conftest import small
 
 WINDING = {

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from bench.hard_cases import find
 from fiberbend import run
 from fiberbend.run.history import departures, work_of
-from tests.hard.cases import find
 
 VOLUME = np.linspace(1.0, 4.0, 13)
 # P = √V − 1 stores 2/3 (V^1.5 − 1) − (V − 1)

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 
 from fiberbend import run
+from fiberbend.models.result import RunResult
 from fiberbend.run.folder import HISTORY_COLUMNS, RUN_KEYS, read_history
-from fiberbend.run.runner import RunResult
 from tests.conftest import MpiRun
 from tests.run.conftest import small, write_case
 

@@ -16,7 +16,7 @@ import pytest
 import yaml
 
 from fiberbend import run
-from fiberbend.run.runner import RunResult
+from fiberbend.models.result import RunResult
 from tests.conftest import ROOT
 
 CASE = yaml.safe_load((ROOT / "cases" / "free_bending.yaml").read_text(encoding="utf-8"))

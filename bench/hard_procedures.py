@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
+from bench.hard_cases import Hard
 from fem.march.records import Ramp, Report, State
 from fem.results.measures import Tip
 from fem.solver.closures import Stationary
@@ -25,7 +26,6 @@ from fiberbend.run.history import Recorder
 from fiberbend.run.progress import Progress
 from fiberbend.run.runner import run_case
 from geometry.mesh.data import Floats, MeshData
-from tests.hard.cases import Hard
 
 Check = tuple[str, float, float, float]
 """What was measured, its value, and the least and the greatest one that is right."""

@@ -18,13 +18,13 @@ import scipy.sparse.linalg as spl
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from bench.hard_cases import ANGLE, TO, Hard, bulky
 from fem.scene import Scene
 from fem.solver.factor import Factor
 from fiberbend.case.case import Case
 from fiberbend.models.kinds import make_mesh
 from fiberbend.reader.reader import parse_case
 from fiberbend.run.assembly import Assembly, assemble
-from tests.hard.cases import ANGLE, TO, Hard, bulky
 
 STUB = {"actuator.length": "8 mm", "actuator.cap": "4 mm", TO: "1 kPa"}
 """A body as short as it can be: its size on the third mesh is what limits it."""

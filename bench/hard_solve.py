@@ -1,4 +1,4 @@
-"""Solve one hard case in one model: `python -m tests.hard.solve NAME MODEL` prints its record."""
+"""Solve one hard case in one model: `python -m bench.hard_solve NAME MODEL` prints its record."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import sys
 import time
 from typing import Any
 
-from tests.hard import procedures
-from tests.hard.cases import Hard, find
+from bench import hard_procedures as procedures
+from bench.hard_cases import Hard, find
 
 
 @dataclasses.dataclass
