@@ -59,7 +59,7 @@ def uniform(model: str, limit: float, *settings: str) -> tuple[str, float, float
     """A curve from 0 to 360° after its kernels are compiled."""
     from mpi4py import MPI
 
-    from fiberbend.models.kinds import make_mesh
+    from fiberbend.models.choice import meshed
     from fiberbend.reader.reader import read_case
     from fiberbend.running.assembly import assemble
 
@@ -74,7 +74,7 @@ def uniform(model: str, limit: float, *settings: str) -> tuple[str, float, float
             )
         }
     )
-    mesh = make_mesh(case, model)
+    mesh = meshed(case).mesh(case)
     steps = []
 
     def solve() -> None:

@@ -20,8 +20,7 @@ from fiberbend.case.case import (
 )
 from fiberbend.effects.table import EffectEntry, unwrap
 from fiberbend.models import choice
-from fiberbend.models.mesh_size import misfits
-from fiberbend.reader.checks import Parts, check
+from fiberbend.reader.checks import Parts, check, misfits
 from fiberbend.reader.defaults import complete
 from fiberbend.schema.problems import CaseError, Problem, from_pydantic
 

@@ -16,13 +16,12 @@ from analytic.stress import Floats
 from fiberbend.case.case import Case
 from fiberbend.case.measured import read_measured
 from fiberbend.compare.check import crosscheck
-from fiberbend.effects.table import PressureEffect
+from fiberbend.models.choice import choose_model
 from fiberbend.models.closed_form import (
     analytic_curves,
     assumptions,
     chamber_moment,
     face_height,
-    held,
     lever_arm,
     no_analytic,
 )
@@ -54,19 +53,20 @@ def run_analytic(
     if why is not None:
         raise ValueError(why)
     progress.phase("solve")
+    kind, _ = choose_model(case)
     model = analytic_curves(case)["zero-fit"]
-    if held(case):
+    if case.straight:
         rows, status, reason = _blocked_rows(case, model), "converged", ""
     else:
         rows, status, reason = _free_rows(case, model)
-    check = crosscheck(case, "analytic", rows, section, read_measured(case))
+    check = crosscheck(case, kind, rows, section, read_measured(case))
     rows = check.beside(rows)
     progress.phase("output")
     last = rows[-1]
     run: dict[str, Any] = {
         "status": status,
         "reason": reason,
-        "model": "analytic",
+        "model": kind.name,
         "unknowns": 0,
         "load_steps": len(rows) - 1,
         "newton_iterations": 0,
@@ -99,7 +99,7 @@ def run_analytic(
             from fiberbend.running.report import draw_curves
 
             draw_curves(
-                folder, case, rows, f"{status}: {reason}" if reason else None, check, "analytic"
+                folder, case, rows, f"{status}: {reason}" if reason else None, check, kind.name
             )
     for line in check.lines():
         progress.message(line)
@@ -124,10 +124,10 @@ def _row(step: int, pressure: float, angle: float, case: Case, model: Hemicircle
 
 def _blocked_rows(case: Case, model: Hemicircle) -> list[dict[str, Any]]:
     """Held straight: eq. (20)."""
-    pressure = case.find(PressureEffect)
-    assert pressure is not None
-    assert pressure.to is not None
-    steps = _merged(np.linspace(0.0, pressure.to, 11), case.output.at_pressures)
+    load = case.inflation
+    assert load is not None
+    assert load.to is not None
+    steps = _merged(np.linspace(0.0, load.to, 11), case.output.at_pressures)
     rows = []
     for step, value in enumerate(steps):
         row = _row(step, float(value), 0.0, case, model)
@@ -138,19 +138,19 @@ def _blocked_rows(case: Case, model: Hemicircle) -> list[dict[str, Any]]:
 
 def _free_rows(case: Case, model: Hemicircle) -> tuple[list[dict[str, Any]], str, str]:
     """Free bending: angles that grow evenly, and every angle and pressure that is asked for."""
-    effect, output = case.find(PressureEffect), case.output
-    assert effect is not None
-    status, reason, end = "converged", "", effect.angle
+    load, output = case.inflation, case.output
+    assert load is not None
+    status, reason, end = "converged", "", load.angle
     if end is None:
-        assert effect.to is not None
-        end, reason = _angle_at(model, effect.to)
+        assert load.to is not None
+        end, reason = _angle_at(model, load.to)
         status = "stopped" if reason else "converged"
     stop = output.stop_at_angle
     if stop is not None and stop * end > 0 and abs(stop) <= abs(end):
         status, reason, end = "converged", "", stop
     wanted = [angle for angle in output.at_angles if 0 < angle / end <= 1]
     pressures = {}
-    for pressure in (*output.at_pressures, *([effect.to] if effect.to is not None else [])):
+    for pressure in (*output.at_pressures, *([load.to] if load.to is not None else [])):
         angle, beyond = _angle_at(model, pressure)
         if 0 < angle / end <= 1 and not beyond:
             pressures[angle] = pressure

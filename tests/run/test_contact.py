@@ -13,7 +13,7 @@ from mpi4py import MPI
 from fem.march.records import Ramp, State
 from fem.solver.newton import Outcome
 from fiberbend import run
-from fiberbend.models.kinds import make_mesh
+from fiberbend.models.choice import meshed
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import as_case
 from fiberbend.running.assembly import assemble
@@ -161,7 +161,7 @@ def test_without_obstacles_a_march_is_left_alone() -> None:
     def keep(state: State, _: Outcome) -> None:
         seen.append(state)
 
-    built = assemble(case, "body", make_mesh(case, "body"), MPI.COMM_SELF, keep, lambda _: None)
+    built = assemble(case, "body", meshed(case).mesh(case), MPI.COMM_SELF, keep, lambda _: None)
     assert built.march.on_step is keep
     assert built.march.predictor.frames is built.reading.frames
 
@@ -183,7 +183,7 @@ def test_touch_and_lift_off(contact: dict[str, Any]) -> None:
         force = body.copies * float(built.scene.force(f"Contact[{name}]")[up].sum())
         met.append((round(state.scalars["pressure"], 9), force, state.w))
 
-    mesh = make_mesh(case, "body")
+    mesh = meshed(case).mesh(case)
     built = assemble(case, "body", mesh, MPI.COMM_SELF, keep, lambda _: None)
     stops = (0.01, 0.02, 0.03, 0.04)
     built.ramps[:] = [Ramp("pressure", end, stops=stops) for end in (0.06, 0.0)]
