@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 
 from mpi4py import MPI
 
 from fem.kinematics.domain import Domain
+from fem.march.frames import Frames
+from fem.march.guide import Guide
+from fem.march.hooks import Hook
 from fem.march.march import March
-from fem.march.records import Ramp, Rules, State
+from fem.march.records import Ramp, Rules
+from fem.march.selfcontact import Rod
 from fem.results.diagnosis import Diagnosis
 from fem.scene import Scene
-from fem.solver.newton import Newton, Outcome, Settings
+from fem.solver.newton import Newton, Settings
 from fiberbend.case.case import Case
 from fiberbend.effects import contact
 from fiberbend.effects.table import ContactEffect
@@ -21,6 +26,11 @@ from fiberbend.models.choice import FIRST_TURN, MEMORY, turn_of
 from fiberbend.models.parts import Parts, build
 from fiberbend.run.approach import Approach
 from geometry.mesh.data import MeshData
+
+STEERED_TURN = math.radians(90)
+"""Greatest change of the angle in a step that leans on the section, unless the case says."""
+STEERED_FIRST = math.radians(15)
+STEERED_GROWTH = 3.0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -49,8 +59,9 @@ def assemble(
     model: str,
     mesh: MeshData,
     comm: MPI.Comm,
-    on_step: Callable[[State, Outcome], None],
-    warn: Callable[[str], None],
+    hooks: Sequence[Hook] = (),
+    rod: Callable[[Scene, Frames | None], Rod] | None = None,
+    guide: Callable[[Scene, Frames], Guide | None] | None = None,
 ) -> Assembly:
     """Compile a case and put it at rest; collective.
 
@@ -59,8 +70,9 @@ def assemble(
         model: "section", "cell" or "body".
         mesh: its mesh.
         comm: communicator.
-        on_step: called after every converged step.
-        warn: called with a line where a step fails.
+        hooks: what is called while the march goes on.
+        rod: makes of the states rods, to see whether the body passes through itself.
+        guide: makes the shapes on which a body's march leans; None of it where there are none.
     """
     parts = build(case, mesh, model)
     scene = Scene(Domain(mesh, comm), parts.effects, kinds.kinematics(case, model))
@@ -75,10 +87,30 @@ def assemble(
         memory=MEMORY[model],
     )
     rules = contact.pace(case, rules)
-    march = March(scene, newton, reading.frames, reading.followed, rules, on_step, warn)
-    march.causes = Diagnosis(scene)
-    march.start()
-    ramps = parts.ramps(scene.body.copies)
-    if case.find(ContactEffect) is not None:
-        Approach(scene, march, ramps)
-    return Assembly(parts, scene, reading, newton, march, ramps)
+    frames = reading.frames
+    leads = guide(scene, frames) if guide is not None and frames is not None else None
+    # what leads the march comes before what records where it stands
+    approach = [Approach(scene)] if case.find(ContactEffect) is not None else []
+    march = March(
+        scene,
+        newton,
+        steered(rules, case) if leads is not None else rules,
+        frames=frames,
+        control=reading.followed,
+        guide=leads,
+        rod=rod(scene, frames) if rod is not None else None,
+        causes=Diagnosis(scene),
+        hooks=[*approach, *hooks],
+    )
+    return Assembly(parts, scene, reading, newton, march, parts.ramps(scene.body.copies))
+
+
+def steered(rules: Rules, case: Case) -> Rules:
+    """Rules of a march with a guide: a short first step, from which the ends are learnt."""
+    turn = case.solver.max_turn
+    return dataclasses.replace(
+        rules,
+        turn=turn or STEERED_TURN,
+        first_turn=turn or STEERED_FIRST,
+        grow=STEERED_GROWTH,
+    )

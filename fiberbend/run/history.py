@@ -39,17 +39,20 @@ class Recorder:
     Args:
         scene: the scene whose states are recorded.
         gauge: what the model reads off a state.
-        rest: the state before any load.
+        rest: the state before any load, at which the scene is unless there are rows.
+        rows: those of a run that is resumed.
 
     Attributes:
-        rows: the rows so far; a run that is resumed puts the earlier ones here.
+        rows: the rows so far.
     """
 
-    def __init__(self, scene: Scene, gauge: Gauge, rest: State) -> None:
+    def __init__(
+        self, scene: Scene, gauge: Gauge, rest: State, rows: list[dict[str, Any]] | None = None
+    ) -> None:
         self._scene = scene
         self._gauge = gauge
         self._factor = scene.body.copies
-        self.rows = [self._row(0, rest, None)]
+        self.rows = rows if rows is not None else [self._row(0, rest, None)]
 
     def add(self, state: State, outcome: Outcome) -> dict[str, Any]:
         """Append the row of a new state, at which the scene is; collective."""

@@ -11,8 +11,13 @@ import numpy as np
 from mpi4py import MPI
 
 from fem.effects.embedded_fibers import FiberPotential
+from fem.march.frames import Frames
+from fem.march.guide import Guide
+from fem.march.hooks import Hook, Steered
 from fem.march.records import Ramp, Report, State
+from fem.march.selfcontact import Rod
 from fem.results.checkpoint import Archive
+from fem.scene import Scene
 from fem.solver.newton import Outcome
 from fiberbend.case.case import Case
 from fiberbend.effects.table import ContactEffect
@@ -27,7 +32,7 @@ from fiberbend.run.folder import RunFolder
 from fiberbend.run.history import Recorder
 from fiberbend.run.progress import Progress
 from fiberbend.run.record import blocked_tip, contact, versions
-from fiberbend.run.warm import guides, section_states, steered
+from fiberbend.run.warm import guides, section_states
 from fiberbend.states.snapshot import Scenery, Snapshot
 from geometry.mesh.data import MeshData
 
@@ -91,8 +96,8 @@ def _on_rank_0(comm: MPI.Comm, action: Callable[[], Any]) -> Any:
     return value
 
 
-class _Run:
-    """The steps of one run and what they share."""
+class _Run(Hook):
+    """The steps of one run and what they share; hears of every step of its march."""
 
     def __init__(
         self,
@@ -114,25 +119,21 @@ class _Run:
         mesh = _on_rank_0(self.comm, lambda: self._mesh(again))
         self.progress.phase("compile")
         case, model = self.case, self.model
-        built = assemble(case, model, mesh, self.comm, self._on_step, self.progress.message)
+        built = assemble(case, model, mesh, self.comm, [self], self._rod, self._guide)
         self.parts, self.scene, self.ramps = built.parts, built.scene, built.ramps
         self.newton, self.march = built.newton, built.march
         reading = built.reading
         self.archive = Archive(self.scene, reading.frames)
-        self.recorder = Recorder(self.scene, reading.gauge(), self.march.states[0])
-        if again and self.folder is not None:
-            self.snapshots = restart.load(self.folder, self.archive, self.march, self.recorder)
+        gauge, rest = reading.gauge(), self.march.rest
+        saved = restart.load(self.folder, self.archive) if again and self.folder else None
+        if saved is not None:
+            self.snapshots = saved.snapshots
+            self.march.resume(saved.position)
+        self.recorder = Recorder(self.scene, gauge, rest, saved.rows if saved else None)
+        if again:
             self._remark_stability()
             self.progress.message(f"resumed after step {self.recorder.rows[-1]['step']}")
-        self.march.rod = messages.rod(self.scene, reading.frames, case.actuator.cap)
         self._remark()
-        if reading.frames is not None and guides(case):
-            self.progress.phase("section")
-            states = _on_rank_0(self.comm, lambda: section_states(case))
-            if states is not None:
-                length = case.actuator.length
-                self.march.predictor.guide = states.guide(self.scene, reading.frames, length)
-                self.march.rules = steered(self.march.rules, case)
         self.progress.phase("solve")
         report = self.march.run(self.ramps)
         status, reason = self._status(report)
@@ -170,7 +171,23 @@ class _Run:
 
     # --- steps ---------------------------------------------------------------------------------
 
-    def _on_step(self, state: State, outcome: Outcome) -> None:
+    def _rod(self, scene: Scene, frames: Frames | None) -> Rod:
+        return messages.rod(scene, frames, self.case.actuator.cap)
+
+    def _guide(self, scene: Scene, frames: Frames) -> Guide | None:
+        """What a body leans on: its section's states, solved on rank 0; collective."""
+        if not guides(self.case):
+            return None
+        self.progress.phase("section")
+        states = _on_rank_0(self.comm, lambda: section_states(self.case))
+        return states.guide(scene, frames, self.case.actuator.length) if states else None
+
+    def after_cutback(self, march: Steered, reason: str) -> None:
+        """Say so."""
+        self.progress.message(f"increment cut back: {reason}")
+
+    def after_step(self, march: Steered, state: State, outcome: Outcome) -> None:
+        """Record the step, and where the march stands."""
         row = self.recorder.add(state, outcome)
         self._remark_stability()
         self.progress.step(
@@ -185,7 +202,7 @@ class _Run:
             self._snapshot(label)
         if self.folder is not None and self.model not in UNIFORM:
             self.recorder.integrate()
-            restart.save(self.folder, self.archive, self.march, self.recorder.rows)
+            restart.save(self.folder, self.archive, march.position, self.recorder.rows)
 
     def _remark_stability(self) -> None:
         """Say once where stability was lost or gained, and where the body meets itself."""
@@ -207,9 +224,10 @@ class _Run:
     def _fraction(self, state: State) -> float:
         """Part of all ramps that is done."""
         ramps = self.ramps
-        ramp = ramps[self.march.ramp]
+        number = self.march.position.ramp
+        ramp = ramps[number]
         done = _share(ramp, state)
-        return (self.march.ramp + done) / len(ramps)
+        return (number + done) / len(ramps)
 
     def _requested(self, state: State) -> str:
         """Label of the requested output that this state is, or nothing."""
@@ -273,7 +291,7 @@ class _Run:
 
     def _status(self, report: Report) -> tuple[str, str]:
         if report.status == "stopped":
-            ramp = self.ramps[self.march.ramp]
+            ramp = self.ramps[self.march.position.ramp]
             unit, factor = ("kPa", 1e3) if ramp.scalar == "pressure" else ("", 1.0)
             target = f"{factor * ramp.target:g} {unit}".strip()
             return "stopped", messages.stopped(report, target, self.march.rules.beyond)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +11,8 @@ from mpi4py import MPI
 from fem.kinematics.uniform import CURVATURE, STRETCH
 from fem.march.frames import Frames
 from fem.march.guide import Guide
-from fem.march.records import Rules, State, measure
+from fem.march.hooks import AfterStep
+from fem.march.records import State, measure
 from fem.scene import Scene
 from fem.solver.newton import Outcome
 from fiberbend.case.case import Case
@@ -29,10 +29,6 @@ from fiberbend.run.assembly import assemble
 Floats = npt.NDArray[np.float64]
 
 PRESSURE = "pressure"
-STEERED_TURN = math.radians(90)
-"""Greatest change of the angle in a step that leans on the section, unless the case says."""
-STEERED_FIRST = math.radians(15)
-STEERED_GROWTH = 3.0
 BEYOND = 1.15
 """The section goes so much further than the angle that ends a run: a body differs a little."""
 
@@ -73,17 +69,6 @@ class SectionStates:
         )
 
 
-def steered(rules: Rules, case: Case) -> Rules:
-    """Rules of a march with a guide: a short first step, from which the ends are learnt."""
-    turn = case.solver.max_turn
-    return dataclasses.replace(
-        rules,
-        turn=turn or STEERED_TURN,
-        first_turn=turn or STEERED_FIRST,
-        grow=STEERED_GROWTH,
-    )
-
-
 def guides(case: Case) -> bool:
     """Whether a section bends as the body of a case does, between its ends."""
     winding = case.find(WindingEffect)
@@ -119,8 +104,8 @@ def section_states(case: Case) -> SectionStates | None:
         states.append(state)
 
     mesh = make_mesh(section, "section")
-    assembly = assemble(section, "section", mesh, MPI.COMM_SELF, keep, lambda _: None)
-    states.append(assembly.march.states[0])
+    assembly = assemble(section, "section", mesh, MPI.COMM_SELF, [AfterStep(keep)])
+    states.append(assembly.march.rest)
     assembly.march.run(assembly.ramps)
     if len(states) < 4:
         return None
