@@ -114,7 +114,7 @@ def carried(name: str, way: str, kpa: int) -> dict[str, float]:
             return dict(kept["found"])
     checked = as_case(case)
     mesh = meshed(checked).mesh(checked)
-    built = assemble(checked, "body", mesh, MPI.COMM_SELF, lambda _s, _o: None, print)
+    built = assemble(checked, mesh, MPI.COMM_SELF)
     report = built.march.run(built.ramps)
     if report.status != "converged":
         raise RuntimeError(report.reason)

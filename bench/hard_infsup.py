@@ -90,7 +90,7 @@ def constants(ladder: Ladder) -> list[tuple[int, float]]:
 def _assemble(changes: dict[str, Any], model: str, mesh: Any = None) -> tuple[Case, Assembly]:
     case = parse_case(Hard("infsup", "", changes).case(model))
     mesh = mesh or meshed(case).mesh(case)
-    return case, assemble(case, model, mesh, MPI.COMM_SELF, lambda *_: None, lambda _: None)
+    return case, assemble(case, mesh, MPI.COMM_SELF)
 
 
 def fault(betas: list[float]) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 from mpi4py import MPI
 
 from bench.hard_cases import Hard
+from fem.march.hooks import Hook, Steered
 from fem.march.records import Ramp, Report, State
 from fem.results.measures import Tip
 from fem.solver.closures import Stationary
@@ -92,7 +93,7 @@ def _against(hard: Hard, model: str, result: RunResult) -> Check:
 # --- what no case file can say ------------------------------------------------------------------
 
 
-class Driven:
+class Driven(Hook):
     """A case that is marched by hand.
 
     Args:
@@ -104,15 +105,15 @@ class Driven:
     def __init__(self, hard: Hard, model: str, mesh: MeshData | None = None) -> None:
         self.case = parse_case(hard.case(model))
         mesh = mesh or meshed(self.case).mesh(self.case)
-        comm, warnings = MPI.COMM_SELF, []  # type: ignore[var-annotated]
-        self.built = assemble(self.case, model, mesh, comm, self._on_step, warnings.append)
+        self.built = assemble(self.case, mesh, MPI.COMM_SELF)
         self.scene, self.newton, self.march = self.built.scene, self.built.newton, self.built.march
-        self.recorder = Recorder(self.scene, self.built.reading.gauge(), self.march.states[0])
+        self.recorder = Recorder(self.scene, self.built.reading.gauge(), self.march.rest)
         self.extra: list[Floats] = []
         self.tip = Tip(self.scene.body) if model == "body" else None
         self._note()
 
-    def _on_step(self, state: State, outcome: Outcome) -> None:
+    def after_step(self, march: Steered, state: State, outcome: Outcome) -> None:
+        """Record it."""
         self.recorder.add(state, outcome)
         self._note()
 
@@ -122,7 +123,7 @@ class Driven:
 
     def run(self, ramps: Sequence[Ramp] | None = None) -> Done:
         """March through the case's ramps, or others."""
-        report = self.march.run(self.built.ramps if ramps is None else ramps)
+        report = self.march.run(self.built.ramps if ramps is None else ramps, [self])
         self.recorder.integrate()
         return Done(self.recorder.rows, self._entry(report))
 

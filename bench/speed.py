@@ -78,7 +78,7 @@ def uniform(model: str, limit: float, *settings: str) -> tuple[str, float, float
     steps = []
 
     def solve() -> None:
-        built = assemble(case, model, mesh, MPI.COMM_SELF, lambda *_: None, lambda _: None)
+        built = assemble(case, mesh, MPI.COMM_SELF)
         start = time.perf_counter()
         report = built.march.run(built.ramps)
         steps.append((time.perf_counter() - start, report.steps, report.iterations))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from fem import compat
-from fem.march.frames import Frames
 from fem.march.predictor import Predictor
 from fem.march.records import MODES, State, measure
 from fem.scene import Scene
@@ -23,17 +22,15 @@ class Equilibrium:
     Args:
         scene: the scene.
         newton: its solver.
-        frames: rod frames; None where the kinematics turns by itself.
-        followed: functional that requests refer to (the bending angle), or None.
+        predictor: what a solve starts from.
+        control: functional that requests refer to (the bending angle), or None.
     """
 
     def __init__(
-        self, scene: Scene, newton: Newton, frames: Frames | None, followed: Functional | None
+        self, scene: Scene, newton: Newton, predictor: Predictor, control: Functional | None
     ) -> None:
         self.scene, self.newton = scene, newton
-        self.followed = followed
-        self.predictor = Predictor(scene, frames)
-        self._frames = frames
+        self._predictor, self._control = predictor, control
         comm, volumetric = scene.domain.comm, int(np.count_nonzero(scene.volumetric))
         self._volumetric = int(compat.total(comm, volumetric))
 
@@ -45,13 +42,13 @@ class Equilibrium:
         for name in scalars:
             if name not in scene.natural:  # there it is zero
                 measures[measure("conjugate", name)] = scene.conjugate(name)
-        if self.followed is not None:
-            measures["followed"] = self.followed.value()
+        if self._control is not None:
+            measures["followed"] = self._control.value()
         return State(
             w=scene.w.copy(),
             scalars=scalars,
             measures=measures,
-            shape=self._frames.fit(scene.body.displacement()) if self._frames else None,
+            shape=self._predictor.describe(),
             discrete={key: item.state() for key, item in scene.discrete.items()},
         )
 
@@ -97,7 +94,7 @@ class Equilibrium:
             target: what that is to be.
             along: states from which the start is extrapolated, a measure and its value there.
         """
-        start = self.predictor.start(*along)
+        start = self._predictor.start(*along)
         unknown: list[str] = list(self.scene.natural)
         closures: list[Closure] = list(self._natural())
         if kind == "value":
@@ -106,8 +103,8 @@ class Equilibrium:
         if kind == "conjugate":
             closures.append(Conjugate(self.scene, scalar, target))
         else:
-            assert self.followed is not None
-            closures.append(Target(self.followed, target))
+            assert self._control is not None
+            closures.append(Target(self._control, target))
         return self.newton.solve(start, [*unknown, scalar], closures)
 
     def judge(self, state: State, before: State, scalar: str) -> None:

@@ -84,7 +84,7 @@ class Settings:
     reuse: bool = True
 
 
-@dataclasses.dataclass
+@dataclasses.dataclass(frozen=True)
 class Outcome:
     """How a Newton solve ended.
 

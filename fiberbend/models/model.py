@@ -126,6 +126,8 @@ class ModelKind(ABC):
     def leaves_out(self, case: Case) -> Iterator[Objection]:
         """What it leaves out of what it can hold: no reason to refuse, but not to choose it."""
         for index, effect in enumerate(case.effects):
+            if not self.offers.issuperset(effect.needs()):
+                continue
             for what, text in effect.wants().items():
                 if what not in self.offers:
                     yield f"effects.{index}.{effect.name}", text

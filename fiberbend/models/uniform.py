@@ -27,16 +27,17 @@ class UniformModel(MeshedModel):
 
     def reading(self, case: Case, scene: Scene) -> Reading:
         """Angle, stretch and twist are scalars."""
-        from fem.kinematics.uniform import CurvatureAngle
+        from fem.kinematics.uniform import CurvatureAngle, Uniform
         from fem.march.selfcontact import UniformRod
         from fiberbend.models.gauges import UniformGauge
 
-        actuator = convert.dimensions(case.actuator)
+        body, actuator = scene.body, convert.dimensions(case.actuator)
+        assert isinstance(body, Uniform)
         return Reading(
             None,
-            CurvatureAngle(scene.body),
+            CurvatureAngle(body),
             lambda: UniformGauge(scene, actuator),
-            UniformRod(scene.body, case.actuator.cap),
+            UniformRod(body, case.actuator.cap),
         )
 
     def memory_mb(self, size: Size) -> float:

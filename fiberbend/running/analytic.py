@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import platform
-import resource
 from typing import Any
 
 import numpy as np
@@ -29,7 +27,7 @@ from fiberbend.models.result import Curve, RunResult
 from fiberbend.running import launch
 from fiberbend.running.folder import RunFolder
 from fiberbend.running.progress import Progress
-from fiberbend.version import __version__
+from fiberbend.running.record import beside, entries, peak_memory_mb
 
 _STEPS = 40
 _GRID = 181
@@ -63,29 +61,27 @@ def run_analytic(
     rows = check.beside(rows)
     progress.phase("output")
     last = rows[-1]
-    run: dict[str, Any] = {
-        "status": status,
-        "reason": reason,
-        "model": kind.name,
-        "unknowns": 0,
-        "load_steps": len(rows) - 1,
-        "newton_iterations": 0,
-        "cutbacks": 0,
-        "wall_s": {name: round(value, 6) for name, value in progress.wall_s.items()},
-        "peak_memory_MB": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1),
-        "ranks": launch.size(),
-        "versions": {
-            "fiberbend": __version__,
-            "python": platform.python_version(),
-            "numpy": np.__version__,
+    run = entries(
+        status,
+        reason,
+        kind.name,
+        {
+            "unknowns": 0,
+            "load_steps": len(rows) - 1,
+            "newton_iterations": 0,
+            "cutbacks": 0,
         },
-        "analytic": {
-            "line": "zero-fit",
-            "kappa_mm3": model.kappa,
-            "assumptions": assumptions(case),
-        },
-        "crosscheck": check.entry(),
+        {name: round(value, 6) for name, value in progress.wall_s.items()},
+        peak_memory_mb(),
+        launch.size(),
+        {"numpy": np.__version__},
+    )
+    run["analytic"] = {
+        "line": "zero-fit",
+        "kappa_mm3": model.kappa,
+        "assumptions": assumptions(case),
     }
+    run |= beside(check)
     if "tip_force_N" in last:
         run["blocked_tip"] = {
             "L_f_mm": lever_arm(case),

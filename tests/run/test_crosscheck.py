@@ -188,7 +188,7 @@ def test_agreement_of_an_unresolved_winding_is_no_proof() -> None:
     assert "about 4.1 %" in remark
     assert remark in check.lines()
     for case, model in ((discrete(), "body"), (case_of(), "body"), (discrete(), "cell")):
-        assert crosscheck(case, model, rows_of(), SECTION).remarks == ()
+        assert crosscheck(case, MODELS[model], rows_of(), SECTION).remarks == ()
 
 
 def test_acting_area_has_the_two_areas_and_the_one_between() -> None:
@@ -282,9 +282,7 @@ def test_force_of_a_blocked_tip() -> None:
     # independent section model: 94 N mm at 100 kPa held straight
     straight = Straight(np.array([0, 0.1, 0.2]), np.array([0, 94.0, 188.0]))
     # docs/accuracy_blocked.md: 3.6 N, and z = L turns by 8.9°
-    check = crosscheck(
-        case_of("blocked_tip"), BODY, blocked_rows(3.6, 8.9), straight=straight
-    )
+    check = crosscheck(case_of("blocked_tip"), BODY, blocked_rows(3.6, 8.9), straight=straight)
     last = check.columns[-1]
     assert last["section_tip_force_N"] == pytest.approx(94 / 14)
     assert last["analytic_tip_force_N"] == pytest.approx(54.24 / 14, abs=5e-4)
@@ -293,9 +291,7 @@ def test_force_of_a_blocked_tip() -> None:
     assert likely(check, "section") == ["guided tip", "soft sheath"]
     assert not compared(check, "analytic").beyond
     # held as the section is: nothing to explain
-    same = crosscheck(
-        case_of("blocked_tip"), BODY, blocked_rows(94 / 14, 0.0), straight=straight
-    )
+    same = crosscheck(case_of("blocked_tip"), BODY, blocked_rows(94 / 14, 0.0), straight=straight)
     assert not compared(same, "section").beyond
     assert likely(same, "analytic") == ["acting area"]
 
@@ -348,9 +344,7 @@ def test_data_that_give_no_modulus_do_not_stop_the_run() -> None:
 
 def test_measured_forces() -> None:
     measured = Measured("tip_force_N", np.array([0.05, 0.1]), np.array([2.0, 4.0]), "force.csv")
-    check = crosscheck(
-        case_of("blocked_tip"), BODY, blocked_rows(3.6, 8.9), None, measured
-    )
+    check = crosscheck(case_of("blocked_tip"), BODY, blocked_rows(3.6, 8.9), None, measured)
     assert compared(check, "measured").percent == pytest.approx(-10)
     assert not compared(check, "measured").beyond
     assert check.calibration is None

@@ -105,7 +105,7 @@ def test_the_body_between_carries_the_moment_of_a_section() -> None:
     case |= {"mesh": {"axial": "8 mm"}, "output": {"fields": False, "pictures": False}}
     checked = as_case(case)
     mesh = meshed(checked).mesh(checked)
-    built = assemble(checked, "body", mesh, MPI.COMM_SELF, lambda _s, _o: None, lambda _: None)
+    built = assemble(checked, mesh, MPI.COMM_SELF)
     report = built.march.run(built.ramps)
     assert (report.status, report.cutbacks) == ("converged", 0)
     scene, body = built.scene, built.scene.body
