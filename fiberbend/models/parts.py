@@ -30,7 +30,9 @@ from fiberbend.effects.table import (
 from fiberbend.reader.defaults import DEFAULT_LINES
 from geometry.mesh.data import MeshData
 from geometry.winding import helix as helices
-from geometry.winding.embed import EmbeddedFibers, embed, smear
+from geometry.winding.embed import embed
+from geometry.winding.segments import EmbeddedFibers
+from geometry.winding.smear import smear
 from materials.laws import Material
 
 _AXES = {"x": 0, "y": 1, "z": 2}

@@ -37,8 +37,9 @@ from geometry.mesh.data import MeshData
 from geometry.mesh.tets import to_tetrahedra
 from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize
-from geometry.winding.embed import embed, smear
+from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
+from geometry.winding.smear import smear
 
 Floats = npt.NDArray[np.float64]
 CELLS = ("hexahedron", "tetrahedron")

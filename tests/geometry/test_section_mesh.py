@@ -14,9 +14,11 @@ from geometry.mesh.reference import jacobians
 from geometry.mesh.tets import to_tetrahedra
 from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize
-from geometry.winding.embed import EmbeddedFibers, embed, smear
+from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
 from geometry.winding.outline import arc_length, tangent
+from geometry.winding.segments import EmbeddedFibers
+from geometry.winding.smear import smear
 
 BODY = HemicircleActuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
 DOUBLE = Winding("double-helix", 3, 0.38)

@@ -30,13 +30,14 @@ from geometry.sections.rectangle import RectangleActuator
 from geometry.sections.shape import ShapedActuator
 from geometry.sections.size import MeshSize, Strips, check_size
 from geometry.sections.table import SECTIONS, make_actuator
-from geometry.winding.embed import embed, smear
+from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
 from geometry.winding.outline import (
     arc_length,
     position,
     tangent,
 )
+from geometry.winding.smear import smear
 
 HEMICIRCLE = HemicircleActuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
 RECTANGLE = RectangleActuator(width=15, height=7, length=40, wall=2, floor=3, sheath=1, cap=8)

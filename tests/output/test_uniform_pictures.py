@@ -343,7 +343,8 @@ def test_tension_is_that_of_the_whole_fiber(half: bool, tmp_path: Path) -> None:
 def test_nothing_is_imported_for_a_run_without_pictures() -> None:
     # pyvista and matplotlib take longer to import than a section takes to solve
     code = (
-        "import sys, fiberbend.runner, fiberbend.report, fiberbend.uniform_report\n"
+        "import sys, fiberbend.running.runner, fiberbend.running.report\n"
+        "import fiberbend.running.uniform_report\n"
         "print([name for name in ('pyvista', 'matplotlib', 'vtkmodules') if name in sys.modules])"
     )
     done = subprocess.run(

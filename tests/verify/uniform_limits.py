@@ -19,8 +19,8 @@ from fem.scene import Scene
 from fem.solver.newton import Newton, Settings
 from geometry.sections.circle import CircleActuator
 from geometry.sections.hemicircle import HemicircleActuator
-from geometry.winding.embed import smear
 from geometry.winding.helix import PATTERNS, Winding
+from geometry.winding.smear import smear
 from tests.verify.helix_tube import HelixTube
 from tests.verify.ladder import YEOH
 from tests.verify.uniform import (
