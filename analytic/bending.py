@@ -117,7 +117,7 @@ class Hemicircle:
     @property
     def angles(self) -> tuple[float, float]:
         """Least and greatest angle that `angle` returns, rad."""
-        return angle_range(self.length, self.roof)
+        return angle_range(self.length, self.roof, self.sheath)
 
     @functools.cached_property
     def _inverse(self) -> MonotoneInverse:

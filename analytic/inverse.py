@@ -18,16 +18,19 @@ _INTERVALS = 400
 _GRID = 181
 
 
-def angle_range(length: float, roof: float) -> tuple[float, float]:
+def angle_range(length: float, roof: float, below: float = 0.0) -> tuple[float, float]:
     """Least and greatest angle in rad for which θ(P) of an actuator is looked for.
 
-    Backward bending ends at half the angle at which the roof is squeezed to nothing.
+    Backward bending ends at half the angle at which the roof is squeezed to nothing, forward
+    bending just before what lies below y = 0 is.
 
     Args:
         length: length L of the inextensible line y = 0, mm.
         roof: height of the highest line above it, mm.
+        below: depth of the lowest line below it, mm.
     """
-    return max(BACKWARD, -length / roof / 2), FORWARD
+    forward = min(FORWARD, 0.99 * length / below) if below else FORWARD
+    return max(BACKWARD, -length / roof / 2), forward
 
 
 class Found(NamedTuple):

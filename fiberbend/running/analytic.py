@@ -173,8 +173,6 @@ def _angle_at(model: Hemicircle, pressure: float) -> tuple[float, str]:
     """
     low, high = model.angles
     bound = high if pressure > 0 else low
-    if model.sheath:
-        bound = min(bound, 0.99 * model.length / model.sheath)
     found = first_angle(model.pressure, pressure, bound)
     degrees = math.degrees(found.angle)
     reached = f"{1e3 * math.copysign(found.pressure, pressure):.4g} kPa at {degrees:.4g}°"

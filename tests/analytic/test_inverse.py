@@ -7,8 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from analytic.bending import Hemicircle
 from analytic.inverse import FORWARD, angle_range, first_angle
-from analytic.stress import Floats
+from analytic.stress import Floats, effective
 
 
 def _hill(angle: Floats) -> Floats:
@@ -37,3 +38,12 @@ def test_a_pressure_beyond_the_bound_ends_there() -> None:
 def test_backward_bending_ends_before_the_roof_is_squeezed_to_nothing() -> None:
     assert angle_range(160.0, 12.0) == (-math.pi / 2, FORWARD)
     assert angle_range(20.0, 12.0) == (-20 / 24, FORWARD)
+
+
+def test_forward_bending_ends_before_a_thick_sheath_is_squeezed_to_nothing() -> None:
+    # the table of θ(P) stops where the closed form does, instead of being refused
+    assert angle_range(160.0, 12.0, 1.0)[1] == FORWARD
+    thick = Hemicircle(8, 2, 2, 160, sheath=20.0, sheath_stress=effective(0.05))
+    assert thick.angles[1] == pytest.approx(0.99 * 8)
+    angle = np.linspace(0, 7.9, 9)
+    assert thick.angle(thick.pressure(angle)) == pytest.approx(angle)
