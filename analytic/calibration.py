@@ -12,7 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from analytic.bending import FORWARD, Hemicircle
+from analytic.bending import Hemicircle
+from analytic.inverse import FORWARD
 from analytic.stress import Floats, effective
 from analytic.table import read_columns
 

@@ -12,7 +12,7 @@ from fiberbend.case import case
 from fiberbend.effects.effect import Requests, Site
 
 if TYPE_CHECKING:
-    from geometry.actuator import Actuator
+    from geometry.sections.shape import ShapedActuator
     from geometry.sections.size import MeshSize
     from materials.laws import Material
 
@@ -20,11 +20,11 @@ _KG_PER_M3 = 1e12
 """kg/m³ in one t/mm³."""
 
 
-def dimensions(actuator: case.Actuator) -> Actuator:
+def dimensions(actuator: case.Actuator) -> ShapedActuator:
     """The dimensions as the geometry takes them."""
-    from geometry.actuator import Actuator
+    from geometry.sections.table import make_actuator
 
-    return Actuator(**dict(actuator))
+    return make_actuator(dict(actuator))
 
 
 def mesh_size(mesh: case.Mesh, half: bool) -> MeshSize:

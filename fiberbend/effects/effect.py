@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
     from geometry.sections.size import Strips
-    from geometry.winding.embed import EmbeddedFibers
+    from geometry.winding.segments import EmbeddedFibers
     from materials.laws import Material
 
 ARC = "arc"

@@ -224,7 +224,8 @@ class WindingEffect(Effect):
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
         """The thread on the faces of the mesh."""
         from fem.effects.winding import SmearedWinding, Winding
-        from geometry.winding.embed import embed, smear
+        from geometry.winding.embed import embed
+        from geometry.winding.smear import smear
 
         smeared = self.representation == "smeared"
         fibers = (smear if smeared else embed)(mesh, site.actuator, self.helix())

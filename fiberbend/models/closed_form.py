@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-import math
 from typing import Any
 
 from analytic.bending import Hemicircle
@@ -88,21 +86,6 @@ def dimensions(case: Case) -> tuple[float, float, float, float]:
     assert radius is not None
     assert floor is not None
     return radius, floor, actuator.wall, actuator.length
-
-
-def chamber_moment(model: Hemicircle) -> float:
-    """∫ y dA of the chamber, mm³: κ of eq. (21), and dV/dθ of a section that keeps its shape."""
-    return dataclasses.replace(model, acts="chamber").kappa
-
-
-def face_height(case: Case) -> float:
-    """Height of the centroid of the tip cap's outer face: a half disk on a rectangle, mm."""
-    radius, floor, wall, _ = dimensions(case)
-    sheath = case.actuator.sheath or 0.0
-    r, bottom = radius + wall + sheath, -(case.actuator.layer or 0.0) - sheath
-    disk, box = math.pi * r**2 / 2, 2 * r * (floor - bottom)
-    centroids = floor + 4 * r / (3 * math.pi), (floor + bottom) / 2
-    return (disk * centroids[0] + box * centroids[1]) / (disk + box)
 
 
 def _stress(spec: MaterialSpec) -> Stress:

@@ -12,7 +12,7 @@ from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.models.model import MeshedModel
 from geometry.mesh.data import MeshData
-from geometry.winding.embed import EmbeddedFibers
+from geometry.winding.segments import EmbeddedFibers
 from materials.laws import Material
 
 

@@ -97,7 +97,7 @@ def check(parts: Parts) -> Iterator[Problem]:
 
 
 def _section(parts: Parts) -> Iterator[Problem]:
-    from geometry.sections.profiles import misfits
+    from geometry.sections.table import misfits
 
     if parts.actuator is not None:
         for name, text in misfits(dict(parts.actuator)):

@@ -6,11 +6,12 @@ import math
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
-from analytic.bending import BACKWARD, FORWARD, Hemicircle
+from analytic.bending import Hemicircle
+from analytic.inverse import first_angle
 from analytic.path import tip
 from analytic.stress import Floats
+from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.measured import read_measured
 from fiberbend.compare.check import crosscheck
@@ -18,8 +19,6 @@ from fiberbend.models.choice import choose_model
 from fiberbend.models.closed_form import (
     analytic_curves,
     assumptions,
-    chamber_moment,
-    face_height,
     lever_arm,
     no_analytic,
 )
@@ -30,7 +29,6 @@ from fiberbend.running.progress import Progress
 from fiberbend.running.record import beside, entries, peak_memory_mb
 
 _STEPS = 40
-_GRID = 181
 
 
 def run_analytic(
@@ -104,8 +102,9 @@ def run_analytic(
 
 def _row(step: int, pressure: float, angle: float, case: Case, model: Hemicircle) -> dict[str, Any]:
     """A row of history.csv; the section keeps its shape, so that V = A L + θ ∫ y dA."""
-    along, down = tip(angle, model.length, case.actuator.cap, face_height(case))
-    volume = math.pi * model.radius**2 / 2 * model.length + chamber_moment(model) * angle
+    body = convert.dimensions(case.actuator)
+    along, down = tip(angle, model.length, body.cap, body.face_height)
+    volume = body.chamber_volume + body.chamber_moment * angle
     return {
         "step": step,
         "pressure_kPa": 1e3 * pressure,
@@ -168,26 +167,17 @@ def _angle_at(model: Hemicircle, pressure: float) -> tuple[float, str]:
 
     Unlike `Hemicircle.angle` it goes as far as it can where the pressure is not reached.
     """
-    roof = model.floor + model.radius + model.wall + model.sheath
-    bound = FORWARD if pressure > 0 else max(BACKWARD, -model.length / roof / 2)
-    if model.sheath:
-        bound = min(bound, 0.99 * model.length / model.sheath)
-    angles = np.linspace(0.0, bound, _GRID)
-    values = np.abs(model.pressure(angles))
-    falls = np.flatnonzero(np.diff(values) <= 0)
-    last = int(falls[0]) if len(falls) else _GRID - 1
-    beyond = np.flatnonzero(values[: last + 1] >= abs(pressure))
-    degrees = math.degrees(angles[last])
-    reached = f"{1e3 * math.copysign(values[last], pressure):.4g} kPa at {degrees:.4g}°"
-    if len(beyond):
-        first = int(beyond[0])
-        angle = brentq(
-            lambda x: float(model.pressure(x)) - pressure, angles[first - 1], angles[first]
-        )
-        return float(angle), ""
-    if len(falls):
-        return float(angles[last]), f"the pressure has its greatest value, {reached}"
-    return float(angles[last]), f"the closed form ends with {reached}"
+    low, high = model.angles
+    bound = high if pressure > 0 else low
+    found = first_angle(model.pressure, pressure, bound)
+    degrees = math.degrees(found.angle)
+    reached = f"{1e3 * math.copysign(found.pressure, pressure):.4g} kPa at {degrees:.4g}°"
+    why = {
+        "": "",
+        "peak": f"the pressure has its greatest value, {reached}",
+        "bound": f"the closed form ends with {reached}",
+    }
+    return found.angle, why[found.end]
 
 
 def _merged(even: Floats, exact: Any) -> Floats:

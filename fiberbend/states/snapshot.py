@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import IO
 
 from geometry.mesh.data import Floats, MeshData
-from geometry.winding.embed import EmbeddedFibers
+from geometry.winding.segments import EmbeddedFibers
 from materials.laws import Material
 
 Target = Path | IO[bytes]

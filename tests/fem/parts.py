@@ -36,16 +36,18 @@ from geometry.bodies.extrude import swept_body
 from geometry.bodies.solids import tube_sector
 from geometry.mesh.data import MeshData
 from geometry.mesh.tets import to_tetrahedra
+from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize
-from geometry.winding.embed import embed, smear
+from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
+from geometry.winding.smear import smear
 
 Floats = npt.NDArray[np.float64]
 CELLS = ("hexahedron", "tetrahedron")
 
-STUB = Actuator(radius=8, length=8, wall=2, floor=2, sheath=None, cap=4)
+STUB = HemicircleActuator(radius=8, length=8, wall=2, floor=2, cap=4)
 """Shortest actuator with every surface."""
-SHORT = Actuator(radius=8, length=24, wall=2, floor=2, sheath=1, cap=5)
+SHORT = HemicircleActuator(radius=8, length=24, wall=2, floor=2, sheath=1, cap=5)
 """Cheapest actuator that bends."""
 PITCH = 3.0
 EA = 881.0

@@ -26,6 +26,7 @@ from fiberbend.states.stack import repeated, split_alike, swept
 from geometry.bodies.extrude import swept_section
 from geometry.checks import region_volumes
 from geometry.mesh.data import Floats, MeshData
+from geometry.sections.circle import CircleActuator
 from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
 from materials.laws import Material, uniaxial_stress
@@ -293,7 +294,7 @@ def test_floor_bulge_is_read_between_middle_and_edge() -> None:
 
     # the edge of the winding lies at x = a + t = 10
     assert Crosscut(scene).bulge(state(scene, move=sag)) == pytest.approx(0.7)
-    round_one = dataclasses.replace(SHORT, section="circle", floor=None, sheath=None)
+    round_one = CircleActuator(radius=8, length=24, wall=2, cap=4)
     mesh = swept_section(round_one, MeshSize(axial=PITCH))
     tube = Scenery(mesh, MATERIALS, None, smeared=False, title="", uniform=True)
     still = dataclasses.replace(
@@ -342,7 +343,8 @@ def test_tension_is_that_of_the_whole_fiber(half: bool, tmp_path: Path) -> None:
 def test_nothing_is_imported_for_a_run_without_pictures() -> None:
     # pyvista and matplotlib take longer to import than a section takes to solve
     code = (
-        "import sys, fiberbend.runner, fiberbend.report, fiberbend.uniform_report\n"
+        "import sys, fiberbend.running.runner, fiberbend.running.report\n"
+        "import fiberbend.running.uniform_report\n"
         "print([name for name in ('pyvista', 'matplotlib', 'vtkmodules') if name in sys.modules])"
     )
     done = subprocess.run(

@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 import yaml
 
+from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.models.closed_form import (
     analytic_curves,
     assumptions,
-    face_height,
     no_analytic,
 )
 from fiberbend.models.result import RunResult
@@ -155,7 +155,7 @@ def test_tip_and_volume() -> None:
     disk, box = math.pi * 11**2 / 2, 22 * 3
     height = (disk * (2 + 44 / (3 * math.pi)) + box * 0.5) / (disk + box)
     assert (rest["tip_z_mm"], rest["tip_y_mm"]) == pytest.approx((175, height))
-    assert face_height(case_with()) == pytest.approx(height)
+    assert convert.dimensions(case_with().actuator).face_height == pytest.approx(height)
     assert rest["chamber_mm3"] == pytest.approx(math.pi * 32 * 160)
     # virtual work: P dV = M dθ with P κ = M
     angles, volumes = np.radians(column(result, "angle_deg")), column(result, "chamber_mm3")

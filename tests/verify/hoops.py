@@ -22,7 +22,7 @@ from geometry.mesh.reference import (
     jacobians,
 )
 from geometry.sections.blocks import Layout
-from geometry.winding.embed import EmbeddedFibers
+from geometry.winding.segments import EmbeddedFibers
 
 
 def half_tube(

@@ -17,9 +17,10 @@ from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
 from fem.march.records import Ramp
 from fem.scene import Scene
 from fem.solver.newton import Newton, Settings
-from geometry.actuator import Actuator
-from geometry.winding.embed import smear
+from geometry.sections.circle import CircleActuator
+from geometry.sections.hemicircle import HemicircleActuator
 from geometry.winding.helix import PATTERNS, Winding
+from geometry.winding.smear import smear
 from tests.verify.helix_tube import HelixTube
 from tests.verify.ladder import YEOH
 from tests.verify.uniform import (
@@ -34,13 +35,13 @@ from tests.verify.uniform import (
     section,
 )
 
-BASELINE = Actuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
+BASELINE = HemicircleActuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
 LAWS: dict[str, Law] = {"wall": YEOH, "floor": {"c1": 7.9}, "sheath": {"c1": 0.012662}}
 """The paper's materials, for the baseline."""
-BARE = Actuator(radius=8, length=160, wall=2, floor=2, sheath=None, cap=15)
+BARE = HemicircleActuator(radius=8, length=160, wall=2, floor=2, cap=15)
 SOFT: dict[str, Law] = {name: {"c1": 0.11} for name in ("wall", "floor")}
 """One material all over, for the bare section."""
-TUBE = Actuator(section="circle", radius=8, length=160, wall=2, floor=None, sheath=None, cap=15)
+TUBE = CircleActuator(radius=8, length=160, wall=2, cap=15)
 INNER, OUTER = 8.0, 10.0
 SLOPE = yeoh_slope(YEOH["c1"], YEOH["c2"])
 EA = 881.0
