@@ -8,7 +8,6 @@ import numpy as np
 
 from fem.march.records import Ramp, State
 
-
 NEAR = 0.02
 """An increment that would end so near before a value that is asked for hits it (rad, an angle)."""
 
