@@ -10,7 +10,7 @@ import numpy as np
 
 from fem.march.position import Position
 from fem.results.checkpoint import Archive
-from fiberbend.run.folder import RunFolder
+from fiberbend.running.folder import RunFolder
 from fiberbend.states.snapshot import Snapshot
 
 CHECKPOINT = "checkpoint.npz"
