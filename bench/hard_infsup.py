@@ -117,8 +117,7 @@ def _constant(changes: dict[str, Any], ladder: Ladder) -> tuple[int, float]:
 
 def _blocks(scene: Scene) -> tuple[Any, Any, Any]:
     """K, B and the block of the pressures of a scene's tangent, on its free dofs."""
-    for discrete in scene.discrete.values():
-        discrete.predict(None)
+    scene.predict(None)
     matrix = scene.assemble_tangent()
     plain = matrix.copy().convert("aij")
     rows, columns, values = plain.getValuesCSR()

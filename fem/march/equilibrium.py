@@ -49,7 +49,7 @@ class Equilibrium:
             scalars=scalars,
             measures=measures,
             shape=self._predictor.describe(),
-            discrete={key: item.state() for key, item in scene.discrete.items()},
+            discrete=scene.memory(),
         )
 
     def restore(self, state: State) -> None:
@@ -66,8 +66,7 @@ class Equilibrium:
         """A state near another along its linear response to a scalar; the scene is left at that."""
         scene, body = self.scene, self.scene.body
         self.restore(base)
-        for discrete in scene.discrete.values():
-            discrete.predict(None)
+        scene.predict(None)
         rate, natural = self.newton.response(scalar, scene.natural, self._natural())
         nodal = body.with_ghosts(rate)[body.node_dofs[body.owned_nodes]]
         top = float(np.max(np.abs(nodal), initial=0.0))

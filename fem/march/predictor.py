@@ -62,8 +62,7 @@ class Predictor:
             shape = self._frames.extrapolate(shapes, weights, guides)
             body.set_displacement(self._frames.rebuild(shape))
             scene.set(scene.w.copy())
-        for name, discrete in scene.discrete.items():
-            discrete.extrapolate([state.discrete[name] for state in states], weights)
+        scene.extrapolate([state.discrete for state in states], weights)
         return scene.w.copy()
 
     def _guides(self, key: str, values: Sequence[float]) -> list[Shape] | None:

@@ -134,7 +134,7 @@ class Archive:
     def multiplier(self) -> Floats | None:
         """Pressure field at the nodes of every cell, MPa, (m, k), on rank 0."""
         scene = self._scene
-        if "p" not in scene.body.names:
+        if scene.body.pressure_field is None:
             return None
         if self._multiplier is None:
             nodes = reference_nodes(scene.domain.data.cell_type)

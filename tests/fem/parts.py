@@ -97,8 +97,7 @@ def perturb(scene: Scene, amplitude: float, seed: int) -> Floats:
     for name in scene.body.scalars:
         scene.set_scalar(name, 0.3 + rng.random())
     scene.set(amplitude * rng.uniform(-1, 1, scene.body.owned))
-    for discrete in scene.discrete.values():
-        discrete.predict(None)
+    scene.predict(None)
     return scene.w.copy()
 
 
