@@ -139,7 +139,7 @@ def _plan(options: argparse.Namespace) -> int:
 
 
 def _schema(options: argparse.Namespace) -> int:
-    from fiberbend.reader.reader import json_schema
+    from fiberbend.reader.json_schema import json_schema
 
     _say(json.dumps(json_schema(), indent=2, ensure_ascii=False))
     return 0

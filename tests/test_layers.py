@@ -16,9 +16,10 @@ LEAVES = ("materials", "geometry", "analytic")
 SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
 FENICS = {"dolfinx", "ufl", "ffcx", "basix", "petsc4py", "mpi4py"}
 LIGHT = (
-    "schema/units schema/quantities schema/problems case/convert case/case case/measured "
-    "effects/table effects/clearance reader/checks reader/defaults reader/reader models/choice "
-    "plan/plan run/progress run/folder run/launch"
+    "schema/units schema/quantities schema/problems schema/paths schema/validation case/convert "
+    "case/case case/measured effects/table effects/clearance reader/checks reader/defaults "
+    "reader/reader reader/yaml_file reader/json_schema models/choice plan/plan run/progress "
+    "run/folder run/launch"
 )
 SCHEMA = [ROOT / "fiberbend" / f"{name}.py" for name in LIGHT.split()]
 BELOW_EFFECTS = {"effects", "kinematics", "compat"}

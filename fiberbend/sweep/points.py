@@ -17,20 +17,17 @@ from pydantic import ValidationError
 from fiberbend.case.case import Case
 from fiberbend.effects.table import PressureEffect, StraightEffect
 from fiberbend.models.choice import UNIFORM, choose_model
-from fiberbend.reader.reader import (
-    apply_setting,
-    load_yaml,
-    parse_case,
-    put,
-)
-from fiberbend.schema.problems import CaseError, Problem, from_pydantic
+from fiberbend.reader.reader import parse_case
+from fiberbend.reader.yaml_file import apply_setting, load_yaml
+from fiberbend.schema.paths import put, value_at
+from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.units import parse, show
+from fiberbend.schema.validation import from_pydantic
 from fiberbend.sweep.fields import (
     Column,
     columns,
     labels,
     point_name,
-    value_at,
 )
 from fiberbend.sweep.file import Report, SweepFile, contradictions
 

@@ -20,9 +20,9 @@ from fiberbend.effects.table import (
     PressureEffect,
     WindingEffect,
 )
+from fiberbend.reader.json_schema import json_schema
 from fiberbend.reader.reader import (
     as_case,
-    json_schema,
     parse_case,
     read_case,
 )
