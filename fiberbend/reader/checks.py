@@ -31,7 +31,7 @@ from fiberbend.effects.table import (
 )
 from fiberbend.models.choice import mirror_breakers
 from fiberbend.models.mesh_size import misfitting
-from fiberbend.schema.problems import Problem, found
+from fiberbend.schema.problems import Problem, found, meant
 from fiberbend.schema.units import show
 
 
@@ -152,7 +152,8 @@ def _fiber(path: str, fiber: Fiber) -> Iterator[Problem]:
 
     if fiber.name not in FIBERS:
         names = ", ".join(FIBERS)
-        yield Problem(path, f"{found(fiber.name)}, expected {names}, or modulus and diameter")
+        wanted = f"expected {names}, or modulus and diameter{meant(fiber.name, FIBERS)}"
+        yield Problem(path, f"{found(fiber.name)}, {wanted}")
     for key in own:
         if getattr(fiber, key) is not None:
             yield Problem(f"{path}.{key}", "no effect on a named fiber, expected no value")
@@ -180,7 +181,8 @@ def _material(path: str, material: Material) -> Iterator[Problem]:
     given = material.coefficients
     if material.name is not None:
         if material.name not in NAMED:
-            yield Problem(path, f"{found(material.name)}, expected {', '.join(NAMED)}, or a law")
+            wanted = f"expected {', '.join(NAMED)}, or a law{meant(material.name, NAMED)}"
+            yield Problem(path, f"{found(material.name)}, {wanted}")
         for key in [*(["law"] if material.law else []), *given]:
             yield Problem(f"{path}.{key}", "no effect on a named material, expected no value")
         return

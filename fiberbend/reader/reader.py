@@ -33,6 +33,9 @@ _SECTIONS: dict[str, type[BaseModel]] = {
     "output": Output,
 }
 
+_SWEEP = frozenset({"vary", "zip", "points"})
+"""Keys by which a file with a key `case` is a sweep's."""
+
 
 def read_case(path: Path | str, settings: Iterable[str] = ()) -> Case:
     """Read a case file.
@@ -49,6 +52,8 @@ def read_case(path: Path | str, settings: Iterable[str] = ()) -> Case:
         CaseError: everything that is wrong with file, settings and case.
     """
     data = load_yaml(Path(path))
+    if "case" in data and not _SWEEP.isdisjoint(data):
+        raise CaseError([Problem(str(path), f"this is a sweep: fiberbend sweep {path}")])
     root_paths(data, Path(path).parent)
     problems: list[Problem] = []
     for setting in settings:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import difflib
 import json
 from collections.abc import Iterable
 from typing import Any
@@ -47,3 +48,9 @@ def found(value: Any) -> str:
         return "nothing"
     text = json.dumps(value, default=str, ensure_ascii=False)
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+def meant(word: object, known: Iterable[str]) -> str:
+    """The end of a message that names the known word nearest to a wrong one; empty without one."""
+    close = difflib.get_close_matches(str(word).lower(), list(known), n=1)
+    return f"; did you mean {close[0]}?" if close else ""

@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from fiberbend.schema.paths import dotted, keys, models_at
-from fiberbend.schema.problems import Problem, found
+from fiberbend.schema.problems import Problem, found, meant
 from fiberbend.schema.quantities import Model, Quantity
 
 _PLAIN = {
@@ -22,6 +22,8 @@ _PLAIN = {
     "bool_type": "expected true or false",
     "int_type": "expected a whole number",
     "float_type": "expected a number",
+    "int_parsing": "expected a whole number",
+    "float_parsing": "expected a number",
     "finite_number": "expected a finite number",
 }
 
@@ -41,12 +43,14 @@ def _text(line: Any, root: type[Model]) -> str:
     kind, context = line["type"], line.get("ctx", {})
     if kind == "extra_forbidden":
         known = [key for model in models_at(root, line["loc"][:-1]) for key in keys(model)]
-        return f"unknown key, expected one of {', '.join(known)}"
+        return f"unknown key, expected one of {', '.join(known)}{meant(line['loc'][-1], known)}"
     if kind == "missing":
         return f"missing, expected {_expected(root, line['loc'])}"
     shown = found(line["input"])
     if kind == "literal_error":
-        return f"{shown}, expected {context['expected'].replace(chr(39), '')}"
+        expected = context["expected"].replace("'", "")
+        words = re.split(r", | or ", expected)
+        return f"{shown}, expected {expected}{meant(line['input'], words)}"
     if kind in ("greater_than", "greater_than_equal", "less_than", "less_than_equal"):
         ((word, bound),) = context.items()
         phrase = {"gt": "more than", "ge": "at least", "lt": "less than", "le": "at most"}[word]

@@ -98,8 +98,11 @@ def read_sweep(path: Path | str, settings: Iterable[str] = ()) -> Sweep:
         CaseError: everything that is wrong with the file and with its points.
     """
     path = Path(path)
+    data = load_yaml(path)
+    if "case" not in data and "actuator" in data:
+        raise CaseError([Problem(str(path), f"this is a case: fiberbend run {path}")])
     try:
-        file = SweepFile.model_validate(load_yaml(path))
+        file = SweepFile.model_validate(data)
     except ValidationError as error:
         raise CaseError(from_pydantic(error, SweepFile)) from None
     problems = list(contradictions(file))
