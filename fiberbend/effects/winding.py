@@ -19,7 +19,7 @@ from fiberbend.effects.effect import (
     Site,
     Turns,
 )
-from fiberbend.schema.problems import Problem, found
+from fiberbend.schema.problems import Problem, found, meant
 from fiberbend.schema.quantities import Length, Model, Modulus, Width
 from fiberbend.schema.units import show
 
@@ -91,7 +91,8 @@ class Fiber(Model):
 
         if self.name not in FIBERS:
             names = ", ".join(FIBERS)
-            yield Problem(path, f"{found(self.name)}, expected {names}, or modulus and diameter")
+            wanted = f"expected {names}, or modulus and diameter{meant(self.name, FIBERS)}"
+            yield Problem(path, f"{found(self.name)}, {wanted}")
         for key in own:
             if getattr(self, key) is not None:
                 yield Problem(f"{path}.{key}", "no effect on a named fiber, expected no value")

@@ -26,7 +26,7 @@ from fiberbend.effects.effect import (
 )
 from fiberbend.effects.table import EFFECTS
 from fiberbend.models.choice import MODELS, choose_model
-from fiberbend.schema.problems import Problem, found
+from fiberbend.schema.problems import Problem, found, meant
 from fiberbend.schema.units import show
 
 if TYPE_CHECKING:
@@ -139,7 +139,8 @@ def _material(path: str, material: Material) -> Iterator[Problem]:
     given = material.coefficients
     if material.name is not None:
         if material.name not in NAMED:
-            yield Problem(path, f"{found(material.name)}, expected {', '.join(NAMED)}, or a law")
+            wanted = f"expected {', '.join(NAMED)}, or a law{meant(material.name, NAMED)}"
+            yield Problem(path, f"{found(material.name)}, {wanted}")
         for key in [*(["law"] if material.law else []), *given]:
             yield Problem(f"{path}.{key}", "no effect on a named material, expected no value")
         return

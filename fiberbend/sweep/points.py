@@ -17,20 +17,17 @@ from pydantic import ValidationError
 from fiberbend.case.case import Case
 from fiberbend.effects.straight import kept_straight
 from fiberbend.models.choice import choose_model
-from fiberbend.reader.reader import (
-    apply_setting,
-    load_yaml,
-    parse_case,
-    put,
-)
-from fiberbend.schema.problems import CaseError, Problem, from_pydantic
+from fiberbend.reader.reader import parse_case
+from fiberbend.reader.yaml_file import apply_setting, load_yaml
+from fiberbend.schema.paths import put, value_at
+from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.units import parse, show
+from fiberbend.schema.validation import from_pydantic
 from fiberbend.sweep.fields import (
     Column,
     columns,
     labels,
     point_name,
-    value_at,
 )
 from fiberbend.sweep.file import Report, SweepFile, contradictions
 
@@ -101,8 +98,11 @@ def read_sweep(path: Path | str, settings: Iterable[str] = ()) -> Sweep:
         CaseError: everything that is wrong with the file and with its points.
     """
     path = Path(path)
+    data = load_yaml(path)
+    if "case" not in data and "actuator" in data:
+        raise CaseError([Problem(str(path), f"this is a case: fiberbend run {path}")])
     try:
-        file = SweepFile.model_validate(load_yaml(path))
+        file = SweepFile.model_validate(data)
     except ValidationError as error:
         raise CaseError(from_pydantic(error, SweepFile)) from None
     problems = list(contradictions(file))
