@@ -28,6 +28,7 @@ def check_run(
     model: ModelKind,
     rows: Sequence[dict[str, Any]],
     solve: Callable[[Case], RunResult] | None = None,
+    known: Curve | None = None,
 ) -> Check:
     """Put a run beside the section model, the closed forms and the measured points; no collective.
 
@@ -36,6 +37,8 @@ def check_run(
         model: its model.
         rows: its history.
         solve: solves a section on this rank alone; without it there is none beside the run.
+        known: the section's curve where it was solved already; it is solved again where the run
+            goes beyond.
     """
     measured = read_measured(case)
     if case.inflation is None or solve is None or model.name == MODEL:
@@ -52,14 +55,26 @@ def check_run(
         )
     if abs(furthest) < LEAST_ANGLE:
         return crosscheck(case, model, rows, measured=measured)
-    section = as_section(case, inflate(angle=math.radians(furthest)))
-    result = solve(section)
-    if len(result.rows) < 2:
-        return crosscheck(case, model, rows, measured=measured, no_section=result.reason)
+    curve = known
+    if curve is None or not curve.reaches(math.radians(furthest)):
+        curve = section_curve(case, math.radians(furthest), solve)
+    if len(curve.angle) < 2:
+        return crosscheck(case, model, rows, measured=measured, no_section=curve.reason)
+    return crosscheck(case, model, rows, curve, measured, no_section=curve.reason)
+
+
+def section_curve(case: Case, angle: float, solve: Callable[[Case], RunResult]) -> Curve:
+    """P, θ and V of a case's actuator by the section model, winding smeared.
+
+    Args:
+        case: any case.
+        angle: bending angle at the end, rad.
+        solve: solves a section.
+    """
+    result = solve(as_section(case, inflate(angle=angle)))
     columns = ("pressure_kPa", "angle_deg", "chamber_mm3")
     kpa, degrees, volume = (np.array([row[name] for row in result.rows]) for name in columns)
-    curve = Curve(1e-3 * kpa, np.radians(degrees), volume, result.reason)
-    return crosscheck(case, model, rows, curve, measured, no_section=result.reason)
+    return Curve(1e-3 * kpa, np.deg2rad(degrees), volume, result.reason)
 
 
 def _straight(

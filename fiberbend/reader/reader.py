@@ -104,9 +104,9 @@ def parse_case(data: Mapping[str, Any]) -> Case:
 
 def _valid_parts(data: Mapping[str, Any]) -> Parts:
     parts = Parts(model=str(data.get("model")))
-    for name, model in _SECTIONS.items():
+    for name, part in _SECTIONS.items():
         try:
-            setattr(parts, name, model.model_validate(data.get(name, {})))
+            setattr(parts, name, part.model_validate(data.get(name, {})))
         except ValidationError:
             continue
     entries: Any = data.get("effects")

@@ -25,7 +25,7 @@ from fiberbend.running.folder import RunFolder
 from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording, ended
 from fiberbend.running.progress import Progress
-from fiberbend.running.warm import guides, section_states
+from fiberbend.running.warm import SectionStates, guides, section_states
 from fiberbend.states.snapshot import Scenery
 from geometry.mesh.data import MeshData
 
@@ -104,8 +104,13 @@ class _Run:
         progress, case = self.progress, self.case
         progress.phase("mesh")
         mesh = _on_rank_0(self.comm, lambda: self._mesh(again))
+        section = self._section()
         progress.phase("compile")
-        assembly = assemble(case, mesh, self.comm, self._guide)
+
+        def lead(scene: Scene, frames: Frames) -> Guide | None:
+            return section.guide(scene, frames, case.actuator.length) if section else None
+
+        assembly = assemble(case, mesh, self.comm, lead)
         recorder, recording = self._recording(assembly, again)
         remark = winding_remark(case)
         if remark is not None and "NOT" in remark:
@@ -114,7 +119,7 @@ class _Run:
         assembly.march.run(assembly.ramps, [recording])
         status, reason = ended(case, assembly, recorder.rows)
         self._warn_of_ends(status, recorder, recording)
-        check = self._cross_check(recorder.rows)
+        check = self._cross_check(recorder.rows, section)
         progress.phase("output")
         recording.keep("last")
         rows = check.beside(recorder.rows) if check else recorder.rows
@@ -152,13 +157,13 @@ class _Run:
             mesh.save(folder.path / MESH)
         return mesh
 
-    def _guide(self, scene: Scene, frames: Frames) -> Guide | None:
+    def _section(self) -> SectionStates | None:
         """What a body leans on: its section's states, solved on rank 0; collective."""
-        if not guides(self.case):
+        if not (self.model.ends and guides(self.case)):
             return None
         self.progress.phase("section")
-        states = _on_rank_0(self.comm, lambda: section_states(self.case))
-        return states.guide(scene, frames, self.case.actuator.length) if states else None
+        states: SectionStates | None = _on_rank_0(self.comm, lambda: section_states(self.case))
+        return states
 
     def _recording(self, assembly: Assembly, again: bool) -> tuple[Recorder, Recording]:
         """The rows and what listens to the march, which goes on where the checkpoint is."""
@@ -194,20 +199,26 @@ class _Run:
             lines.append(messages.UNSTABLE_END)
         recording.warn(lines)
 
-    def _cross_check(self, rows: list[dict[str, Any]]) -> Check | None:
+    def _cross_check(
+        self, rows: list[dict[str, Any]], section: SectionStates | None
+    ) -> Check | None:
         """The run beside the section model and the closed forms; only for a run with a folder."""
         if self.folder is None:
             return None
         from fiberbend.compare.beside import check_run
 
         self.progress.phase("crosscheck")
+        known = None if section is None else section.bending
 
-        def solve(section: Case) -> RunResult:
-            model = choose_model(section)[0].elements()
+        def solve(beside: Case) -> RunResult:
+            model = choose_model(beside)[0].elements()
             assert model is not None
-            return _Run(section, model, None, Progress(quiet=True), MPI.COMM_SELF).go(False)
+            return _Run(beside, model, None, Progress(quiet=True), MPI.COMM_SELF).go(False)
 
-        check: Check = _on_rank_0(self.comm, lambda: check_run(self.case, self.model, rows, solve))
+        check: Check = _on_rank_0(
+            self.comm,
+            lambda: check_run(self.case, self.model, rows, solve, known),
+        )
         return check
 
     def _wall(self, assembly: Assembly) -> dict[str, float]:

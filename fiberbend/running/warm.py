@@ -19,6 +19,7 @@ from fiberbend.case.case import Case
 from fiberbend.case.section_beside import as_section
 from fiberbend.effects.pressure import inflate
 from fiberbend.models.choice import meshed
+from fiberbend.models.result import Curve
 from fiberbend.running.assembly import assemble
 
 Floats = npt.NDArray[np.float64]
@@ -38,6 +39,7 @@ class SectionStates:
         curvature: k, 1/mm, (m,).
         stretch: λ0, (m,).
         displacement: u and v, mm, (m, n, 2).
+        bending: pressure, angle and volume of the whole actuator.
     """
 
     nodes: Floats
@@ -45,6 +47,7 @@ class SectionStates:
     curvature: Floats
     stretch: Floats
     displacement: Floats
+    bending: Curve
 
     def guide(self, scene: Scene, frames: Frames, length: float) -> Guide:
         """The guide of a body."""
@@ -106,10 +109,14 @@ def section_states(case: Case) -> SectionStates | None:
         if np.all(np.diff(values) > 0):
             measures[name] = values * (copies if name.startswith("conjugate") else 1.0)
     dofs = assembly.scene.body.node_dofs
+    pressure, angle, volume = (
+        np.array([state.measures[name] for state in states]) for name in names
+    )
     return SectionStates(
         mesh.nodes,
         measures,
         np.array([state.scalars[CURVATURE] for state in states]),
         np.array([state.scalars[STRETCH] for state in states]),
         np.array([state.w[dofs] for state in states]),
+        Curve(pressure, angle, copies * volume),
     )
