@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
 from pydantic import AfterValidator, Field, field_serializer, model_serializer, model_validator
 
-from fiberbend.effects.table import Effect, EffectEntry, unwrap
+from fiberbend.effects.effect import Effect, Inflation, Turns, keep_straight
+from fiberbend.effects.table import EffectEntry, unwrap
 from fiberbend.schema.quantities import (
     Angle,
     Coefficient,
@@ -197,6 +198,23 @@ class Case(Model):
     def find(self, kind: type[E]) -> E | None:
         """The effect of a class, or None where the case does not list it."""
         return next((effect for effect in self.effects if isinstance(effect, kind)), None)
+
+    @property
+    def inflation(self) -> Inflation | None:
+        """How the chamber is loaded, or None where it is not."""
+        found = (effect.inflation() for effect in self.effects)
+        return next((load for load in found if load is not None), None)
+
+    @property
+    def turns(self) -> Turns | None:
+        """The thread around the body, or None where there is none."""
+        found = (effect.turns() for effect in self.effects)
+        return next((turns for turns in found if turns is not None), None)
+
+    @property
+    def straight(self) -> bool:
+        """An effect keeps the actuator from bending: its force is asked for, not its angle."""
+        return keep_straight(self.effects)
 
     def resolved(self) -> dict[str, Any]:
         """The case with every default, as a mapping of plain values with units.

@@ -10,11 +10,13 @@ import numpy as np
 
 from fiberbend.case.case import Case
 from fiberbend.case.measured import read_measured
+from fiberbend.case.section_beside import MODEL, as_section
 from fiberbend.compare.check import Check, crosscheck
 from fiberbend.compare.others import Straight
-from fiberbend.effects.table import PressureEffect, StraightEffect
-from fiberbend.models.closed_form import held
-from fiberbend.models.result import RunResult
+from fiberbend.effects.pressure import inflate
+from fiberbend.effects.straight import straight_of
+from fiberbend.models.model import ModelKind
+from fiberbend.models.result import Curve, RunResult
 
 LEAST_ANGLE = 1.0
 """Degrees that a run has to bend for a curve of the section model beside it."""
@@ -23,7 +25,7 @@ _PARTS = (0.25, 0.5, 0.75)
 
 def check_run(
     case: Case,
-    model: str,
+    model: ModelKind,
     rows: Sequence[dict[str, Any]],
     solve: Callable[[Case], RunResult] | None = None,
 ) -> Check:
@@ -36,12 +38,11 @@ def check_run(
         solve: solves a section on this rank alone; without it there is none beside the run.
     """
     measured = read_measured(case)
-    pressure = case.find(PressureEffect)
-    if pressure is None or model == "section" or solve is None:
+    if case.inflation is None or solve is None or model.name == MODEL:
         return crosscheck(case, model, rows, measured=measured)
     keys = ("angle_deg", "uniform_angle_deg")
     furthest = max((row[key] for row in rows for key in keys if row.get(key) is not None), key=abs)
-    if held(case):
+    if case.straight:
         reached = 1e-3 * max((row["pressure_kPa"] for row in rows), key=abs)
         if reached == 0:
             return crosscheck(case, model, rows, measured=measured)
@@ -51,10 +52,7 @@ def check_run(
         )
     if abs(furthest) < LEAST_ANGLE:
         return crosscheck(case, model, rows, measured=measured)
-    from fiberbend.case.section_beside import as_section, load
-    from fiberbend.models.result import Curve
-
-    section = as_section(case, load(angle=math.radians(furthest)))
+    section = as_section(case, inflate(angle=math.radians(furthest)))
     result = solve(section)
     if len(result.rows) < 2:
         return crosscheck(case, model, rows, measured=measured, no_section=result.reason)
@@ -68,13 +66,11 @@ def _straight(
     case: Case, pressure: float, solve: Callable[[Case], RunResult]
 ) -> tuple[Straight | None, str]:
     """The section held straight up to a pressure in MPa, and why it ends early."""
-    from fiberbend.case.section_beside import as_section, load
-
-    section = as_section(case, load(to=pressure))
+    section = as_section(case, inflate(to=pressure))
     output = section.output.model_copy(
         update={"at_pressures": tuple(part * pressure for part in _PARTS)}
     )
-    effects = (*section.effects, case.find(StraightEffect) or StraightEffect())
+    effects = (*section.effects, straight_of(case.effects))
     result = solve(section.model_copy(update={"effects": effects, "output": output}))
     states = [(row["pressure_kPa"], row.get("blocked_moment_Nmm")) for row in result.rows]
     known = [(0.0, 0.0), *((1e-3 * p, m) for p, m in states if m is not None and p != 0)]

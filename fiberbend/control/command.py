@@ -89,10 +89,9 @@ def plant_curve(case: Case, settings: Settings) -> tuple[ActuatorCurve, str]:
     end = max(2 * math.pi, 4 / 3 * highest)
     if settings.plant == "analytic":
         return ArcCurve.of(_closed_form(case), np.linspace(0.0, end, 73)), ""
-    from fiberbend.case.section_beside import load
     from fiberbend.control.plant_curve import section_curve
 
-    curve = section_curve(case, load(angle=end))
+    curve = section_curve(case, end)
     return curve, curve.reason
 
 

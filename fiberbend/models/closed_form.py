@@ -9,9 +9,11 @@ from analytic.stress import Floats, Stress, wound
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.case import Material as MaterialSpec
-from fiberbend.effects.table import HoopsEffect, WindingEffect, hold_straight
+from fiberbend.effects.effect import tip_strips
 from materials.laws import energy_slopes
 
+SHAPE = "hemicircle"
+"""The section that has a closed form."""
 LIMITING = 10.0
 """Stretching stiffness of floor and layer over the wall's from which y = 0 counts as inextensible;
 the paper's combined base has 50 times the wall's, a floor of the wall's rubber 0.7 times."""
@@ -19,10 +21,10 @@ the paper's combined base has 50 times the wall's, a floor of the wall's rubber 
 
 def no_analytic(case: Case) -> str | None:
     """Why no analytical line stands for a case, or None where all do."""
-    actuator = case.actuator
-    if actuator.section != "hemicircle":
-        return f"the closed form of bending is for a hemicircle, not for a {actuator.section}"
-    if case.find(WindingEffect) is None and case.find(HoopsEffect) is None:
+    section = case.actuator.section
+    if section != SHAPE:
+        return f"the closed form of bending is for a {SHAPE}, not for a {section}"
+    if not any(effect.holds_circumference() for effect in case.effects):
         return "no winding holds the circumference, which the closed form keeps fixed"
     stiffness = _stiffness(case)
     share = (stiffness["floor"] + stiffness.get("layer", 0.0)) / stiffness["wall"]
@@ -62,12 +64,7 @@ def analytic_curves(case: Case) -> dict[str, Hemicircle]:
 
 def assumptions(case: Case) -> list[str]:
     """What of a case the closed form leaves out, one sentence each."""
-    remarks = []
-    winding = case.find(WindingEffect)
-    if winding is not None:
-        remarks.append("the winding holds the circumference rigidly; its pitch does not enter")
-        if winding.pattern != "double-helix":
-            remarks.append("the twist of a single helix is not in it")
+    remarks = [text for effect in case.effects for text in effect.assumed()]
     if floor_limits(case):
         remarks.append("the floor enters as rubber of the wall on an inextensible line at y = 0")
     specs = dict(case.materials).values()
@@ -76,14 +73,9 @@ def assumptions(case: Case) -> list[str]:
     return remarks
 
 
-def held(case: Case) -> bool:
-    """The actuator cannot bend: its tip force is asked for, not its angle."""
-    return hold_straight(case.effects)
-
-
 def lever_arm(case: Case) -> float:
     """L_f in mm: from the end of the chamber to the middle of the post, or the whole cap."""
-    strips = convert.strips(convert.tip_support(case))
+    strips = tip_strips(case.effects)
     return case.actuator.cap - (strips.post_length / 2 if strips is not None else 0.0)
 
 

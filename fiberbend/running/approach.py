@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-
-from fem.effects.contact import Contact
-from fem.march.march import March
+from fem.march.hooks import Hook, Steered
 from fem.march.records import Ramp, State
-from fem.results.touch import Probe
+from fem.results.touch import probes
 from fem.scene import Scene
 from fem.solver.newton import Outcome
-
-Step = Callable[[State, Outcome], None]
 
 DEPTH = 0.05
 """A step to an obstacle aims so far beyond its surface, as a share of the way there."""
 
 
-class Approach:
+class Approach(Hook):
     """Leads a march to its obstacles and along them.
 
     - A step that would run into an obstacle ends where touch is foreseen: deep inside, a step of
@@ -29,37 +24,32 @@ class Approach:
 
     Args:
         scene: the scene.
-        march: its march, at rest.
-        ramps: what the march will run.
     """
 
-    def __init__(self, scene: Scene, march: March, ramps: Sequence[Ramp]) -> None:
-        self._march, self._ramps = march, ramps
-        self._frames = march.predictor.frames
-        contacts = [e for e in scene.effects.values() if isinstance(e, Contact)]
-        self._probes = {contact.name: Probe(scene, contact) for contact in contacts}
-        self._before = march.states[-1], self._gaps()
+    def __init__(self, scene: Scene) -> None:
+        self._probes = probes(scene)
         self._usual: float | None = None
-        self._next = march.on_step
-        march.on_step = self._after
 
     def _gaps(self) -> dict[str, float]:
         """Least gap to each obstacle, mm."""
         return {name: probe.read().gap for name, probe in self._probes.items()}
 
-    def _after(self, state: State, outcome: Outcome) -> None:
-        self._next(state, outcome)
+    def before_ramp(self, march: Steered, ramp: Ramp) -> None:
+        """See what touches where the ramp begins, or where a run goes on."""
+        self._ramp = ramp
+        self._before = march.position.states[-1], self._gaps()
+        march.extrapolate_in_frames(not _touching(self._before[1]))
+
+    def after_step(self, march: Steered, state: State, outcome: Outcome) -> None:
+        """Shorten the next step to where touch is foreseen, or start anew after a kink."""
         gaps = self._gaps()
         (earlier, former), self._before = self._before, (state, gaps)
-        touching = [name for name, gap in gaps.items() if gap < 0]
-        march = self._march
-        march.predictor.frames = None if touching else self._frames
-        ramp = self._ramps[march.ramp]
-        if march.report.detour or march.increment is None:
+        march.extrapolate_in_frames(not _touching(gaps))
+        position, ramp = march.position, self._ramp
+        if position.path_following or position.increment is None:
             return
-        if touching != [name for name, gap in former.items() if gap < 0]:
-            march.states = [march.equilibrium.neighbour(state, ramp.scalar), state]
-            march.increment = self._usual or march.increment
+        if _touching(gaps) != _touching(former):
+            march.restart_from_response(ramp.scalar, self._usual or position.increment)
             self._usual = None
             return
         driven = state.measures[ramp.key] - earlier.measures[ramp.key]
@@ -69,6 +59,11 @@ class Approach:
             if 0 < gap < former[name]
         ]
         way = (1 + DEPTH) * min(ways, default=float("inf"))
-        if way < march.increment:
-            self._usual = self._usual or march.increment
-            march.increment = way
+        if way < position.increment:
+            self._usual = self._usual or position.increment
+            march.limit_increment(way)
+
+
+def _touching(gaps: dict[str, float]) -> list[str]:
+    """Names of the obstacles that are touched."""
+    return [name for name, gap in gaps.items() if gap < 0]

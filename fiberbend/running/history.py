@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +11,7 @@ from fem.effects.embedded_fibers import FiberPotential
 from fem.march.records import MODES, State
 from fem.scene import Scene
 from fem.solver.newton import Outcome
+from fiberbend.models.model import Gauge
 
 Floats = npt.NDArray[np.float64]
 
@@ -20,36 +21,26 @@ DOUBTS, NOTHING = 2.0, 2e-5
 """Energy out of nowhere: more than so many doubts, and than this part of the greatest."""
 
 
-class Gauge(Protocol):
-    """What a model reads off a state beside pressure, angle and energies."""
-
-    def tip(self, state: State) -> tuple[float, float]:
-        """y and z of the centroid of the tip cap's outer face, mm."""
-
-    def columns(self, state: State) -> dict[str, float]:
-        """Further columns, behind the chamber's volume."""
-
-    def last_columns(self, state: State) -> dict[str, float]:
-        """Columns at the end of the row; only at equilibria under load."""
-
-
 class Recorder:
     """Makes the rows, for the whole body also where a part of it is solved.
 
     Args:
         scene: the scene whose states are recorded.
         gauge: what the model reads off a state.
-        rest: the state before any load.
+        rest: the state before any load, at which the scene is unless there are rows.
+        rows: those of a run that is resumed.
 
     Attributes:
-        rows: the rows so far; a run that is resumed puts the earlier ones here.
+        rows: the rows so far.
     """
 
-    def __init__(self, scene: Scene, gauge: Gauge, rest: State) -> None:
+    def __init__(
+        self, scene: Scene, gauge: Gauge, rest: State, rows: list[dict[str, Any]] | None = None
+    ) -> None:
         self._scene = scene
         self._gauge = gauge
         self._factor = scene.body.copies
-        self.rows = [self._row(0, rest, None)]
+        self.rows = rows if rows is not None else [self._row(0, rest, None)]
 
     def add(self, state: State, outcome: Outcome) -> dict[str, Any]:
         """Append the row of a new state, at which the scene is; collective."""

@@ -6,11 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fem.kinematics.uniform import Uniform
-from fem.march.frames import Frames
 from fem.march.records import Critical, Report
-from fem.march.selfcontact import BodyRod, Rod, UniformRod
-from fem.scene import Scene
 
 UNSTABLE_END = (
     "the end is unstable where every load is held at its value: given the pressure, no actuator "
@@ -105,20 +101,6 @@ def jumped(before: dict[str, Any], after: dict[str, Any]) -> str:
         f"between {ends} the stored energy changes by what no load has done: the run may have "
         "gone to a neighbouring state there; shorter steps (solver.max_turn) may stay on one branch"
     )
-
-
-def rod(scene: Scene, frames: Frames | None, cap: float) -> Rod:
-    """A model's states as rods with caps.
-
-    Args:
-        scene: the scene.
-        frames: rod frames of a body; None where the kinematics turns by itself.
-        cap: length of each cap, mm.
-    """
-    if isinstance(scene.body, Uniform):
-        return UniformRod(scene.body, cap)
-    assert frames is not None
-    return BodyRod(scene.body, frames)
 
 
 def self_contact(measures: dict[str, float]) -> str:

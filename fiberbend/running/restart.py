@@ -8,63 +8,57 @@ from typing import Any
 
 import numpy as np
 
-from fem.march.march import March
-from fem.march.records import Report
+from fem.march.position import Position
 from fem.results.checkpoint import Archive
 from fiberbend.running.folder import RunFolder
-from fiberbend.running.history import Recorder
 from fiberbend.states.snapshot import Snapshot
 
 CHECKPOINT = "checkpoint.npz"
 
 
-def save(folder: RunFolder, archive: Archive, march: March, rows: list[dict[str, Any]]) -> None:
+@dataclasses.dataclass(frozen=True)
+class Saved:
+    """What a run goes on from.
+
+    Attributes:
+        position: where its march stood.
+        rows: its history.
+        snapshots: those it had taken.
+    """
+
+    position: Position
+    rows: list[dict[str, Any]]
+    snapshots: list[Snapshot]
+
+
+def save(
+    folder: RunFolder, archive: Archive, position: Position, rows: list[dict[str, Any]]
+) -> None:
     """Write all that is needed to go on from here, and the history; collective."""
-    packed = [archive.pack(state) for state in march.states]
-    position = {
-        "ramp": march.ramp,
-        "increment": march.increment,
-        "report": dataclasses.asdict(march.report),
-        "rows": rows,
-    }
-    arrays = {
-        f"{i}|{name}": value
-        for i, state in enumerate(packed)
-        for name, value in (state or {}).items()
-    }
-    text = json.dumps(position, default=float)
-    folder.write_arrays(CHECKPOINT, position=np.array(text), **arrays)
+    arrays = archive.pack(position)
+    history = np.array(json.dumps(rows, default=float))
+    folder.write_arrays(CHECKPOINT, rows=history, **arrays)
     folder.write_history(rows)
 
 
-def load(folder: RunFolder, archive: Archive, march: March, recorder: Recorder) -> list[Snapshot]:
-    """Put march and recorder where the checkpoint left them; collective.
+def load(folder: RunFolder, archive: Archive) -> Saved | None:
+    """What the checkpoint holds; None where the run was killed before its first step; collective.
 
-    Returns:
-        The snapshots that the run had taken; none when it was killed before its first step.
+    The scene is left in the last state.
     """
     path = folder.path / CHECKPOINT
     if not path.exists():
-        return []
+        return None
     with np.load(path) as file:
-        position = json.loads(str(file["position"]))
-        states: dict[str, dict[str, Any]] = {}
-        for key in file.files:
-            number, _, name = key.partition("|")
-            if name:
-                states.setdefault(number, {})[name] = file[key]
-    march.states = [archive.unpack(states[number]) for number in sorted(states)]
-    march.equilibrium.restore(march.states[-1])
-    march.ramp = position["ramp"]
-    march.increment = position["increment"]
-    march.report = Report(**position["report"])
-    recorder.rows = position["rows"]
-    last = recorder.rows[-1]["step"]
+        arrays = dict(file)
+    rows = json.loads(str(arrays.pop("rows")))
     snapshots = []
     for shot in sorted((folder.path / "snapshots").glob("*.npz")):
         with np.load(shot) as file:
             entries = {k: file[k] if file[k].ndim else file[k].item() for k in file.files}
         snapshot = Snapshot(**{"fiber_force": None, **entries})
-        if snapshot.step <= last and snapshot.label != "last":
+        if snapshot.step <= rows[-1]["step"] and snapshot.label != "last":
             snapshots.append(snapshot)
-    return sorted(snapshots, key=lambda snapshot: snapshot.step)
+    return Saved(
+        archive.unpack(arrays), rows, sorted(snapshots, key=lambda snapshot: snapshot.step)
+    )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 
 import numpy as np
 import numpy.typing as npt
@@ -12,27 +11,19 @@ from mpi4py import MPI
 from fem.kinematics.uniform import CURVATURE, STRETCH
 from fem.march.frames import Frames
 from fem.march.guide import Guide
-from fem.march.records import Rules, State, measure
+from fem.march.hooks import AfterStep
+from fem.march.records import State, measure
 from fem.scene import Scene
 from fem.solver.newton import Outcome
 from fiberbend.case.case import Case
 from fiberbend.case.section_beside import as_section
-from fiberbend.effects.table import (
-    BlockedTipEffect,
-    ContactEffect,
-    PressureEffect,
-    WindingEffect,
-)
-from fiberbend.models.kinds import make_mesh
+from fiberbend.effects.pressure import inflate
+from fiberbend.models.choice import meshed
 from fiberbend.running.assembly import assemble
 
 Floats = npt.NDArray[np.float64]
 
 PRESSURE = "pressure"
-STEERED_TURN = math.radians(90)
-"""Greatest change of the angle in a step that leans on the section, unless the case says."""
-STEERED_FIRST = math.radians(15)
-STEERED_GROWTH = 3.0
 BEYOND = 1.15
 """The section goes so much further than the angle that ends a run: a body differs a little."""
 
@@ -73,26 +64,9 @@ class SectionStates:
         )
 
 
-def steered(rules: Rules, case: Case) -> Rules:
-    """Rules of a march with a guide: a short first step, from which the ends are learnt."""
-    turn = case.solver.max_turn
-    return dataclasses.replace(
-        rules,
-        turn=turn or STEERED_TURN,
-        first_turn=turn or STEERED_FIRST,
-        grow=STEERED_GROWTH,
-    )
-
-
 def guides(case: Case) -> bool:
     """Whether a section bends as the body of a case does, between its ends."""
-    winding = case.find(WindingEffect)
-    return (
-        case.find(PressureEffect) is not None
-        and case.find(BlockedTipEffect) is None
-        and case.find(ContactEffect) is None
-        and (winding is None or winding.pattern == "double-helix")
-    )
+    return case.inflation is not None and all(effect.steers() for effect in case.effects)
 
 
 def section_states(case: Case) -> SectionStates | None:
@@ -104,13 +78,13 @@ def section_states(case: Case) -> SectionStates | None:
     Returns:
         The states; None where the section does not get anywhere.
     """
-    pressure = case.find(PressureEffect)
-    assert pressure is not None
-    if pressure.angle is not None:
-        pressure = pressure.model_copy(update={"angle": BEYOND * pressure.angle})
-    section = as_section(case, pressure)
+    load = next(effect for effect in case.effects if effect.inflation() is not None)
+    inflation = load.inflation()
+    if inflation is not None and inflation.angle is not None:
+        load = inflate(angle=BEYOND * inflation.angle)
+    section = as_section(case, load)
     stop = case.output.stop_at_angle
-    if stop is not None and pressure.angle is None:
+    if stop is not None and inflation is not None and inflation.angle is None:
         output = section.output.model_copy(update={"stop_at_angle": BEYOND * stop})
         section = section.model_copy(update={"output": output})
     states: list[State] = []
@@ -118,10 +92,10 @@ def section_states(case: Case) -> SectionStates | None:
     def keep(state: State, _outcome: Outcome) -> None:
         states.append(state)
 
-    mesh = make_mesh(section, "section")
-    assembly = assemble(section, "section", mesh, MPI.COMM_SELF, keep, lambda _: None)
-    states.append(assembly.march.states[0])
-    assembly.march.run(assembly.ramps)
+    mesh = meshed(section).mesh(section)
+    assembly = assemble(section, mesh, MPI.COMM_SELF)
+    states.append(assembly.march.rest)
+    assembly.march.run(assembly.ramps, [AfterStep(keep)])
     if len(states) < 4:
         return None
     copies = assembly.scene.body.copies

@@ -20,9 +20,9 @@ from fiberbend.effects.table import (
     PressureEffect,
     WindingEffect,
 )
+from fiberbend.reader.json_schema import json_schema
 from fiberbend.reader.reader import (
     as_case,
-    json_schema,
     parse_case,
     read_case,
 )
@@ -125,6 +125,30 @@ def test_wrong_input_is_named(setting: str, line: str) -> None:
     assert any(text.startswith(line) for text in lines), lines
 
 
+@pytest.mark.parametrize(
+    ("setting", "word"),
+    [
+        ("effects.1.winding.pich=3 mm", "pitch"),
+        ("effects.2.gravty.direction=-y", "gravity"),
+        ("actuatr=1", "actuator"),
+        ("actuator.Wall=2 mm", "wall"),
+        ("actuator.section=hemicirle", "hemicircle"),
+        ("model=bodi", "body"),
+        ("materials.wall=Elastosil", "elastosil-m4601"),
+        ("materials.wall={law: yoeh, c1: 1 MPa}", "yeoh"),
+        ("effects.1.winding.fiber=kevlr", "kevlar"),
+        ("effects.1.winding.pattern=double-helx", "double-helix"),
+    ],
+)
+def test_a_slip_is_told_what_was_meant(setting: str, word: str) -> None:
+    lines = complaint([setting])
+    assert any(line.endswith(f"; did you mean {word}?") for line in lines), lines
+
+
+def test_nothing_is_guessed_where_nothing_is_near() -> None:
+    assert not any("did you mean" in line for line in complaint(["colour=red", "model=xyz"]))
+
+
 @pytest.mark.parametrize(("settings", "line"), bad_cases.UNFIT_MODELS)
 def test_model_that_cannot_hold_the_case_is_refused(settings: list[str], line: str) -> None:
     lines = complaint(settings)
@@ -219,7 +243,7 @@ def test_bridge_takes_what_the_case_says() -> None:
     assert (wall.law, wall.parameters["c1"], wall.bulk) == ("yeoh", 0.11, 200.0)
     winding = case.find(WindingEffect)
     assert winding is not None
-    assert convert.fiber(winding.fiber).stiffness == pytest.approx(3000 * math.pi * 0.1**2)
+    assert winding.fiber.thread().stiffness == pytest.approx(3000 * math.pi * 0.1**2)
     assert convert.dimensions(case.actuator).total_length == 190.0
     own = Material(law="neo-hooke", mu="1 MPa", density="1.1 g/cm^3")  # type: ignore[arg-type]
     assert convert.material(own).density == pytest.approx(1100.0)

@@ -19,6 +19,7 @@ from fem.effects.winding import SmearedWinding
 from fem.effects.winding import Winding as Discrete
 from fem.kinematics.domain import Domain
 from fem.march.frames import Frames
+from fem.march.hooks import Hook, Steered
 from fem.march.march import (
     March,
     Ramp,
@@ -96,8 +97,7 @@ def perturb(scene: Scene, amplitude: float, seed: int) -> Floats:
     for name in scene.body.scalars:
         scene.set_scalar(name, 0.3 + rng.random())
     scene.set(amplitude * rng.uniform(-1, 1, scene.body.owned))
-    for discrete in scene.discrete.values():
-        discrete.predict(None)
+    scene.predict(None)
     return scene.w.copy()
 
 
@@ -149,10 +149,6 @@ class Bender:
 
     def run(self, ramps: Sequence[Ramp]) -> Report:
         """March from where it is."""
-        if not self.march.states:
-            self.march.start()
-            self.states.append(self.march.states[-1])
-            self.energies.append(sum(stored(self.scene).values()))
         return self.march.run(ramps)
 
 
@@ -161,11 +157,31 @@ def stored(scene: Scene) -> dict[str, float]:
     return {key: e for key, e in scene.energies().items() if key != "ChamberPressure"}
 
 
+class Keeper(Hook):
+    """Keeps what a march tells, the energies at rest first."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self.states: list[State] = []
+        self.energies = [sum(stored(scene).values())]
+        self.warnings: list[str] = []
+
+    def after_step(self, march: Steered, state: State, outcome: Outcome) -> None:
+        """Keep the state and its energy."""
+        self.states.append(state)
+        self.energies.append(sum(stored(self._scene).values()))
+
+    def after_cutback(self, march: Steered, reason: str) -> None:
+        """Keep what failed."""
+        self.warnings.append(reason)
+
+
 def bender(
     rules: Rules | None = None,
     settings: Settings | None = None,
     wrap: Callable[[Newton], Newton] = lambda newton: newton,
     domain: Domain | None = None,
+    hooks: Sequence[Hook] = (),
 ) -> Bender:
     """A fresh short actuator at rest; `wrap` may put something in front of Newton."""
     domain = domain or short_domain()
@@ -173,17 +189,20 @@ def bender(
     newton = wrap(Newton(scene, domain.comm, settings or Settings()))
     frames = Frames(scene.body)
     angle = BendingAngle(scene.body, frames)
-    states: list[State] = []
-    energies: list[float] = []
-    warnings: list[str] = []
-
-    def on_step(state: State, _outcome: Outcome) -> None:
-        states.append(state)
-        energies.append(sum(stored(scene).values()))
-
-    march = March(scene, newton, frames, angle, rules or Rules(), on_step, warnings.append)
-    march.causes = Diagnosis(scene)
-    return Bender(scene, newton, angle, Tip(scene.body), march, states, energies, warnings)
+    keeper = Keeper(scene)
+    march = March(
+        scene,
+        newton,
+        rules or Rules(),
+        frames=frames,
+        control=angle,
+        causes=Diagnosis(scene),
+        hooks=[keeper, *hooks],
+    )
+    tip = Tip(scene.body)
+    states = keeper.states
+    states.append(march.rest)
+    return Bender(scene, newton, angle, tip, march, states, keeper.energies, keeper.warnings)
 
 
 def gravity(regions: Sequence[str]) -> Gravity:

@@ -21,9 +21,7 @@ FAILED = Outcome(False, 11, 11, "no convergence in 11 iterations", [], 1.0)
 @pytest.fixture(scope="module")
 def body() -> Bender:
     """The short actuator at rest, for tests that set a state."""
-    actuator = short(MPI.COMM_SELF)
-    actuator.march.start()
-    return actuator
+    return short(MPI.COMM_SELF)
 
 
 def explain(body: Bender, critical: list[Critical] | None = None) -> str:

@@ -21,6 +21,7 @@ from fem.kinematics.uniform import (
     TWIST,
     Section,
 )
+from fem.march.hooks import AfterStep
 from fem.march.march import March
 from fem.march.records import Ramp, Rules, State
 from fem.scene import Scene
@@ -105,11 +106,9 @@ def march(scene: Scene, ramp: Ramp, followed: str = STRETCH, turn: float = 0.05)
     runner = March(
         scene,
         Newton(scene, MPI.COMM_SELF, Settings()),
-        None,
-        Value(scene, followed),
         Rules(turn=turn, first_turn=turn),
-        lambda state, _: states.append(state),
-        lambda _: None,
+        control=Value(scene, followed),
+        hooks=[AfterStep(lambda state, _: states.append(state))],
     )
     report = runner.run([ramp])
     assert report.status == "converged", report.reason
