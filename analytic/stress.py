@@ -54,13 +54,3 @@ def wound(slope: Callable[[Floats], Floats]) -> Stress:
         return 2 * slope(1 + square + 1 / square) * (stretch - 1 / (stretch * square))
 
     return stress
-
-
-def hoop_ratio(stretch: Floats | float) -> Floats:
-    """s2/s1 = λ/(λ² + 1), of any law W(I1) under (7).
-
-    The paper drops s2 as 'significantly smaller, s2 < s1/2' under (9); the ratio is 0.50 at rest
-    and still 0.46 at λ = 1.5.
-    """
-    stretch = np.asarray(stretch, dtype=float)
-    return stretch / (stretch**2 + 1)

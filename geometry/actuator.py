@@ -44,7 +44,6 @@ class Profile:
         outline_area: area inside the winding's outline.
         outer_area: area inside the outer surface.
         perimeter: perimeter of the winding's outline.
-        outer_perimeter: perimeter of the outer surface.
         widest_roof: half widths of a roof on the top of the section lie below this.
     """
 
@@ -59,7 +58,6 @@ class Profile:
     outline_area: float
     outer_area: float
     perimeter: float
-    outer_perimeter: float
     widest_roof: float
 
 

@@ -76,7 +76,6 @@ class CircleActuator(ShapedActuator):
             outline_area=math.pi * r**2,
             outer_area=math.pi * outer**2,
             perimeter=2 * math.pi * r,
-            outer_perimeter=2 * math.pi * outer,
             widest_roof=outer * math.sin(math.pi / 4),
         )
 

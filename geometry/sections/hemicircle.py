@@ -61,7 +61,6 @@ class HemicircleActuator(ShapedActuator):
             outline_area=math.pi * r**2 / 2 + 2 * r * base,
             outer_area=arch + block,
             perimeter=math.pi * r + 2 * base + 2 * r,
-            outer_perimeter=math.pi * outer + 2 * (base + sheath) + 2 * outer,
             widest_roof=outer * math.sin(math.pi / 4),
         )
 

@@ -53,7 +53,6 @@ class RectangleActuator(ShapedActuator):
             outline_area=wide * high,
             outer_area=(wide + 2 * sheath) * (high + 2 * sheath),
             perimeter=2 * (wide + high),
-            outer_perimeter=2 * (wide + high + 4 * sheath),
             widest_roof=width / 2,
         )
 

@@ -33,7 +33,6 @@ from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome, Settings
 from geometry.actuator import Actuator
 from geometry.bodies.extrude import swept_body
-from geometry.bodies.solids import tube_sector
 from geometry.mesh.data import MeshData
 from geometry.mesh.tets import to_tetrahedra
 from geometry.sections.hemicircle import HemicircleActuator
@@ -41,6 +40,7 @@ from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
 from geometry.winding.smear import smear
+from tests.exact.solids import tube_sector
 
 Floats = npt.NDArray[np.float64]
 CELLS = ("hexahedron", "tetrahedron")

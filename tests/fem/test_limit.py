@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from analytic.exact import sphere_limit, sphere_pressure, yeoh_slope
 from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.effect import Effect
 from fem.effects.elastic import Elastic
@@ -33,7 +32,8 @@ from fem.march.records import (
 from fem.results.checkpoint import Archive
 from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome, Settings
-from geometry.bodies.solids import box, sphere_octant
+from tests.exact.solids import box, sphere_octant
+from tests.exact.solutions import sphere_limit, sphere_pressure, yeoh_slope
 
 INNER, OUTER = 10.0, 11.0
 C1 = 0.11

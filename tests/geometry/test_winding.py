@@ -15,7 +15,7 @@ from geometry.mesh.tets import to_tetrahedra
 from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
-from geometry.winding.helix import Winding, check_winding
+from geometry.winding.helix import Winding
 from geometry.winding.outline import arc_length, position
 from geometry.winding.segments import EmbeddedFibers
 from geometry.winding.smear import smear
@@ -152,5 +152,3 @@ def test_windings_without_meaning_are_refused() -> None:
             dataclasses.replace(DOUBLE, **bad)
     with pytest.raises(ValueError, match="pattern 'triple'"):
         Winding("triple", 3, 0.38)
-    with pytest.raises(ValueError, match="at most the length"):
-        check_winding(BODY, Winding("double-helix", 41, 0.38))

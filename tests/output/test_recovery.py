@@ -14,10 +14,10 @@ from fiberbend.states.recovery import (
     split_nodes,
 )
 from fiberbend.states.snapshot import Scenery, Snapshot
-from geometry.bodies.solids import box
 from geometry.mesh.data import Floats
 from geometry.mesh.tets import to_tetrahedra
 from materials.laws import Material, uniaxial_stress
+from tests.exact.solids import box
 from tests.output.bending import SHORT, scenery, snapshot
 
 LAWS = [

@@ -7,12 +7,12 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 from analytic.path import tip
+from fiberbend.case.case import Case
 from fiberbend.drawing.cell import Slices, plot_tension, tension_along
 from fiberbend.drawing.crosscut import Crosscut
 from fiberbend.drawing.section import Sections
@@ -33,6 +33,7 @@ from materials.laws import Material, uniaxial_stress
 from tests.output.bending import MATERIALS, SHORT
 from tests.output.test_pictures import is_drawn
 from tests.output.uniform import DOUBLE, PITCH, cell, section, state, warp, wave
+from tests.run.conftest import SMALL, small
 
 BOTH = pytest.mark.parametrize("make", [section, cell], ids=["section", "cell"])
 
@@ -204,38 +205,17 @@ def test_turned_half_completes_a_twisted_section() -> None:
 # --- pictures --------------------------------------------------------------------------------
 
 
-def case_of(model: str) -> Any:
+def case_of(model: str) -> Case:
+    smeared = "smeared" if model == "section" else "discrete"
+    winding = SMALL["effects"][1]["winding"] | {"as": smeared}
     return parse_case(
-        {
-            "title": "Short",
-            "actuator": {
-                "section": "hemicircle",
-                "radius": "8 mm",
-                "length": "24 mm",
-                "wall": "2 mm",
-                "floor": "2 mm",
-                "sheath": "1 mm",
-                "cap": "4 mm",
-            },
-            "materials": {
-                "wall": "elastosil-m4601",
-                "floor": "combined-base",
-                "sheath": "ecoflex-0030",
-            },
-            "effects": [
-                {"pressure": {"to": "10 kPa"}},
-                {
-                    "winding": {
-                        "pattern": "double-helix",
-                        "pitch": "3 mm",
-                        "fiber": "kevlar",
-                        "as": "smeared" if model == "section" else "discrete",
-                    }
-                },
-            ],
-            "model": model,
-            "output": {"fields": True, "pictures": True},
-        }
+        small(
+            actuator=SMALL["actuator"] | {"cap": "4 mm"},
+            effects=[{"pressure": {"to": "10 kPa"}}, {"winding": winding}],
+            model=model,
+            mesh={},
+            output={"fields": True, "pictures": True},
+        )
     )
 
 

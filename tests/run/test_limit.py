@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
-from analytic.exact import Tube, yeoh_slope
 from fiberbend import run
 from fiberbend.reader.reader import as_case
 from fiberbend.running.progress import Progress
 from fiberbend.running.runner import RunResult, run_case
+from tests.exact.solutions import Tube, yeoh_slope
 
 QUIET = {"pictures": False, "fields": False}
 SOFT: dict[str, Any] = {

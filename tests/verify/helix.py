@@ -8,7 +8,6 @@ import math
 import numpy as np
 from mpi4py import MPI
 
-from analytic.exact import Tube, wound_tube
 from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.elastic import Elastic
 from fem.effects.incompressible import Incompressible
@@ -17,6 +16,7 @@ from fem.effects.winding import Winding
 from fem.kinematics.domain import Domain
 from fem.scene import Scene
 from fem.solver.newton import Newton, Settings
+from tests.exact.solutions import Tube, wound_tube
 from tests.verify.hoops import double_helix, half_tube
 from tests.verify.ladder import YEOH, balanced_pressure, end_load, start_from
 from tests.verify.problems import ORIGIN, SLOPE

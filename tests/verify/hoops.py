@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from geometry.bodies.solids import prism
 from geometry.mesh.data import (
     FACET_VERTICES,
     Floats,
@@ -23,6 +22,7 @@ from geometry.mesh.reference import (
 )
 from geometry.sections.blocks import Layout
 from geometry.winding.segments import EmbeddedFibers
+from tests.exact.solids import prism
 
 
 def half_tube(

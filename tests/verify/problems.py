@@ -7,7 +7,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from analytic.exact import Flexure, Torsion, Tube, closed_tube, wound_tube, yeoh_slope
 from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.effect import Effect
 from fem.effects.supports import Symmetry
@@ -15,8 +14,9 @@ from fem.effects.winding import SmearedWinding
 from fem.kinematics.domain import Domain
 from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome
-from geometry.bodies.solids import box, cylinder, tube_sector
 from geometry.mesh.data import MeshData
+from tests.exact.solids import box, cylinder, tube_sector
+from tests.exact.solutions import Flexure, Torsion, Tube, closed_tube, wound_tube, yeoh_slope
 from tests.verify.hoops import hoops
 from tests.verify.ladder import (
     YEOH,

@@ -9,7 +9,6 @@ import math
 import numpy as np
 from mpi4py import MPI
 
-from analytic.exact import Torsion, closed_tube, yeoh_slope
 from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.supports import HeldStraight
 from fem.effects.winding import SmearedWinding
@@ -21,6 +20,7 @@ from geometry.sections.circle import CircleActuator
 from geometry.sections.hemicircle import HemicircleActuator
 from geometry.winding.helix import PATTERNS, Winding
 from geometry.winding.smear import smear
+from tests.exact.solutions import Torsion, closed_tube, yeoh_slope
 from tests.verify.helix_tube import HelixTube
 from tests.verify.ladder import YEOH
 from tests.verify.uniform import (

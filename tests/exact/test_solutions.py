@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 import pytest
 
-from analytic.exact import (
+from tests.exact.solutions import (
     Flexure,
     Floats,
     Torsion,
