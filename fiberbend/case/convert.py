@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from geometry.actuator import Actuator
     from geometry.sections.size import MeshSize, Strips
     from materials.fiber import Fiber
-    from materials.laws import Material
+    from materials.material import Material
 
 _KG_PER_M3 = 1e12
 """kg/m³ in one t/mm³."""
@@ -62,7 +62,7 @@ def material(spec: case.Material) -> Material:
     Raises:
         ValueError: an unknown name, or coefficients that the law does not allow.
     """
-    from materials.laws import Material
+    from materials.material import Material
     from materials.named import named_material
 
     if spec.name is not None:

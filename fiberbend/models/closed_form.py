@@ -12,7 +12,7 @@ from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.case import Material as MaterialSpec
 from fiberbend.effects.table import HoopsEffect, WindingEffect, hold_straight
-from materials.laws import energy_slopes
+from materials.material import energy_slopes
 
 LIMITING = 10.0
 """Stretching stiffness of floor and layer over the wall's from which y = 0 counts as inextensible;

@@ -31,7 +31,7 @@ from fiberbend.reader.defaults import DEFAULT_LINES
 from geometry.mesh.data import MeshData
 from geometry.winding import helix as helices
 from geometry.winding.embed import EmbeddedFibers, embed, smear
-from materials.laws import Material
+from materials.material import Material
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 

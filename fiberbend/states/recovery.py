@@ -15,7 +15,7 @@ from geometry.mesh.data import (
     reference_nodes,
 )
 from geometry.mesh.reference import gauss, shape_functions
-from materials.laws import Material, energy_slopes
+from materials.material import Material, energy_slopes
 
 _LEAST_STRETCH = 1e-3
 """What extrapolation may leave in a cell that is crushed."""

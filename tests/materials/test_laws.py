@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from materials.laws import LAWS, Material, energy_slopes, uniaxial_stress
+from materials.laws import LAWS
+from materials.material import Material, energy_slopes, uniaxial_stress
 from materials.named import NAMED, named_material
 
 MATERIALS = [

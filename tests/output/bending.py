@@ -11,7 +11,7 @@ from geometry.mesh.data import Floats
 from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
-from materials.laws import Material
+from materials.material import Material
 
 BASELINE = Actuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
 SHORT = Actuator(radius=8, length=24, wall=2, floor=2, sheath=1, cap=4)

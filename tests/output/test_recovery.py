@@ -17,7 +17,7 @@ from fiberbend.states.snapshot import Scenery, Snapshot
 from geometry.bodies.solids import box
 from geometry.mesh.data import Floats
 from geometry.mesh.tets import to_tetrahedra
-from materials.laws import Material, uniaxial_stress
+from materials.material import Material, uniaxial_stress
 from tests.output.bending import SHORT, scenery, snapshot
 
 LAWS = [

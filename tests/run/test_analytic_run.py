@@ -32,7 +32,7 @@ from fiberbend.run.folder import (
     read_history,
 )
 from fiberbend.run.progress import Progress
-from materials.laws import Material
+from materials.material import Material
 
 ROOT = Path(__file__).resolve().parents[2]
 SMEARED = ROOT / "cases" / "free_bending_smeared.yaml"
