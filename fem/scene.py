@@ -121,6 +121,8 @@ class Scene:
                     forms[f"corner {name} {other}"] = corner
         if "p" in body.names:
             forms["volume"] = body.part(test, "p")[0] * body.dx()
+        if body.stand_ins:
+            forms = {name: ufl.replace(form, body.stand_ins) for name, form in forms.items()}
         with compat.compiling(mesh.comm):
             self._forms = {name: compat.compile_form(mesh, form) for name, form in forms.items()}
         self.signatures = {name: form.signature() for name, form in forms.items()}

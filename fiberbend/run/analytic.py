@@ -144,7 +144,10 @@ def _free_rows(case: Case, model: Hemicircle) -> tuple[list[dict[str, Any]], str
     if end is None:
         assert effect.to is not None
         end, reason = _angle_at(model, effect.to)
-        status = "stopped" if reason else "converged"
+    elif not np.isfinite(model.pressure(end)):
+        end, reason = _angle_at(model, math.copysign(math.inf, end))
+    if reason:
+        status = "stopped"
     stop = output.stop_at_angle
     if stop is not None and stop * end > 0 and abs(stop) <= abs(end):
         status, reason, end = "converged", "", stop
@@ -178,7 +181,7 @@ def _angle_at(model: Hemicircle, pressure: float) -> tuple[float, str]:
         bound = min(bound, 0.99 * model.length / model.sheath)
     angles = np.linspace(0.0, bound, _GRID)
     values = np.abs(model.pressure(angles))
-    falls = np.flatnonzero(np.diff(values) <= 0)
+    falls = np.flatnonzero(~(np.diff(values) > 0))
     last = int(falls[0]) if len(falls) else _GRID - 1
     beyond = np.flatnonzero(values[: last + 1] >= abs(pressure))
     degrees = math.degrees(angles[last])
@@ -189,6 +192,8 @@ def _angle_at(model: Hemicircle, pressure: float) -> tuple[float, str]:
             lambda x: float(model.pressure(x)) - pressure, angles[first - 1], angles[first]
         )
         return float(angle), ""
+    if len(falls) and not np.isfinite(values[last + 1]):
+        return float(angles[last]), f"the rubber meets its limiting stretch beyond {reached}"
     if len(falls):
         return float(angles[last]), f"the pressure has its greatest value, {reached}"
     return float(angles[last]), f"the closed form ends with {reached}"

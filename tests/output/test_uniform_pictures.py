@@ -28,7 +28,8 @@ from geometry.checks import region_volumes
 from geometry.mesh.data import Floats, MeshData
 from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
-from materials.material import Material, uniaxial_stress
+from materials.material import Material
+from tests.materials.rubber import uniaxial_stress
 from tests.output.bending import MATERIALS, SHORT
 from tests.output.test_pictures import is_drawn
 from tests.output.uniform import DOUBLE, PITCH, cell, section, state, warp, wave
