@@ -18,7 +18,7 @@ from fem.results.measures import UniformAngle
 from fiberbend import run
 from fiberbend.models.kinds import make_mesh
 from fiberbend.reader.reader import as_case
-from fiberbend.run.assembly import assemble
+from fiberbend.running.assembly import assemble
 
 RUNS = ROOT / "runs" / "contact"
 PRESSURES = (50, 100, 150, 200, 250)

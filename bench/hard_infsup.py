@@ -24,7 +24,7 @@ from fem.solver.factor import Factor
 from fiberbend.case.case import Case
 from fiberbend.models.kinds import make_mesh
 from fiberbend.reader.reader import parse_case
-from fiberbend.run.assembly import Assembly, assemble
+from fiberbend.running.assembly import Assembly, assemble
 
 STUB = {"actuator.length": "8 mm", "actuator.cap": "4 mm", TO: "1 kPa"}
 """A body as short as it can be: its size on the third mesh is what limits it."""

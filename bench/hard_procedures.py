@@ -20,11 +20,11 @@ from fiberbend.case.section_beside import as_section, load
 from fiberbend.models.kinds import make_mesh
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case
-from fiberbend.run import messages
-from fiberbend.run.assembly import assemble
-from fiberbend.run.history import Recorder
-from fiberbend.run.progress import Progress
-from fiberbend.run.runner import run_case
+from fiberbend.running import messages
+from fiberbend.running.assembly import assemble
+from fiberbend.running.history import Recorder
+from fiberbend.running.progress import Progress
+from fiberbend.running.runner import run_case
 from geometry.mesh.data import Floats, MeshData
 
 Check = tuple[str, float, float, float]

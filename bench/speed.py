@@ -61,7 +61,7 @@ def uniform(model: str, limit: float, *settings: str) -> tuple[str, float, float
 
     from fiberbend.models.kinds import make_mesh
     from fiberbend.reader.reader import read_case
-    from fiberbend.run.assembly import assemble
+    from fiberbend.running.assembly import assemble
 
     case = read_case(CASE, [f"model={model}", "output={}", *settings])
     case = case.model_copy(

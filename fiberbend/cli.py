@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from fiberbend.control.settings import add_options
-from fiberbend.run import launch
+from fiberbend.running import launch
 from fiberbend.version import __version__
 
 WRONG_INPUT = 1
@@ -147,7 +147,7 @@ def _schema(options: argparse.Namespace) -> int:
 
 def _run(options: argparse.Namespace) -> int:
     from fiberbend.reader.reader import read_case
-    from fiberbend.run.progress import Progress
+    from fiberbend.running.progress import Progress
     from fiberbend.schema.problems import CaseError
 
     case = read_case(options.case, options.settings)
@@ -155,7 +155,7 @@ def _run(options: argparse.Namespace) -> int:
     progress = Progress(quiet=options.quiet)
     try:
         launch.start_mpi()
-        from fiberbend.run.runner import run_case
+        from fiberbend.running.runner import run_case
 
         result = run_case(
             case, out, overwrite=options.overwrite, progress=progress, resume=options.resume

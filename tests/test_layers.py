@@ -18,7 +18,7 @@ FENICS = {"dolfinx", "ufl", "ffcx", "basix", "petsc4py", "mpi4py"}
 LIGHT = (
     "schema/units schema/quantities schema/problems case/convert case/case case/measured "
     "effects/table effects/clearance reader/checks reader/defaults reader/reader models/choice "
-    "plan/plan run/progress run/folder run/launch"
+    "plan/plan running/progress running/folder running/launch"
 )
 SCHEMA = [ROOT / "fiberbend" / f"{name}.py" for name in LIGHT.split()]
 BELOW_EFFECTS = {"effects", "kinematics", "compat"}

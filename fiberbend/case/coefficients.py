@@ -6,7 +6,7 @@ import dataclasses
 import math
 from typing import Annotated, Any
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError, core_schema
 
@@ -76,5 +76,5 @@ def coefficient_fields() -> dict[str, tuple[Any, FieldInfo]]:
             meanings.setdefault(parameter.meaning, []).append(owner.name)
         text = "; ".join(f"{what}; {', '.join(laws)}" for what, laws in meanings.items()) + "."
         annotation: Any = Annotated[float, kind] | None
-        fields[name] = (annotation, Field(default=None, description=text))
+        fields[name] = (annotation, FieldInfo(default=None, description=text))
     return fields

@@ -8,7 +8,7 @@ from fiberbend.case.case import Case
 from fiberbend.case.section_beside import as_section, load
 from fiberbend.effects.table import PressureEffect, StraightEffect
 from fiberbend.models.result import Curve
-from fiberbend.run.runner import run_case
+from fiberbend.running.runner import run_case
 
 
 def section_curve(case: Case, pressure: PressureEffect | None = None) -> Curve:

@@ -28,7 +28,7 @@ from fiberbend.models.body import BodyGauge, UniformGauge
 from fiberbend.models.choice import choose_half
 from fiberbend.models.mesh_size import cell_slice, mesh_size
 from fiberbend.models.parts import helix, twisting
-from fiberbend.run.history import Gauge
+from fiberbend.running.history import Gauge
 from geometry.mesh.data import MeshData
 
 Make = Callable[[Domain, Iterable[str]], Kinematics]

@@ -68,7 +68,7 @@ def serve(points: Sequence[Point], store: Store) -> int:
     # what libraries print must not get among the events
     with os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1) as events:
         os.dup2(2, 1)
-        import fiberbend.run.runner  # noqa: F401  the slow import, while the first worker compiles
+        import fiberbend.running.runner  # noqa: F401  the slow import, while the first worker compiles
 
         def tell(event: Event) -> None:
             print(json.dumps(event, default=str), file=events, flush=True)

@@ -19,8 +19,8 @@ from fem.scene import Scene
 from fem.solver.newton import Settings
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case
-from fiberbend.run import assembly
-from fiberbend.run.runner import run_case
+from fiberbend.running import assembly
+from fiberbend.running.runner import run_case
 
 Patch = pytest.MonkeyPatch
 

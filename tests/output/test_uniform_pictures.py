@@ -17,8 +17,8 @@ from fiberbend.drawing.cell import Slices, plot_tension, tension_along
 from fiberbend.drawing.crosscut import Crosscut
 from fiberbend.drawing.section import Sections
 from fiberbend.reader.reader import parse_case
-from fiberbend.run.folder import RunFolder
-from fiberbend.run.uniform_report import draw_states
+from fiberbend.running.folder import RunFolder
+from fiberbend.running.uniform_report import draw_states
 from fiberbend.states.bend import Bend
 from fiberbend.states.recovery import cauchy_stress, recover
 from fiberbend.states.snapshot import Scenery

@@ -24,14 +24,14 @@ from fiberbend.models.closed_form import (
 )
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case
-from fiberbend.run.analytic import run_analytic
-from fiberbend.run.folder import (
+from fiberbend.running.analytic import run_analytic
+from fiberbend.running.folder import (
     HISTORY_COLUMNS,
     RUN_KEYS,
     RunFolder,
     read_history,
 )
-from fiberbend.run.progress import Progress
+from fiberbend.running.progress import Progress
 from materials.material import Material
 
 ROOT = Path(__file__).resolve().parents[2]

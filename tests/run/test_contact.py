@@ -16,8 +16,8 @@ from fiberbend import run
 from fiberbend.models.kinds import make_mesh
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import as_case
-from fiberbend.run.assembly import assemble
-from fiberbend.run.folder import read_history
+from fiberbend.running.assembly import assemble
+from fiberbend.running.folder import read_history
 from fiberbend.schema.problems import CaseError
 from tests.conftest import MpiRun
 from tests.run.conftest import small, write_case

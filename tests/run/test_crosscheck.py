@@ -32,7 +32,7 @@ from fiberbend.compare.others import Straight
 from fiberbend.models.closed_form import analytic_curves
 from fiberbend.models.result import Curve, RunResult
 from fiberbend.reader.reader import parse_case
-from fiberbend.run.runner import run_case
+from fiberbend.running.runner import run_case
 
 ROOT = Path(__file__).resolve().parents[2]
 ANGLES = (0.0, 20.0, 60.0, 90.0, 180.0, 270.0, 360.0)

@@ -13,7 +13,7 @@ from fiberbend import run
 from fiberbend.models.kinds import make_mesh
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import as_case
-from fiberbend.run.assembly import assemble
+from fiberbend.running.assembly import assemble
 from tests.run.conftest import small
 
 WINDING = {

@@ -14,8 +14,8 @@ from scipy.optimize import brentq, minimize_scalar
 from analytic.exact import Tube
 from fiberbend import run
 from fiberbend.reader.reader import as_case
-from fiberbend.run.progress import Progress
-from fiberbend.run.runner import RunResult, run_case
+from fiberbend.running.progress import Progress
+from fiberbend.running.runner import RunResult, run_case
 from materials.material import Material
 
 QUIET = {"pictures": False, "fields": False}

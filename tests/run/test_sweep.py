@@ -57,7 +57,7 @@ ACTS = dict(item.split("=", 1) for item in os.environ["FAKE"].split() if "=" in 
 
 def run_case(case, out, overwrite=False, progress=None, resume=False):
     from fiberbend.result import RunResult
-    from fiberbend.run.folder import RunFolder
+    from fiberbend.running.folder import RunFolder
     folder = RunFolder.resume(out, case) if resume else RunFolder.create(out, case, overwrite)
     with open(os.environ["FAKE_LOG"], "a") as log:
         log.write(f"{out.name} {os.getpid()} {'resumed' if resume else 'fresh'}\\n")
@@ -81,9 +81,9 @@ def run_case(case, out, overwrite=False, progress=None, resume=False):
     folder.write_run(**run)
     return RunResult(status, reason, rows, run, out)
 
-module = types.ModuleType("fiberbend.run.runner")
+module = types.ModuleType("fiberbend.running.runner")
 module.run_case = run_case
-sys.modules["fiberbend.run.runner"] = module
+sys.modules["fiberbend.running.runner"] = module
 '''
 
 

@@ -27,9 +27,9 @@ from fiberbend.models.closed_form import (
     no_analytic,
 )
 from fiberbend.models.result import Curve, RunResult
-from fiberbend.run import launch
-from fiberbend.run.folder import RunFolder
-from fiberbend.run.progress import Progress
+from fiberbend.running import launch
+from fiberbend.running.folder import RunFolder
+from fiberbend.running.progress import Progress
 from fiberbend.version import __version__
 
 _STEPS = 40
@@ -96,7 +96,7 @@ def run_analytic(
         folder.write_history(rows)
         folder.write_run(**run)
         if case.output.pictures and folder.writes:
-            from fiberbend.run.report import draw_curves
+            from fiberbend.running.report import draw_curves
 
             draw_curves(
                 folder, case, rows, f"{status}: {reason}" if reason else None, check, "analytic"

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, TextIO
 
-from fiberbend.run import launch
+from fiberbend.running import launch
 
 if TYPE_CHECKING:
     from rich.progress import Progress as RichProgress

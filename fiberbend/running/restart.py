@@ -11,8 +11,8 @@ import numpy as np
 from fem.march.march import March
 from fem.march.records import Report
 from fem.results.checkpoint import Archive
-from fiberbend.run.folder import RunFolder
-from fiberbend.run.history import Recorder
+from fiberbend.running.folder import RunFolder
+from fiberbend.running.history import Recorder
 from fiberbend.states.snapshot import Snapshot
 
 CHECKPOINT = "checkpoint.npz"

@@ -9,7 +9,7 @@ import numpy as np
 
 from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
-from fiberbend.run.folder import RunFolder
+from fiberbend.running.folder import RunFolder
 from fiberbend.states.recovery import recover
 from fiberbend.states.snapshot import Scenery, Snapshot
 
@@ -48,7 +48,7 @@ def draw(
     if not (snapshots and (output.fields or output.pictures)):
         return
     if scenery.uniform:
-        from fiberbend.run.uniform_report import draw_states
+        from fiberbend.running.uniform_report import draw_states
 
         draw_states(folder, case, scenery, snapshots, say)
         return

@@ -24,7 +24,7 @@ from fiberbend.effects.table import (
     WindingEffect,
 )
 from fiberbend.models.kinds import make_mesh
-from fiberbend.run.assembly import assemble
+from fiberbend.running.assembly import assemble
 
 Floats = npt.NDArray[np.float64]
 

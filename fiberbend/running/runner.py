@@ -21,13 +21,13 @@ from fiberbend.models.choice import UNIFORM, choose_model
 from fiberbend.models.closed_form import held
 from fiberbend.models.result import RunResult
 from fiberbend.plan.plan import winding_remark
-from fiberbend.run import messages, restart
-from fiberbend.run.assembly import assemble
-from fiberbend.run.folder import RunFolder
-from fiberbend.run.history import Recorder
-from fiberbend.run.progress import Progress
-from fiberbend.run.record import blocked_tip, contact, versions
-from fiberbend.run.warm import guides, section_states, steered
+from fiberbend.running import messages, restart
+from fiberbend.running.assembly import assemble
+from fiberbend.running.folder import RunFolder
+from fiberbend.running.history import Recorder
+from fiberbend.running.progress import Progress
+from fiberbend.running.record import blocked_tip, contact, versions
+from fiberbend.running.warm import guides, section_states, steered
 from fiberbend.states.snapshot import Scenery, Snapshot
 from geometry.mesh.data import MeshData
 
@@ -68,7 +68,7 @@ def run_case(
     if model == "body":
         return _Run(case, model, folder, progress, comm).go(resume)
     if model == "analytic":
-        from fiberbend.run.analytic import run_analytic
+        from fiberbend.running.analytic import run_analytic
 
         return _on_rank_0(comm, lambda: run_analytic(case, folder, progress))  # type: ignore[no-any-return]
     # a section or a cell is too small to share: one rank solves it
@@ -346,7 +346,7 @@ class _Run:
 
     def _draw(self, status: str, reason: str, rows: list[dict[str, Any]]) -> None:
         """Fields, pictures and plots, on rank 0."""
-        from fiberbend.run import report
+        from fiberbend.running import report
 
         assert self.folder is not None
         scenery = Scenery(

@@ -11,7 +11,7 @@ import numpy as np
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.table import WindingEffect
-from fiberbend.run.folder import RunFolder
+from fiberbend.running.folder import RunFolder
 from fiberbend.states.recovery import NodalFields, recover
 from fiberbend.states.snapshot import Scenery, Snapshot, Write
 from fiberbend.states.stack import (

@@ -19,7 +19,7 @@ from fiberbend.effects.table import ContactEffect
 from fiberbend.models import kinds
 from fiberbend.models.choice import FIRST_TURN, MEMORY, turn_of
 from fiberbend.models.parts import Parts, build
-from fiberbend.run.approach import Approach
+from fiberbend.running.approach import Approach
 from geometry.mesh.data import MeshData
 
 
