@@ -43,8 +43,13 @@ class Elastic(Effect):
 
         A term that no region has is not in it.
         """
+        used = self.law.used(self.regions.values())
         values = {
-            name: body.coefficient({region: row[name] for region, row in self.regions.items()})
-            for name in self.law.used(self.regions.values())
+            parameter.name: body.coefficient(
+                dict.fromkeys(body.domain.data.regions, parameter.elsewhere)
+                | {region: row[parameter.name] for region, row in self.regions.items()}
+            )
+            for parameter in self.law.parameters
+            if parameter.name in used
         }
         return self.law.energy(Isochoric(body), **values) * body.dx()

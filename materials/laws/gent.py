@@ -21,6 +21,6 @@ LAW = Law(
     energy,
     (
         Parameter("mu", "Shear modulus", allowed="above zero"),
-        Parameter("jm", "Limit of I1 - 3", unit="1", allowed="above zero"),
+        Parameter("jm", "Limit of I1 - 3", unit="1", allowed="above zero", elsewhere=1e30),
     ),
 )

@@ -47,9 +47,11 @@ class Parameter:
         unit: MPa, or 1 for a pure number.
         allowed: which values are.
         most: greatest magnitude.
-        default: value where it is left out; None: it must be given.
+        default: value where it is left out; None: it must be given, or belongs to a term.
         term: coefficient of the term that it belongs to, where the law can do without the term;
             where that coefficient is zero or left out, the energy is not given the parameter.
+        elsewhere: value in the regions of other laws, for one form holds all regions. With these
+            values the energy and its derivatives are zero, whatever the deformation.
     """
 
     name: str
@@ -59,6 +61,7 @@ class Parameter:
     most: float = math.inf
     default: float | None = None
     term: str | None = None
+    elsewhere: float = 0.0
 
     def refusal(self, value: float) -> str | None:
         """Why a value is refused, as 'expected …', or None."""
@@ -121,10 +124,9 @@ class Law:
         ]
 
     def complete(self, given: Mapping[str, float]) -> dict[str, float]:
-        """All parameters in order, defaults filled in."""
-        values = {p.name: p.default for p in self.parameters if p.default is not None}
-        values |= given
-        return {name: values[name] for name in self.names}
+        """All parameters in order, defaults filled in; of a term left out what vanishes."""
+        values = {p.name: p.elsewhere if p.default is None else p.default for p in self.parameters}
+        return values | {name: float(value) for name, value in given.items()}
 
     def used(self, rows: Iterable[Mapping[str, float]]) -> list[str]:
         """Parameters that the energy needs, by complete sets of values of one or more materials."""

@@ -32,18 +32,18 @@ def energy(
 
 
 def _term(number: int) -> tuple[Parameter, Parameter]:
-    """A further term; where it is left out, α is a number that nothing depends on."""
+    """A term that may be left out."""
     mu = f"mu{number}"
     return (
-        Parameter(mu, f"Share {number} of the shear modulus at rest", default=0.0, term=mu),
+        Parameter(mu, f"Share {number} of the shear modulus at rest", term=mu),
         Parameter(
             f"alpha{number}",
             f"Exponent {number} of the stretches",
             unit="1",
             allowed="other than zero",
             most=MOST,
-            default=2.0,
             term=mu,
+            elsewhere=2.0,
         ),
     )
 
@@ -59,6 +59,7 @@ LAW = Law(
             unit="1",
             allowed="other than zero",
             most=MOST,
+            elsewhere=2.0,
         ),
         *_term(2),
         *_term(3),

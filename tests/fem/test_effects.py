@@ -256,6 +256,22 @@ def test_no_forces_beyond_the_limiting_stretch() -> None:
     assert np.isfinite(forces).all()
 
 
+@pytest.mark.parametrize("name", LAWS)
+def test_a_law_acts_in_its_own_regions_alone(name: str) -> None:
+    # and changes nothing in those of another law, however far these are stretched
+    domain, other = stub("hexahedron"), law("neo-hooke", ["floor"])
+    both = [law(name, ["wall"]), other] if name != "neo-hooke" else [law(name, REGIONS)]
+    scene = Scene(domain, both)
+    w = perturb(scene, AMPLITUDE, 13)
+    energies = scene.energies()
+    alone = Scene(domain, [law(name, ["wall"])])
+    assert sum(energies.values()) == pytest.approx(
+        _potential(alone, w) + _potential(Scene(domain, [other]), w), rel=1e-12
+    )
+    w[scene.body.node_dofs] = domain.data.nodes * (np.array([4.0, 0.5, 0.5]) - 1)
+    assert np.isfinite(_residual(Scene(domain, [law(name, [])]), w)).all()
+
+
 def test_one_ogden_region_of_more_terms_than_another() -> None:
     # a term that a region lacks is zero there; one that all lack does not exist
     short, long = {"mu1": 0.3, "alpha1": 1.5}, {"mu1": 0.2, "alpha1": 2.5, "mu2": 0.1, "alpha2": -1}

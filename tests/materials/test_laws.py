@@ -10,7 +10,7 @@ import pytest
 
 from materials.laws.law import Law, Parameter
 from materials.laws.table import LAWS
-from materials.material import Material
+from materials.material import Material, Stretches
 from materials.named import NAMED, named_material
 from tests.materials.rubber import (
     MODULI,
@@ -101,6 +101,15 @@ def test_gent_goes_over_into_neo_hooke() -> None:
     # W = μ/2 (x + x²/(2 Jm) + …) with x = I1 − 3 below 10 here
     for jm, rel in ((1e4, 1e-3), (1e7, 1e-6)):
         same(Material("gent", {"mu": 0.3, "jm": jm}), RUBBERS["neo-hooke"], rel)
+
+
+@laws
+def test_energy_vanishes_in_the_regions_of_other_laws(law: str) -> None:
+    # also far beyond any limiting stretch: zero times NaN would be NaN
+    parameters = {parameter.name: parameter.elsewhere for parameter in LAWS[law].parameters}
+    stretches = np.array([1.0, 3.0, 30.0]), np.array([1.0, 0.7, 0.1])
+    energy = LAWS[law].energy(Stretches(*stretches, 1 / stretches[0] / stretches[1]), **parameters)
+    assert np.array_equal(energy, np.zeros(3))
 
 
 def test_no_number_beyond_the_limiting_stretch() -> None:
