@@ -46,7 +46,7 @@ class Elastic(Effect):
         used = self.law.used(self.regions.values())
         values = {
             parameter.name: body.coefficient(
-                dict.fromkeys(body.domain.data.regions, parameter.elsewhere)
+                dict.fromkeys(body.domain.data.regions, parameter.neutral)
                 | {region: row[parameter.name] for region, row in self.regions.items()}
             )
             for parameter in self.law.parameters

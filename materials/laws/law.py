@@ -50,8 +50,9 @@ class Parameter:
         default: value where it is left out; None: it must be given, or belongs to a term.
         term: coefficient of the term that it belongs to, where the law can do without the term;
             where that coefficient is zero or left out, the energy is not given the parameter.
-        elsewhere: value in the regions of other laws, for one form holds all regions. With these
-            values the energy and its derivatives are zero, whatever the deformation.
+        elsewhere: value in the regions of other laws, for one form holds all regions: with these
+            values the energy and its derivatives are zero, whatever the deformation. None: 0 MPa,
+            or 1.
     """
 
     name: str
@@ -61,7 +62,12 @@ class Parameter:
     most: float = math.inf
     default: float | None = None
     term: str | None = None
-    elsewhere: float = 0.0
+    elsewhere: float | None = None
+
+    @property
+    def neutral(self) -> float:
+        """`elsewhere`, its default filled in."""
+        return float(self.unit == "1") if self.elsewhere is None else self.elsewhere
 
     def refusal(self, value: float) -> str | None:
         """Why a value is refused, as 'expected …', or None."""
@@ -125,7 +131,7 @@ class Law:
 
     def complete(self, given: Mapping[str, float]) -> dict[str, float]:
         """All parameters in order, defaults filled in; of a term left out what vanishes."""
-        values = {p.name: p.elsewhere if p.default is None else p.default for p in self.parameters}
+        values = {p.name: p.neutral if p.default is None else p.default for p in self.parameters}
         return values | {name: float(value) for name, value in given.items()}
 
     def used(self, rows: Iterable[Mapping[str, float]]) -> list[str]:

@@ -43,7 +43,6 @@ def _term(number: int) -> tuple[Parameter, Parameter]:
             allowed="other than zero",
             most=MOST,
             term=mu,
-            elsewhere=2.0,
         ),
     )
 
@@ -52,14 +51,13 @@ LAW = Law(
     "ogden",
     energy,
     (
-        Parameter("mu1", "Share 1 of the shear modulus at rest", allowed="other than zero"),
+        Parameter("mu1", "Share 1 of the shear modulus at rest"),
         Parameter(
             "alpha1",
             "Exponent 1 of the stretches",
             unit="1",
             allowed="other than zero",
             most=MOST,
-            elsewhere=2.0,
         ),
         *_term(2),
         *_term(3),

@@ -106,7 +106,7 @@ def test_gent_goes_over_into_neo_hooke() -> None:
 @laws
 def test_energy_vanishes_in_the_regions_of_other_laws(law: str) -> None:
     # also far beyond any limiting stretch: zero times NaN would be NaN
-    parameters = {parameter.name: parameter.elsewhere for parameter in LAWS[law].parameters}
+    parameters = {parameter.name: parameter.neutral for parameter in LAWS[law].parameters}
     stretches = np.array([1.0, 3.0, 30.0]), np.array([1.0, 0.7, 0.1])
     energy = LAWS[law].energy(Stretches(*stretches, 1 / stretches[0] / stretches[1]), **parameters)
     assert np.array_equal(energy, np.zeros(3))
