@@ -40,9 +40,9 @@ class Found(NamedTuple):
     """θ in rad."""
     pressure: float
     """P there, MPa, without sign."""
-    end: Literal["", "peak", "bound"]
+    end: Literal["", "peak", "limit", "bound"]
     """Nothing where θ holds the pressure; else why it is not reached: P has its greatest value at
-    θ, or θ is the bound."""
+    θ, the rubber meets its limiting stretch beyond θ, or θ is the bound."""
 
 
 def first_angle(pressure: Callable[[Floats], Floats], target: float, bound: float) -> Found:
@@ -57,14 +57,17 @@ def first_angle(pressure: Callable[[Floats], Floats], target: float, bound: floa
 
     angles = np.linspace(0.0, bound, _GRID)
     values = np.abs(pressure(angles))
-    falls = np.flatnonzero(np.diff(values) <= 0)
+    falls = np.flatnonzero(~(np.diff(values) > 0))
     last = int(falls[0]) if len(falls) else _GRID - 1
     beyond = np.flatnonzero(values[: last + 1] >= abs(target))
     if len(beyond):
         first = int(beyond[0])
         angle = brentq(lambda x: float(pressure(x)) - target, angles[first - 1], angles[first])
         return Found(float(angle), abs(target), "")
-    return Found(float(angles[last]), float(values[last]), "peak" if len(falls) else "bound")
+    end: Literal["peak", "limit", "bound"] = "bound"
+    if len(falls):
+        end = "peak" if np.isfinite(values[last + 1]) else "limit"
+    return Found(float(angles[last]), float(values[last]), end)
 
 
 class MonotoneInverse:

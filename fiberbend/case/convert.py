@@ -14,7 +14,7 @@ from fiberbend.effects.effect import Requests, Site
 if TYPE_CHECKING:
     from geometry.sections.shape import ShapedActuator
     from geometry.sections.size import MeshSize
-    from materials.laws import Material
+    from materials.material import Material
 
 _KG_PER_M3 = 1e12
 """kg/m³ in one t/mm³."""
@@ -40,7 +40,7 @@ def material(spec: case.Material) -> Material:
     Raises:
         ValueError: an unknown name, or coefficients that the law does not allow.
     """
-    from materials.laws import Material
+    from materials.material import Material
     from materials.named import named_material
 
     if spec.name is not None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from geometry.mesh.data import Floats, MeshData
     from geometry.sections.size import Strips
     from geometry.winding.segments import EmbeddedFibers
-    from materials.laws import Material
+    from materials.material import Material
 
 ARC = "arc"
 """A model bends uniformly all along, so that it can be kept straight all along."""

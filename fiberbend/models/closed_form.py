@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from analytic.bending import Hemicircle
-from analytic.stress import Floats, Stress, wound
+from analytic.stress import Stress, wound
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.case import Material as MaterialSpec
 from fiberbend.effects.effect import tip_strips
-from materials.laws import energy_slopes
 
 SHAPE = "hemicircle"
 """The section that has a closed form."""
@@ -89,18 +88,8 @@ def dimensions(case: Case) -> tuple[float, float, float, float]:
 
 
 def _stress(spec: MaterialSpec) -> Stress:
-    """Axial stress of a material whose circumference is held.
-
-    λ, 1, 1/λ give I1 = I2 = 1 + λ² + λ⁻², so that a law W(I1, I2) is the law W(I1) with the slope
-    ∂W/∂I1 + ∂W/∂I2.
-    """
-    material = convert.material(spec)
-
-    def slope(invariant: Floats) -> Floats:
-        first, second = energy_slopes(material, invariant, invariant)
-        return first + second
-
-    return wound(slope)
+    """Axial stress of a material whose circumference is held."""
+    return wound(convert.material(spec).principal)
 
 
 def floor_limits(case: Case) -> bool:

@@ -13,7 +13,7 @@ from fiberbend.case.case import Case
 from fiberbend.models.model import MeshedModel
 from geometry.mesh.data import MeshData
 from geometry.winding.segments import EmbeddedFibers
-from materials.laws import Material
+from materials.material import Material
 
 
 @dataclasses.dataclass(frozen=True)

@@ -28,6 +28,7 @@ from fiberbend.effects.table import EFFECTS
 from fiberbend.models.choice import MODELS, choose_model
 from fiberbend.schema.problems import Problem, found, meant
 from fiberbend.schema.units import show
+from materials.laws.table import LAWS
 
 if TYPE_CHECKING:
     from geometry.sections.size import MeshSize
@@ -133,7 +134,6 @@ def _materials(parts: Parts) -> Iterator[Problem]:
 
 
 def _material(path: str, material: Material) -> Iterator[Problem]:
-    from materials.laws import LAWS
     from materials.named import NAMED
 
     given = material.coefficients
@@ -148,13 +148,15 @@ def _material(path: str, material: Material) -> Iterator[Problem]:
         yield Problem(path, "neither name nor law, expected one of them")
         return
     law = LAWS[material.law]
-    missing = [key for key in law.parameters if key not in {**law.defaults, **given}]
-    for key in missing:
-        yield Problem(f"{path}.{key}", f"missing, expected a coefficient of {law.name}")
-    strange = [key for key in given if key not in law.parameters]
-    for key in strange:
-        yield Problem(f"{path}.{key}", f"no effect on {law.name}, expected no value")
-    if not missing and not strange:
+    problems = [
+        *((key, f"missing, expected a coefficient of {law.name}") for key in law.missing(given)),
+        *((key, f"no effect on {law.name}, expected no value") for key in law.unknown(given)),
+        *((key, f"no effect without {term}, expected no value") for key, term in law.idle(given)),
+        *law.refusals(given),
+    ]
+    for key, text in problems:
+        yield Problem(f"{path}.{key}", text)
+    if not problems:
         try:
             convert.material(material)
         except ValueError as error:

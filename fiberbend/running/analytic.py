@@ -139,7 +139,10 @@ def _free_rows(case: Case, model: Hemicircle) -> tuple[list[dict[str, Any]], str
     if end is None:
         assert load.to is not None
         end, reason = _angle_at(model, load.to)
-        status = "stopped" if reason else "converged"
+    elif not np.isfinite(model.pressure(end)):
+        end, reason = _angle_at(model, math.copysign(math.inf, end))
+    if reason:
+        status = "stopped"
     stop = output.stop_at_angle
     if stop is not None and stop * end > 0 and abs(stop) <= abs(end):
         status, reason, end = "converged", "", stop
@@ -175,6 +178,7 @@ def _angle_at(model: Hemicircle, pressure: float) -> tuple[float, str]:
     why = {
         "": "",
         "peak": f"the pressure has its greatest value, {reached}",
+        "limit": f"the rubber meets its limiting stretch beyond {reached}",
         "bound": f"the closed form ends with {reached}",
     }
     return found.angle, why[found.end]

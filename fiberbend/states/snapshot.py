@@ -9,7 +9,7 @@ from typing import IO
 
 from geometry.mesh.data import Floats, MeshData
 from geometry.winding.segments import EmbeddedFibers
-from materials.laws import Material
+from materials.material import Material
 
 Target = Path | IO[bytes]
 """A path, or a file open for writing bytes."""

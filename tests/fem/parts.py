@@ -75,6 +75,11 @@ def law(name: str, regions: Sequence[str], scale: float = 1.0) -> Elastic:
         "neo-hooke": {"mu": 0.22 * scale},
         "mooney-rivlin": {"c10": 0.09 * scale, "c01": 0.03 * scale},
         "yeoh": {"c1": 0.11 * scale, "c2": 0.02 * scale, "c3": 0.003 * scale},
+        "gent": {"mu": 0.22 * scale, "jm": 30.0},
+        "ogden": {
+            **{"mu1": 0.2 * scale, "alpha1": 1.3, "mu2": 0.01 * scale, "alpha2": 5.0},
+            **{"mu3": 0.03 * scale, "alpha3": -2.0},
+        },
     }
     return Elastic(name, dict.fromkeys(regions, parameters[name]))
 

@@ -11,7 +11,7 @@ from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
-from materials.laws import Material
+from materials.material import Material
 
 BASELINE = HemicircleActuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
 SHORT = HemicircleActuator(radius=8, length=24, wall=2, floor=2, sheath=1, cap=4)

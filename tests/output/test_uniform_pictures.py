@@ -29,7 +29,8 @@ from geometry.mesh.data import Floats, MeshData
 from geometry.sections.circle import CircleActuator
 from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
-from materials.laws import Material, uniaxial_stress
+from materials.material import Material
+from tests.materials.rubber import uniaxial_stress
 from tests.output.bending import MATERIALS, SHORT
 from tests.output.test_pictures import is_drawn
 from tests.output.uniform import DOUBLE, PITCH, cell, section, state, warp, wave

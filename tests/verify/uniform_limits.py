@@ -20,7 +20,8 @@ from geometry.sections.circle import CircleActuator
 from geometry.sections.hemicircle import HemicircleActuator
 from geometry.winding.helix import PATTERNS, Winding
 from geometry.winding.smear import smear
-from tests.exact.solutions import Torsion, closed_tube, yeoh_slope
+from materials.material import Material
+from tests.exact.solutions import Torsion, closed_tube
 from tests.verify.helix_tube import HelixTube
 from tests.verify.ladder import YEOH
 from tests.verify.uniform import (
@@ -43,7 +44,7 @@ SOFT: dict[str, Law] = {name: {"c1": 0.11} for name in ("wall", "floor")}
 """One material all over, for the bare section."""
 TUBE = CircleActuator(radius=8, length=160, wall=2, cap=15)
 INNER, OUTER = 8.0, 10.0
-SLOPE = yeoh_slope(YEOH["c1"], YEOH["c2"])
+LAW = Material("yeoh", YEOH).principal
 EA = 881.0
 """Of a fiber, N: Kevlar of half the radius of 0.38 mm diameter."""
 FINE_PITCH = 0.5
@@ -167,7 +168,7 @@ def wound_tube(n: int) -> list[Check]:
 
 def free_tube(n: int) -> list[Check]:
     """The tube without winding, its ends closed and free, at a/A = 1.1."""
-    exact = closed_tube(SLOPE, INNER, OUTER, 1.1 * INNER)
+    exact = closed_tube(LAW, INNER, OUTER, 1.1 * INNER)
     scene = section(
         domain(TUBE, n), TUBE, [*rubber({"wall": YEOH}), ChamberPressure(), HeldStraight()]
     )
@@ -218,7 +219,7 @@ def torsion(n: int) -> list[Check]:
     All three rates are held at those of the pin's helix; what holds them is M by ψ and N by λz.
     """
     psi, radius = 0.05, OUTER
-    whole, core = Torsion(SLOPE, OUTER, psi), Torsion(SLOPE, INNER, psi)
+    whole, core = Torsion(LAW, OUTER, psi), Torsion(LAW, INNER, psi)
     pressure = -float(whole.radial_stress(np.array(INNER)))
     points, weights = np.polynomial.legendre.leggauss(20)
     R = (OUTER + INNER) / 2 + (OUTER - INNER) / 2 * points
