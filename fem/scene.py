@@ -13,8 +13,11 @@ from petsc4py import PETSc
 
 from fem import compat
 from fem.effects.effect import Constraint, Discrete, Effect
+from fem.kernels import compiling
 from fem.kinematics.domain import Domain
 from fem.kinematics.kinematics import Body, Kinematics
+from fem.matrix import may_free
+from fem.ranks import total
 
 Floats = npt.NDArray[np.float64]
 
@@ -93,23 +96,23 @@ class Scene:
         self.force_noise = self._noise()
 
     def __del__(self) -> None:
-        if hasattr(self, "matrix") and compat.may_free(self.matrix):
+        if hasattr(self, "matrix") and may_free(self.matrix):
             self.matrix.destroy()
 
     # --- compilation ---------------------------------------------------------------------------
 
     def _compile(self, potentials: dict[str, Any]) -> None:
         body, mesh = self.body, self.domain.mesh
-        total = sum(potentials.values(), ufl.Form([]))
+        whole = sum(potentials.values(), ufl.Form([]))
         test, trial = ufl.TestFunction(body.space), ufl.TrialFunction(body.space)
-        residual = ufl.derivative(total, body.w, test)
+        residual = ufl.derivative(whole, body.w, test)
         tangent = ufl.derivative(residual, body.w, trial)
         forms: dict[str, Any] = {"residual": residual, "tangent": tangent}
         for key, form in potentials.items():
             forms[f"energy {key}"] = form
             if self.effects[key].outside:
                 forms[f"force {key}"] = ufl.derivative(form, body.w, test)
-        lowered = ufl.algorithms.apply_algebra_lowering.apply_algebra_lowering(total)
+        lowered = ufl.algorithms.apply_algebra_lowering.apply_algebra_lowering(whole)
         for i, name in enumerate(body.scalars):
             conjugate = _differentiate(lowered, body.scalar(name))
             forms[f"conjugate {name}"] = conjugate
@@ -120,7 +123,7 @@ class Scene:
                     forms[f"corner {name} {other}"] = corner
         if body.pressure_field is not None:
             forms["volume"] = body.part(test, body.pressure_field)[0] * body.dx()
-        with compat.compiling(mesh.comm):
+        with compiling(mesh.comm):
             self._forms = {name: compat.compile_form(mesh, form) for name, form in forms.items()}
         self.signatures = {name: form.signature() for name, form in forms.items()}
         self.kernels = sum(len(form.integrals()) for form in forms.values())
@@ -260,14 +263,14 @@ class Scene:
                 continue
             if key in self.discrete:
                 mine += self.discrete[key].energy()
-            result[key] = float(compat.total(comm, mine))
+            result[key] = float(total(comm, mine))
         return result
 
     def conjugate(self, name: str) -> float:
         """−∂Π/∂q of a global scalar q: the chamber volume in mm³ for the pressure."""
         mine = -compat.assemble_scalar(self._forms[f"conjugate {name}"])
         mine += sum(discrete.conjugate(name) for discrete in self.discrete.values())
-        return float(compat.total(self.domain.comm, mine))
+        return float(total(self.domain.comm, mine))
 
     def corner(self, first: str, second: str) -> float:
         """∂²Π/∂q∂r of two global scalars at the present state."""
@@ -278,7 +281,7 @@ class Scene:
             if key in self._forms:
                 mine += compat.assemble_scalar(self._forms[key])
                 break
-        value = float(compat.total(self.domain.comm, mine))
+        value = float(total(self.domain.comm, mine))
         self._corners[first, second] = self._corners[second, first] = value
         return value
 
@@ -306,8 +309,7 @@ class Scene:
         for discrete in self.discrete.values():
             discrete.update(self.body.w.x.array)
             discrete.add_noise(noise)
-        total = compat.total(self.domain.comm, float(noise @ noise))
-        return float(np.sqrt(total))
+        return float(np.sqrt(total(self.domain.comm, float(noise @ noise))))
 
     def residual(self) -> tuple[Floats, float]:
         """R = ∂Π/∂w at the present state.
@@ -321,8 +323,8 @@ class Scene:
         )
         held = ~self.free[: self.body.owned]
         reaction = self.norm(r[held])
-        total = float(np.sqrt(compat.total(self.domain.comm, norm**2)))
-        self.force_scale = max(reaction, total, self._force_floor)
+        discrete = float(np.sqrt(total(self.domain.comm, norm**2)))
+        self.force_scale = max(reaction, discrete, self._force_floor)
         return r, self.force_scale
 
     def load(self, name: str, constrained: bool = False) -> Floats:
@@ -349,7 +351,7 @@ class Scene:
 
     def norm(self, values: Floats) -> float:
         """Euclidean norm over all ranks of owned values."""
-        return float(np.sqrt(compat.total(self.domain.comm, float(values @ values))))
+        return float(np.sqrt(total(self.domain.comm, float(values @ values))))
 
     @property
     def outside(self) -> list[str]:

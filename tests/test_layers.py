@@ -21,7 +21,7 @@ LIGHT = (
     "plan/plan running/progress running/folder running/launch"
 )
 SCHEMA = [ROOT / "fiberbend" / f"{name}.py" for name in LIGHT.split()]
-BELOW_EFFECTS = {"effects", "kinematics", "compat"}
+BELOW_EFFECTS = {"effects", "kinematics", "compat", "kernels", "matrix", "quick_start", "ranks"}
 MAX_LINES = 400
 
 

@@ -10,9 +10,9 @@ import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fem import compat
 from fem.kinematics.kinematics import Kinematics
 from geometry.mesh.data import facet_positions
+from geometry.mesh.reference import shape_functions
 from geometry.winding.embed import EmbeddedFibers
 
 Floats = npt.NDArray[np.float64]
@@ -92,7 +92,7 @@ class FiberPotential:
         count, quadrature = len(self.index), segments.weights.shape[1]
         dim = segments.points.shape[2]
         points = segments.points[self.index].reshape(-1, dim)
-        _, gradient = compat.tabulate_gradient(domain.data.cell_type, points)
+        value, gradient = shape_functions(domain.data.cell_type, points)
         tangent = segments.tangents[self.index].reshape(-1, dim)
         along = np.einsum("pad,pd->pa", gradient, tangent).reshape(count, quadrature, -1)
         along = np.take_along_axis(along, positions[:, None, :], axis=2)
@@ -110,7 +110,6 @@ class FiberPotential:
         self._uniform = body.carry() is not None
         parts = body.components
         if self._uniform:
-            value, _ = compat.tabulate_gradient(domain.data.cell_type, points)
             value = np.take_along_axis(
                 value.reshape(count, quadrature, -1), positions[:, None, :], axis=2
             )

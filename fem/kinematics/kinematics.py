@@ -21,13 +21,13 @@ Dofs = npt.NDArray[np.int32]
 
 def _displacement(cell: str) -> Any:
     # scalar elements, not one vector element: contiguous rows let the compiler vectorise kernels
-    return ufl.FiniteElement("Lagrange", cell, 2)
+    return compat.scalar_element("Lagrange", cell, 2)
 
 
 def _pressure(cell: str) -> Any:
     """P1 discontinuous on bricks (Q2–P1disc), continuous on tetrahedra (Taylor–Hood)."""
     family = "Lagrange" if cell == "tetrahedron" else "DPC"
-    return ufl.FiniteElement(family, cell, 1)
+    return compat.scalar_element(family, cell, 1)
 
 
 DISPLACEMENT, PRESSURE = "u", "p"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from fem import compat
 from fem.march.predictor import Predictor
 from fem.march.records import MODES, State, measure
+from fem.ranks import total
 from fem.scene import Scene
 from fem.solver.border import Closure
 from fem.solver.closures import Conjugate, Functional, Stationary, Target
@@ -32,7 +32,7 @@ class Equilibrium:
         self.scene, self.newton = scene, newton
         self._predictor, self._control = predictor, control
         comm, volumetric = scene.domain.comm, int(np.count_nonzero(scene.volumetric))
-        self._volumetric = int(compat.total(comm, volumetric))
+        self._volumetric = int(total(comm, volumetric))
 
     def capture(self) -> State:
         """The present state of the scene."""

@@ -17,6 +17,7 @@ from fem.march.records import (
     State,
     measure,
 )
+from fem.ranks import total
 from fem.scene import Scene
 from fem.solver.newton import Outcome
 
@@ -167,9 +168,9 @@ class Diagnosis:
         for item in self._scene.discrete.values():
             if isinstance(item, FiberPotential) and item.tension_only:
                 lengths = np.array([item.length[item.strain <= 0].sum(), item.length.sum()])
-                slack, total = compat.total(comm, lengths)
-                if slack > SLACK * total:
-                    return [f"the winding is slack over {100 * slack / total:.0f} % of its length"]
+                slack, whole = total(comm, lengths)
+                if slack > SLACK * whole:
+                    return [f"the winding is slack over {100 * slack / whole:.0f} % of its length"]
         return []
 
     # --- where ---------------------------------------------------------------------------------

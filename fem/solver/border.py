@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
 
-from fem import compat
+from fem.ranks import total
 
 Floats = npt.NDArray[np.float64]
 
@@ -62,8 +62,8 @@ class Border:
     def _dots(self, a: Floats) -> Floats:
         """Inner products of the rows with a vector, over all ranks."""
         mine = np.array([float(row @ a) for row in self.rows])
-        total: Floats = compat.total(self._comm, mine)
-        return total
+        dots: Floats = total(self._comm, mine)
+        return dots
 
     def eliminate(self, a: Floats, r_q: Floats) -> tuple[Floats, Floats]:
         """Solution (w, q) of the bordered system from a = K⁻¹ r and the scalars' right side."""

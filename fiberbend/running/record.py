@@ -6,7 +6,7 @@ import platform
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fem import compat
+from fem import kernels
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.contact import obstacles, stiffness
@@ -19,7 +19,7 @@ def versions() -> dict[str, str]:
     return {
         "fiberbend": __version__,
         "python": platform.python_version(),
-        **compat.versions(),
+        **kernels.versions(),
     }
 
 
