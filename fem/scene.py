@@ -14,8 +14,9 @@ from petsc4py import PETSc
 from fem import compat
 from fem.effects.effect import Constraint, Discrete, Effect
 from fem.kernels import compiling
+from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
-from fem.kinematics.kinematics import Body, Kinematics
+from fem.kinematics.kinematics import Kinematics
 from fem.matrix import may_free
 from fem.ranks import total
 

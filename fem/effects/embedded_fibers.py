@@ -10,6 +10,7 @@ import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from analytic.path import cross_matrix
 from fem.kinematics.kinematics import Kinematics
 from geometry.mesh.data import facet_positions
 from geometry.mesh.reference import shape_functions
@@ -38,12 +39,6 @@ def _contract(vectors: Floats, maps: Floats) -> Floats:
     count, width = len(maps), maps.shape[3]
     result: Floats = (vectors.reshape(count, 1, -1) @ maps.reshape(count, -1, width))[:, 0]
     return result
-
-
-def _cross(spin: Floats) -> Floats:
-    """The matrix of spin ×."""
-    x, y, z = spin
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 class FiberPotential:
@@ -140,11 +135,11 @@ class FiberPotential:
         carry = self._body.carry()
         if carry is not None:
             position = (self._value @ x[:, None, :, None])[..., 0]
-            along, spin = np.array([0.0, 0.0, carry.stretch]), _cross(carry.spin)
+            along, spin = np.array([0.0, 0.0, carry.stretch]), cross_matrix(carry.spin)
             t = t + self._rise * (along + position @ spin.T)
             self._map = self._slope + self._rise[..., None] * (spin @ self._value)
             for name, (vector, turn) in carry.rates.items():
-                self._rates[name] = self._rise * (vector + position @ _cross(turn).T)
+                self._rates[name] = self._rise * (vector + position @ cross_matrix(turn).T)
         self._stretch = np.linalg.norm(t, axis=2)
         self._direction = t / self._stretch[:, :, None]
         self.strain = np.sum(self._share * self._stretch, axis=1) - 1
@@ -229,7 +224,7 @@ class FiberPotential:
         carry = self._body.carry()
         for name, rate in self._rates.items():
             assert carry is not None
-            turned = self._rise[..., None] * (_cross(carry.rates[name][1]) @ self._value)
+            turned = self._rise[..., None] * (cross_matrix(carry.rates[name][1]) @ self._value)
             border = _contract(rate, side) + _contract(pull[:, :, None] * n, turned)
             borders[name] = border + (stiff * self._e_q[name])[:, None] * self._b
             for other, last in self._rates.items():

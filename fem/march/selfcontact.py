@@ -8,13 +8,9 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from analytic.path import screw
 from fem.kinematics.kinematics import Kinematics
-from fem.kinematics.uniform import (
-    CURVATURE,
-    STRETCH,
-    TWIST,
-    Uniform,
-)
+from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST, Uniform
 from fem.march.frames import Frames, Shape
 from fem.march.records import State
 
@@ -162,7 +158,7 @@ class UniformRod:
         w = (1 - share) * old.w + share * new.w
         spin = np.array([scalars[CURVATURE], 0.0, scalars.get(TWIST, 0.0)])
         along = np.clip(self._z, 0.0, self._body.length)
-        rotation, centre = _helix(along, spin, scalars[STRETCH])
+        rotation, centre = screw(along, spin, scalars[STRETCH])
         centre = centre + rotation[:, :, 2] * (self._z - along)[:, None]
         bent = (self._z >= 0) & (self._z <= self._body.length)
         reach = np.where(bent[:, None], self._reach(w[self._dofs]), self._reach(0.0))
@@ -174,21 +170,6 @@ class UniformRod:
             x = np.vstack([x, x * [-1, 1]])
         reach: Floats = (x @ directions().T).max(axis=0)
         return reach
-
-
-def _helix(along: Floats, spin: Floats, stretch: float) -> tuple[Floats, Floats]:
-    """Rotations exp(z spin ×) and centres ∫ rotation · stretch e_z dz at some z."""
-    rate = float(np.linalg.norm(spin))
-    axis = spin / rate if rate else np.array([1.0, 0.0, 0.0])
-    x, y, z = axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    angle = (rate * along)[:, None, None]
-    rotation = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
-    # sin a / a and so on by sinc: no limit needed without spin
-    half = angle / 2
-    sinc, versine = np.sinc(angle / np.pi), np.sin(half) * np.sinc(half / np.pi)
-    mean = np.eye(3) + versine * cross + (1 - sinc) * (cross @ cross)
-    return rotation, stretch * along[:, None] * mean[:, :, 2]
 
 
 def first_contact(rod: Rod, old: State, new: State) -> float | None:

@@ -9,14 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
+from fem.kinematics.body import Body
+from fem.kinematics.cell import Cell
 from fem.kinematics.domain import Domain
-from fem.kinematics.kinematics import Body, Kinematics
-from fem.kinematics.uniform import (
-    Cell,
-    CurvatureAngle,
-    Section,
-    Uniform,
-)
+from fem.kinematics.kinematics import Kinematics
+from fem.kinematics.section import Section
+from fem.kinematics.uniform import CurvatureAngle, Uniform
 from fem.march.frames import Frames
 from fem.results.measures import BendingAngle
 from fem.scene import Scene

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from fem.effects.elastic import Elastic
 from fem.kinematics.domain import Domain
-from fem.kinematics.uniform import Section
+from fem.kinematics.section import Section
 from fem.march.frames import Frames
 from fem.march.records import State
 from fem.march.selfcontact import (

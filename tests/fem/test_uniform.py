@@ -13,15 +13,11 @@ from fem.effects.effect import Effect
 from fem.effects.incompressible import Incompressible
 from fem.effects.winding import SmearedWinding
 from fem.effects.winding import Winding as Discrete
+from fem.kinematics.cell import Cell
 from fem.kinematics.domain import Domain
 from fem.kinematics.kinematics import Kinematics
-from fem.kinematics.uniform import (
-    CURVATURE,
-    STRETCH,
-    TWIST,
-    Cell,
-    Section,
-)
+from fem.kinematics.section import Section
+from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
 from fem.scene import Scene
 from geometry.bodies.extrude import swept_section, swept_slice
 from geometry.sections.size import MeshSize

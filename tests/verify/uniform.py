@@ -15,12 +15,8 @@ from fem.effects.elastic import Elastic
 from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Symmetry, TwofoldAxis
 from fem.kinematics.domain import Domain
-from fem.kinematics.uniform import (
-    CURVATURE,
-    STRETCH,
-    TWIST,
-    Section,
-)
+from fem.kinematics.section import Section
+from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
 from fem.march.hooks import AfterStep
 from fem.march.march import March
 from fem.march.records import Ramp, Rules, State
