@@ -17,8 +17,8 @@ def upper_triangle(pattern: PETSc.Mat, ties: Ties) -> PETSc.Mat:
 
     Args:
         pattern: an assembled matrix with the full sparsity.
-        ties: what is inserted for the following dofs goes to the followed ones, which is TᵀKT with
-            the prolongation T.
+        ties: what is inserted for the following dofs goes to those that they follow, which is TᵀKT
+            with the prolongation T.
     """
     starts, columns, _ = pattern.getValuesCSR()
     first, end = pattern.getOwnershipRange()

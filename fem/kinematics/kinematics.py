@@ -72,9 +72,10 @@ class Kinematics:
         scalars: the global scalars, by name, that effects and kinematics declared.
         natural: those of them that are unknowns of the kinematics: at an equilibrium the
             potential is stationary in them.
-        pins: (node, component) held so that no rigid motion is left.
+        pins: (node, component) fixed so that no rigid motion is left.
         ties: local dofs that follow others, and these; on one rank only.
-        copies: how many of what is modelled the whole actuator is.
+        symmetry_factor: how many of what is modelled make up the whole actuator: two halves, or a
+            length over that of a slice.
     """
 
     def __init__(self, domain: Domain, fields: Iterable[str], components: int) -> None:
@@ -83,7 +84,7 @@ class Kinematics:
         self.natural: tuple[str, ...] = ()
         self.pins: tuple[tuple[int, int], ...] = ()
         self.ties: tuple[Dofs, Dofs] = (np.zeros(0, dtype=np.int32), np.zeros(0, dtype=np.int32))
-        self.copies = 2.0 if domain.data.half else 1.0
+        self.symmetry_factor = 2.0 if domain.data.half else 1.0
         cell = domain.data.cell_type
         wanted = set(fields)
         self.names = [name for name in FIELDS if name in wanted]

@@ -6,7 +6,7 @@ Positions are components x' = (X + u, Y + v, w) in a frame that turns with the s
     F = ∇x' + (λ0 e_z + ω × x') ⊗ e_z,
 
 exact for a prismatic body that bends and twists uniformly. λ0 is the stretch at the pin, where
-v = 0 is held: without it v + c and λ0 − k c would be the same state.
+v is fixed at zero: without it v + c and λ0 − k c would be the same state.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Uniform(Kinematics):
     ) -> None:
         super().__init__(domain, fields, components)
         self.length, self.extent, self.twisted = length, extent, twisted
-        self.copies *= length / extent
+        self.symmetry_factor *= length / extent
         self.natural = (CURVATURE, STRETCH, *((TWIST,) if twisted else ()))
         self.pins = ((domain.data.points["pin"], 1),)
         for name in self.natural:

@@ -31,7 +31,7 @@ SQUEEZED = 0.6
 MEETING = 0.1
 """Opposite walls so close, in parts of the chamber's height, meet."""
 SLACK = 0.5
-"""A winding holds nothing where so much of its length is slack."""
+"""A winding carries nothing where so much of its length is slack."""
 WHERE = {"post": "under the post", "roof": "under the roof", "clamp": "at the clamp"}
 """What is said of an element at a named surface."""
 
@@ -163,7 +163,7 @@ class Diagnosis:
         ]
 
     def _winding(self) -> list[str]:
-        """Fibers that hold nothing."""
+        """Fibers that carry nothing."""
         comm = self._scene.domain.comm
         for item in self._scene.discrete.values():
             if isinstance(item, FiberPotential) and item.tension_only:

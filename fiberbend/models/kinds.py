@@ -1,4 +1,4 @@
-"""What makes each finite-element model: its mesh, kinematics, followed angle and gauges."""
+"""What makes each finite-element model: its mesh, kinematics, control quantity and gauges."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from fem.kinematics.uniform import CurvatureAngle, Uniform
 from fem.march.frames import Frames
 from fem.results.measures import BendingAngle
 from fem.scene import Scene
-from fem.solver.closures import Functional
+from fem.solver.side_conditions import Functional
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.table import StraightEffect, WindingEffect
@@ -38,12 +38,12 @@ class Reading:
 
     Attributes:
         frames: rod frames of a body; None where the kinematics turns by itself.
-        followed: the bending angle.
+        control: the bending angle.
         gauge: makes the columns of the history; call it when the scene is at rest.
     """
 
     frames: Frames | None
-    followed: Functional
+    control: Functional
     gauge: Callable[[], Gauge]
 
 

@@ -118,7 +118,7 @@ def _pressure(effect: Any, case: Case, mesh: MeshData, parts: Parts) -> Parts:
     if effect.volume is not None:
         drive, target = "conjugate", effect.volume
     elif effect.angle is not None:
-        drive, target = "followed", effect.angle
+        drive, target = "control", effect.angle
     else:
         drive, target = "value", effect.to
     ramp = Ramp(

@@ -96,13 +96,13 @@ def assemble(
         newton,
         steered(rules, case) if leads is not None else rules,
         frames=frames,
-        control=reading.followed,
+        control=reading.control,
         guide=leads,
         rod=rod(scene, frames) if rod is not None else None,
         causes=Diagnosis(scene),
         hooks=[*approach, *hooks],
     )
-    return Assembly(parts, scene, reading, newton, march, parts.ramps(scene.body.copies))
+    return Assembly(parts, scene, reading, newton, march, parts.ramps(scene.body.symmetry_factor))
 
 
 def steered(rules: Rules, case: Case) -> Rules:

@@ -45,8 +45,8 @@ def _values(point: Critical, copies: float) -> dict[str, float]:
         values["chamber_mm3"] = copies * point.conjugate
     else:
         values["value"] = point.value
-    if point.followed is not None:
-        values["angle_deg"] = float(np.rad2deg(point.followed))
+    if point.control is not None:
+        values["angle_deg"] = float(np.rad2deg(point.control))
     return values
 
 
@@ -145,9 +145,9 @@ def _beyond(point: Critical) -> str:
 
 def _where(point: Critical) -> str:
     value = f"{1e3 * point.value:.4g} kPa" if point.scalar == "pressure" else f"{point.value:.4g}"
-    if point.followed is None:
+    if point.control is None:
         return value
-    return f"{value}, {_degrees(point.followed)}"
+    return f"{value}, {_degrees(point.control)}"
 
 
 def _degrees(angle: float) -> str:

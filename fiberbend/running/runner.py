@@ -13,7 +13,7 @@ from mpi4py import MPI
 from fem.effects.embedded_fibers import FiberPotential
 from fem.march.frames import Frames
 from fem.march.guide import Guide
-from fem.march.hooks import Hook, Steered
+from fem.march.hooks import Hook, Marching
 from fem.march.records import Ramp, Report, State
 from fem.march.selfcontact import Rod
 from fem.results.checkpoint import Archive
@@ -182,11 +182,11 @@ class _Run(Hook):
         states = _on_rank_0(self.comm, lambda: section_states(self.case))
         return states.guide(scene, frames, self.case.actuator.length) if states else None
 
-    def after_cutback(self, march: Steered, reason: str) -> None:
+    def after_cutback(self, march: Marching, reason: str) -> None:
         """Say so."""
         self.progress.message(f"increment cut back: {reason}")
 
-    def after_step(self, march: Steered, state: State, outcome: Outcome) -> None:
+    def after_step(self, march: Marching, state: State, outcome: Outcome) -> None:
         """Record the step, and where the march stands."""
         row = self.recorder.add(state, outcome)
         self._remark_stability()
@@ -231,7 +231,7 @@ class _Run(Hook):
 
     def _requested(self, state: State) -> str:
         """Label of the requested output that this state is, or nothing."""
-        angle = state.measures["followed"]
+        angle = state.measures["control"]
         for goal in self.case.output.at_angles:
             if abs(angle - goal) < 1e-6:
                 return f"{np.rad2deg(goal):03.0f}deg"
@@ -332,7 +332,7 @@ class _Run(Hook):
             "factorisations": report.factorisations,
             "cutbacks": report.cutbacks,
             "warnings": self.warnings,
-            "critical_points": messages.critical_points(report, scene.body.copies),
+            "critical_points": messages.critical_points(report, scene.body.symmetry_factor),
             "wall_s": self._wall(),
             "peak_memory_MB": round(memory, 1),
             "ranks": self.comm.size,
@@ -392,5 +392,5 @@ def _share(ramp: Ramp, state: State) -> float:
     """Part of a ramp that is done, by its load or by the angle at which it ends."""
     done = state.measures[ramp.key] / ramp.target
     if ramp.until:
-        done = max(done, state.measures["followed"] / ramp.until)
+        done = max(done, state.measures["control"] / ramp.until)
     return float(np.clip(done, 0.0, 1.0))

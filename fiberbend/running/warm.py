@@ -55,7 +55,7 @@ class SectionStates:
         """The guide of a body."""
         measures = {}
         for name, values in self.measures.items():
-            share = scene.body.copies if name.startswith("conjugate") else 1.0
+            share = scene.body.symmetry_factor if name.startswith("conjugate") else 1.0
             measures[name] = values / share
         return Guide(
             scene.body,
@@ -109,8 +109,8 @@ def section_states(case: Case) -> SectionStates | None:
     assembly.march.run(assembly.ramps)
     if len(states) < 4:
         return None
-    copies = assembly.scene.body.copies
-    names = [measure(kind, PRESSURE) for kind in ("value", "followed", "conjugate")]
+    copies = assembly.scene.body.symmetry_factor
+    names = [measure(kind, PRESSURE) for kind in ("value", "control", "conjugate")]
     measures = {}
     for name in names:
         values = np.array([state.measures[name] for state in states])

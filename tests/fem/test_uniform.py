@@ -109,7 +109,7 @@ class _Bordered:
         a.array_w[:] = v[:owned]
         matrix.mult(a, b)
         columns = np.array([scene.load(name, constrained=True) for name in self.names])
-        corner = [[scene.corner(i, j) for j in self.names] for i in self.names]
+        corner = [[scene.second_derivative(i, j) for j in self.names] for i in self.names]
         field = b.array_r + v[owned:] @ columns
         held = ~scene.free[:owned]
         field[held] = 0.0
@@ -167,7 +167,7 @@ def test_volume_of_an_undeformed_section_swept_along_an_arc(model: str, twisted:
             scene.set_scalar(key, value)
     scene.set(np.zeros(scene.body.owned))
     area, moment = np.pi * 8**2 / 2, 2 / 3 * 8**3 + np.pi * 8**2 / 2 * 2
-    per_length = scene.conjugate("pressure") * scene.body.copies / SHORT.length
+    per_length = scene.conjugate("pressure") * scene.body.symmetry_factor / SHORT.length
     # quadratic arcs of 22.5° lose 5e-5 of the area
     assert per_length == pytest.approx(stretch * area + k * moment, rel=1e-4)
 
