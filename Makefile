@@ -10,7 +10,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo sweep test verify hard speed tables check format schema clean
+.PHONY: help setup demo sweep test verify hard speed tables check format docs schema clean
 
 help: ## list the commands
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -50,6 +50,9 @@ check: setup ## lint, format and types
 format: setup ## put the code in its format
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+
+docs: setup ## rewrite the tables of columns in README and docs
+	$(BIN)/python bench/columns.py
 
 schema: setup ## rewrite the JSON schema that editors use
 	$(BIN)/fiberbend schema > cases/case.schema.json

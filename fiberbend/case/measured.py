@@ -9,15 +9,14 @@ from __future__ import annotations
 import dataclasses
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from analytic.table import read_columns
+from fiberbend import columns as col
 from fiberbend.case.case import Case
 
 if TYPE_CHECKING:
     from geometry.mesh.data import Floats
-
-Quantity = Literal["angle_deg", "tip_force_N"]
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -31,7 +30,7 @@ class Measured:
         source: name of the file.
     """
 
-    quantity: Quantity
+    quantity: str
     pressure: Floats
     value: Floats
     source: str
@@ -40,13 +39,13 @@ class Measured:
         """The points as plots and tables show them: kPa, and degrees or N, (n,) each."""
         import numpy as np
 
-        value = np.degrees(self.value) if self.quantity == "angle_deg" else self.value
+        value = np.degrees(self.value) if self.quantity == col.ANGLE else self.value
         return 1e3 * self.pressure, value
 
 
-def expected_quantity(blocked: bool) -> Quantity:
+def expected_quantity(blocked: bool) -> str:
     """What a measurement has to hold beside pressure_kPa."""
-    return "tip_force_N" if blocked else "angle_deg"
+    return col.TIP_FORCE if blocked else col.ANGLE
 
 
 def what_is_wrong(file: str, blocked: bool) -> str | None:
@@ -62,7 +61,7 @@ def what_is_wrong(file: str, blocked: bool) -> str | None:
     wanted = f"columns pressure_kPa and {expected_quantity(blocked)}"
     path = Path(file)
     try:
-        read_columns(path, ("pressure_kPa", expected_quantity(blocked)))
+        read_columns(path, (col.PRESSURE, expected_quantity(blocked)))
     except FileNotFoundError:
         return f'"{file}", no such file, expected a CSV file with {wanted}'
     except OSError as error:
@@ -85,7 +84,7 @@ def read_measured(case: Case) -> Measured | None:
     if file is None:
         return None
     quantity = expected_quantity(case.straight)
-    pressure, value = np.array(read_columns(Path(file), ("pressure_kPa", quantity))).T
-    if quantity == "angle_deg":
+    pressure, value = np.array(read_columns(Path(file), (col.PRESSURE, quantity))).T
+    if quantity == col.ANGLE:
         value = value * (math.pi / 180)
     return Measured(quantity, 1e-3 * pressure, value, Path(file).name)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fiberbend import columns as col
 from fiberbend.case.case import Case
 from fiberbend.case.measured import read_measured
 from fiberbend.case.section_beside import MODEL, as_section
@@ -43,10 +44,10 @@ def check_run(
     measured = read_measured(case)
     if case.inflation is None or solve is None or model.name == MODEL:
         return crosscheck(case, model, rows, measured=measured)
-    keys = ("angle_deg", "uniform_angle_deg")
+    keys = (col.ANGLE, col.UNIFORM_ANGLE)
     furthest = max((row[key] for row in rows for key in keys if row.get(key) is not None), key=abs)
     if case.straight:
-        reached = 1e-3 * max((row["pressure_kPa"] for row in rows), key=abs)
+        reached = 1e-3 * max((row[col.PRESSURE] for row in rows), key=abs)
         if reached == 0:
             return crosscheck(case, model, rows, measured=measured)
         straight, reason = _straight(case, reached, solve)
@@ -72,7 +73,7 @@ def section_curve(case: Case, angle: float, solve: Callable[[Case], RunResult]) 
         solve: solves a section.
     """
     result = solve(as_section(case, inflate(angle=angle)))
-    columns = ("pressure_kPa", "angle_deg", "chamber_mm3")
+    columns = (col.PRESSURE, col.ANGLE, col.VOLUME)
     kpa, degrees, volume = (np.array([row[name] for row in result.rows]) for name in columns)
     return Curve(1e-3 * kpa, np.deg2rad(degrees), volume, result.reason)
 
@@ -87,7 +88,7 @@ def _straight(
     )
     effects = (*section.effects, straight_of(case.effects))
     result = solve(section.model_copy(update={"effects": effects, "output": output}))
-    states = [(row["pressure_kPa"], row.get("blocked_moment_Nmm")) for row in result.rows]
+    states = [(row[col.PRESSURE], row.get(col.MOMENT)) for row in result.rows]
     known = [(0.0, 0.0), *((1e-3 * p, m) for p, m in states if m is not None and p != 0)]
     if len(known) < 2:
         return None, result.reason

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from analytic.bending import Hemicircle
+from fiberbend import columns as col
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.compare.others import Other
@@ -83,14 +84,14 @@ def find(case: Case, model: ModelKind, row: Row, other: Other, value: float) -> 
         found = _of_closed_form(case, model, row, curves[other.line], curves)
         return [*_ends(model, row, other), *found]
     if model.elements() is None:
-        seen = {"angle_deg": row["angle_deg"], "pressure_kPa": value}
+        seen = {col.ANGLE: row[col.ANGLE], col.PRESSURE: value}
         found = _of_closed_form(case, model, seen, curves["zero-fit"], curves)
         return [cause.reversed() for cause in found]
     return [*_ends(model, row, other), *_fibers(case, model, row)]
 
 
 def _ends(model: ModelKind, row: Row, other: Other) -> list[Cause]:
-    middle, whole = row.get("uniform_angle_deg"), row["angle_deg"]
+    middle, whole = row.get(col.UNIFORM_ANGLE), row[col.ANGLE]
     if not model.ends or not middle:
         return []
     percent = 100 * float(other.value(np.array(middle)) / other.value(np.array(whole)) - 1)
@@ -104,7 +105,7 @@ def _fibers(case: Case, model: ModelKind, row: Row) -> list[Cause]:
     turns, part = case.turns, model.resolved(case)
     if turns is None or part == 0:
         return []
-    percent = part * bulging(turns.pitch, row["angle_deg"])
+    percent = part * bulging(turns.pitch, row[col.ANGLE])
     text = (
         f"rubber bulges between the turns of a pitch of {turns.pitch:g} mm, and no smeared "
         f"winding sees it: about {percent:+.1f} %"
@@ -117,14 +118,14 @@ def _of_closed_form(
 ) -> list[Cause]:
     """What sets a finite-element model apart from a section that keeps its shape."""
     own, wide = curves["zero-fit"], curves["winding"]
-    angle = math.radians(row["angle_deg"])
+    angle = math.radians(row[col.ANGLE])
     needs = float(closed.pressure(angle))
     found = []
     if closed is curves["paper"]:
         percent = 100 * (float(own.pressure(angle)) / needs - 1)
         text = f"the paper's μ̄ was calibrated; wall and sheath by their own laws: {percent:+.0f} %"
         found.append(Cause("effective modulus", percent, text))
-    reach = float(own.moment(angle)) / (1e-3 * row["pressure_kPa"])
+    reach = float(own.moment(angle)) / (1e-3 * row[col.PRESSURE])
     if closed is not wide and own.kappa < reach <= 1.1 * wide.kappa:
         text = (
             f"M_θ/P is {reach:.0f} mm³, between {own.kappa:.0f} mm³ of the chamber and "
@@ -155,7 +156,7 @@ def _floor_bulging(row: Row, wide: Hemicircle, angle: float) -> list[Cause]:
     Rubber keeps its volume, so that in an outline of unchanged shape the chamber grows with the
     outline, by κ_w θ.
     """
-    volume = row.get("chamber_mm3")
+    volume = row.get(col.VOLUME)
     if volume is None:
         return []
     straight = math.pi * wide.radius**2 / 2 * wide.length
@@ -168,8 +169,8 @@ def _floor_bulging(row: Row, wide: Hemicircle, angle: float) -> list[Cause]:
 
 def _of_force(case: Case, row: Row, force: float) -> list[Cause]:
     """What sets F of a blocked tip apart from M/L_f of a section held straight."""
-    lever, pressure = lever_arm(case), 1e-3 * row["pressure_kPa"]
-    kappa, reach = force * lever / pressure, row["tip_force_N"] * lever / pressure
+    lever, pressure = lever_arm(case), 1e-3 * row[col.PRESSURE]
+    kappa, reach = force * lever / pressure, row[col.TIP_FORCE] * lever / pressure
     curves, found = analytic_curves(case), []
     wide = curves["winding"].kappa if curves else kappa
     if kappa < reach <= 1.1 * wide:
@@ -178,7 +179,7 @@ def _of_force(case: Case, row: Row, force: float) -> list[Cause]:
             f"the chamber, at most on {wide:.0f} mm³"
         )
         found.append(Cause("acting area", 100 * (wide / kappa - 1), text))
-    rotation = row.get("angle_deg") or 0.0
+    rotation = row.get(col.ANGLE) or 0.0
     if abs(rotation) > _ROTATED:
         text = f"the tip is guided, not held: the section z = L turns by {rotation:.1f}°"
         found.append(Cause("guided tip", None, text, -1))

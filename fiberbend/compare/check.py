@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from analytic.bending import Hemicircle
 from analytic.calibration import calibrate
 from analytic.stress import Floats
+from fiberbend import columns as col
 from fiberbend.case.case import Case
 from fiberbend.case.measured import Measured
 from fiberbend.compare import causes as why
@@ -178,7 +179,7 @@ def crosscheck(
         return nothing
     blocked = case.straight
     alone = _alone(case)
-    columns = ("pressure_kPa", "tip_force_N") if blocked else ("angle_deg", "pressure_kPa")
+    columns = (col.PRESSURE, col.TIP_FORCE) if blocked else (col.ANGLE, col.PRESSURE)
     others = (
         force_models(case, model.name, straight)
         if blocked
@@ -261,7 +262,7 @@ def _unresolved(
     turns = case.turns
     if turns is None or not turns.discrete or not model.ends:
         return []
-    greatest = max(abs(row["angle_deg"]) for row in rows)
+    greatest = max(abs(row[col.ANGLE]) for row in rows)
     lost = (1 - model.resolved(case)) * bulging(turns.pitch, greatest)
     if "section" not in others or lost < _LEAST_LOSS:
         return []

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from fiberbend import columns as col
 from fiberbend.drawing.labels import Labels
 from fiberbend.drawing.overlay import (
     MODELS,
@@ -40,9 +41,9 @@ _SAME_ANGLE = 0.05
 _LONG = 40
 _ROOM = 2.0
 _TINY = 1e-6
-_ANGLE = ("pressure_kPa", "angle_deg")
-_PATH = ("tip_z_mm", "tip_y_mm", "pressure_kPa")
-_FORCE = ("pressure_kPa", "tip_force_N")
+_ANGLE = (col.PRESSURE, col.ANGLE)
+_PATH = (col.TIP_Z, col.TIP_Y, col.PRESSURE)
+_FORCE = (col.PRESSURE, col.TIP_FORCE)
 
 
 def plot_pressure_angle(

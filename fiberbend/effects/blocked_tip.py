@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from fiberbend import columns as col
 from fiberbend.effects.effect import ENDS, STRIPS, Built, Effect, Requests, Site
 from fiberbend.schema.quantities import Length
 
@@ -79,18 +80,18 @@ def tip_force_summary(site: Site, strips: Strips, row: Mapping[str, Any]) -> dic
         strips: L_f reaches from z = L to the middle of the post.
         row: the last row of the history; nothing is said of one without a load.
     """
-    if "tip_force_N" not in row:
+    if col.TIP_FORCE not in row:
         return {}
     lever = site.actuator.cap - strips.post_length / 2
     return {
         "blocked_tip": {
             "L_f_mm": lever,
-            "tip_force_N": row["tip_force_N"],
-            "roof_force_N": row["roof_force_N"],
-            "F_L_f_Nmm": row["tip_force_N"] * lever,
-            "kappa_P_Nmm": site.actuator.chamber_moment * row["pressure_kPa"] * 1e-3,
-            "tip_section_rotation_deg": row["angle_deg"],
-            "balance_force": row["balance_force"],
-            "balance_moment": row["balance_moment"],
+            col.TIP_FORCE: row[col.TIP_FORCE],
+            col.ROOF_FORCE: row[col.ROOF_FORCE],
+            "F_L_f_Nmm": row[col.TIP_FORCE] * lever,
+            "kappa_P_Nmm": site.actuator.chamber_moment * row[col.PRESSURE] * 1e-3,
+            "tip_section_rotation_deg": row[col.ANGLE],
+            col.BALANCE_FORCE: row[col.BALANCE_FORCE],
+            col.BALANCE_MOMENT: row[col.BALANCE_MOMENT],
         }
     }

@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from fiberbend import columns as col
 from fiberbend.effects.blocked_tip import tip_force_summary
 from fiberbend.effects.clearance import from_bar, over_plane
 from fiberbend.effects.effect import SPACE, Built, Draft, Effect, Requests, Site
@@ -217,8 +218,8 @@ class ContactEffect(Effect):
             changes = [i for i in range(1, len(rows)) if touching[i] != touching[i - 1]]
             depth = max(-row.get(f"contact_{name}_gap_mm", 0.0) for row in rows)
             entry[name] = {
-                "touched_at_kPa": [rows[i]["pressure_kPa"] for i in changes if touching[i]],
-                "left_at_kPa": [rows[i]["pressure_kPa"] for i in changes if not touching[i]],
+                "touched_at_kPa": [rows[i][col.PRESSURE] for i in changes if touching[i]],
+                "left_at_kPa": [rows[i][col.PRESSURE] for i in changes if not touching[i]],
                 "force_y_N": rows[-1].get(f"contact_{name}_y_N"),
                 "force_z_N": rows[-1].get(f"contact_{name}_z_N"),
                 "greatest_depth_mm": max(depth, 0.0),

@@ -16,6 +16,7 @@ from fem.results.measures import (
 )
 from fem.results.touch import probes
 from fem.scene import Scene
+from fiberbend import columns as col
 from geometry.actuator import Actuator
 
 
@@ -42,7 +43,7 @@ class BodyGauge:
     def columns(self, state: State) -> dict[str, float]:
         """The angle without end effects."""
         assert state.shape is not None
-        return {"uniform_angle_deg": float(np.rad2deg(self._uniform.value(state.shape)))}
+        return {col.UNIFORM_ANGLE: float(np.rad2deg(self._uniform.value(state.shape)))}
 
     def last_columns(self, state: State) -> dict[str, float]:
         """What holds the body, and what it touches."""
@@ -60,7 +61,7 @@ class BodyGauge:
         row["clamp_moment_x_Nmm"] = float(supports["clamp"].moment[0])
         row |= self._contacts(supports)
         if self._guided or any(row[f"contact_{name}_area_mm2"] for name in self._probes):
-            row |= {"balance_force": found.force, "balance_moment": found.moment}
+            row |= {col.BALANCE_FORCE: found.force, col.BALANCE_MOMENT: found.moment}
         return row
 
     def _contacts(self, supports: dict[str, Resultant]) -> dict[str, float]:
@@ -108,11 +109,11 @@ class UniformGauge:
         scalars = state.scalars
         height = self._height + float(state.w[self._top])
         row = {
-            "axis_stretch": scalars[STRETCH],
-            "crown_stretch": scalars[STRETCH] + scalars[CURVATURE] * height,
+            col.AXIS_STRETCH: scalars[STRETCH],
+            col.CROWN_STRETCH: scalars[STRETCH] + scalars[CURVATURE] * height,
         }
         if TWIST in scalars:
-            row["twist_deg"] = float(np.rad2deg(scalars[TWIST] * self._actuator.length))
+            row[col.TWIST] = float(np.rad2deg(scalars[TWIST] * self._actuator.length))
         return row
 
     def last_columns(self, state: State) -> dict[str, float]:
@@ -120,7 +121,7 @@ class UniformGauge:
         if not self._straight:
             return {}
         moment = self._per_length * state.measures[f"conjugate {CURVATURE}"]
-        row = {"tip_force_N": moment / self._actuator.cap, "blocked_moment_Nmm": moment}
+        row = {col.TIP_FORCE: moment / self._actuator.cap, col.MOMENT: moment}
         if STRETCH not in self._scene.natural:
-            row["axial_force_N"] = self._per_length * state.measures[f"conjugate {STRETCH}"]
+            row[col.AXIAL_FORCE] = self._per_length * state.measures[f"conjugate {STRETCH}"]
         return row

@@ -11,6 +11,7 @@ from analytic.bending import Hemicircle
 from analytic.inverse import first_angle
 from analytic.path import tip
 from analytic.stress import Floats
+from fiberbend import columns as col
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.measured import read_measured
@@ -80,11 +81,11 @@ def run_analytic(
         "assumptions": assumptions(case),
     }
     run |= beside(check)
-    if "tip_force_N" in last:
+    if col.TIP_FORCE in last:
         run["blocked_tip"] = {
             "L_f_mm": lever_arm(case),
-            "tip_force_N": last["tip_force_N"],
-            "F_L_f_Nmm": last["tip_force_N"] * lever_arm(case),
+            col.TIP_FORCE: last[col.TIP_FORCE],
+            "F_L_f_Nmm": last[col.TIP_FORCE] * lever_arm(case),
         }
     if folder is not None:
         folder.write_history(rows)
@@ -106,14 +107,14 @@ def _row(step: int, pressure: float, angle: float, case: Case, model: Hemicircle
     along, down = tip(angle, model.length, body.cap, body.face_height)
     volume = body.chamber_volume + body.chamber_moment * angle
     return {
-        "step": step,
-        "pressure_kPa": 1e3 * pressure,
-        "angle_deg": math.degrees(angle),
-        "tip_y_mm": -float(down),
-        "tip_z_mm": float(along),
-        "chamber_mm3": volume,
-        "newton_iterations": 0,
-        "uniform_angle_deg": math.degrees(angle),
+        col.STEP: step,
+        col.PRESSURE: 1e3 * pressure,
+        col.ANGLE: math.degrees(angle),
+        col.TIP_Y: -float(down),
+        col.TIP_Z: float(along),
+        col.VOLUME: volume,
+        col.ITERATIONS: 0,
+        col.UNIFORM_ANGLE: math.degrees(angle),
     }
 
 
@@ -126,7 +127,7 @@ def _blocked_rows(case: Case, model: Hemicircle) -> list[dict[str, Any]]:
     rows = []
     for step, value in enumerate(steps):
         row = _row(step, float(value), 0.0, case, model)
-        row["tip_force_N"] = float(model.force(value, lever_arm(case)))
+        row[col.TIP_FORCE] = float(model.force(value, lever_arm(case)))
         rows.append(row)
     return rows
 

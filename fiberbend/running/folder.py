@@ -14,23 +14,12 @@ from typing import IO, Any
 
 import yaml
 
+from fiberbend import columns as col
 from fiberbend.case.case import Case
 from fiberbend.schema.paths import differences, value_at
 from fiberbend.schema.problems import CaseError, Problem, found
 
-HISTORY_COLUMNS = (
-    "step",
-    "pressure_kPa",
-    "angle_deg",
-    "tip_y_mm",
-    "tip_z_mm",
-    "chamber_mm3",
-    "tip_force_N",
-    "newton_iterations",
-    "min_det_F",
-    "fiber_min_N",
-    "fiber_max_N",
-)
+HISTORY_COLUMNS = tuple(column.name for column in col.COLUMNS if column.always)
 """First columns of history.csv, in this order; scripts rely on them."""
 
 RUN_KEYS = (
@@ -132,8 +121,13 @@ class RunFolder:
 
         Args:
             rows: all steps so far; what a row does not hold stays empty.
+
+        Raises:
+            KeyError: a column that the table of columns does not have.
         """
         columns = list(dict.fromkeys([*HISTORY_COLUMNS, *(key for row in rows for key in row)]))
+        for key in columns:
+            col.column(key)
         text = io.StringIO()
         writer = csv.DictWriter(text, columns, restval="", lineterminator="\n")
         writer.writeheader()

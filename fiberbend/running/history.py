@@ -11,6 +11,7 @@ from fem.effects.embedded_fibers import FiberPotential
 from fem.march.records import MODES, State
 from fem.scene import Scene
 from fem.solver.newton import Outcome
+from fiberbend import columns as col
 from fiberbend.models.model import Gauge
 
 Floats = npt.NDArray[np.float64]
@@ -27,6 +28,7 @@ class Recorder:
     Args:
         scene: the scene whose states are recorded.
         gauge: what the model reads off a state.
+        model: name of the model, which says which columns there are.
         rest: the state before any load, at which the scene is unless there are rows.
         rows: those of a run that is resumed.
 
@@ -35,9 +37,14 @@ class Recorder:
     """
 
     def __init__(
-        self, scene: Scene, gauge: Gauge, rest: State, rows: list[dict[str, Any]] | None = None
+        self,
+        scene: Scene,
+        gauge: Gauge,
+        model: str,
+        rest: State,
+        rows: list[dict[str, Any]] | None = None,
     ) -> None:
-        self._scene = scene
+        self._scene, self._model = scene, model
         self._gauge = gauge
         self._factor = scene.body.symmetry_factor
         self.rows = rows if rows is not None else [self._row(0, rest, None)]
@@ -58,41 +65,43 @@ class Recorder:
         """
         work, doubt = self._work()
         for row, value in zip(self.rows, np.cumsum(work), strict=True):
-            row["work_mJ"] = float(value)
-        return departures(work, doubt, np.array([row["stored_mJ"] for row in self.rows]))
+            row[col.WORK] = float(value)
+        return departures(work, doubt, np.array([row[col.STORED] for row in self.rows]))
 
     def _row(self, step: int, state: State, outcome: Outcome | None) -> dict[str, Any]:
         scene = self._scene
         tip = self._gauge.tip(state)
         row: dict[str, Any] = {
-            "step": step,
-            "pressure_kPa": 1e3 * state.scalars.get("pressure", 0.0),
-            "angle_deg": float(np.rad2deg(state.measures["control"])),
-            "tip_y_mm": tip[0],
-            "tip_z_mm": tip[1],
+            col.STEP: step,
+            col.PRESSURE: 1e3 * state.scalars.get("pressure", 0.0),
+            col.ANGLE: float(np.rad2deg(state.measures["control"])),
+            col.TIP_Y: tip[0],
+            col.TIP_Z: tip[1],
         }
         if "pressure" in state.scalars:
-            row["chamber_mm3"] = self._factor * state.measures["conjugate pressure"]
+            row[col.VOLUME] = self._factor * state.measures["conjugate pressure"]
         row |= self._gauge.columns(state)
-        row["newton_iterations"] = outcome.iterations if outcome else 0
-        row["min_det_F"] = outcome.least_det_f if outcome else 1.0
+        row[col.ITERATIONS] = outcome.iterations if outcome else 0
+        row[col.DET_F] = outcome.least_det_f if outcome else 1.0
         for discrete in scene.discrete.values():
             if isinstance(discrete, FiberPotential):
-                row["fiber_min_N"], row["fiber_max_N"] = discrete.force_range()
+                row[col.FIBER_MIN], row[col.FIBER_MAX] = discrete.force_range()
         energies = scene.energies()
         names = [name for name in state.scalars if name not in scene.body.natural]
         loads = {name: state.measures[f"conjugate {name}"] for name in names}
         stored = sum(energies.values()) + sum(state.scalars[n] * v for n, v in loads.items())
-        row["work_mJ"] = 0.0
-        row["stored_mJ"] = self._factor * stored
+        row[col.WORK] = 0.0
+        row[col.STORED] = self._factor * stored
         for key, energy in energies.items():
             row[f"energy {key} mJ"] = self._factor * energy
         for name, value in loads.items():
             row[f"load {name}"] = state.scalars[name]
             row[f"conjugate {name}"] = self._factor * value
         if outcome is not None:
-            row["unstable_modes"] = int(state.measures[MODES])
+            row[col.MODES] = int(state.measures[MODES])
             row |= self._gauge.last_columns(state)
+        row |= col.read(self._model, scene, state)
+        col.check(row, self._model)
         return row
 
     def _work(self) -> tuple[Floats, Floats]:

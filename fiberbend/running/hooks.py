@@ -11,6 +11,7 @@ from fem.march.hooks import Hook, Marching
 from fem.march.records import Ramp, State
 from fem.results.checkpoint import Archive
 from fem.solver.newton import Outcome
+from fiberbend import columns as col
 from fiberbend.case.case import Case
 from fiberbend.running import messages, restart
 from fiberbend.running.assembly import Assembly
@@ -60,10 +61,10 @@ class Recording(Hook):
         row = self._recorder.add(state, outcome)
         self.warn(messages.remarks(march.position.report))
         self._progress.step(
-            row["step"],
+            row[col.STEP],
             self._fraction(march.position.ramp, state),
-            row["pressure_kPa"],
-            row["angle_deg"],
+            row[col.PRESSURE],
+            row[col.ANGLE],
             outcome.iterations,
         )
         label = self._requested(state)
@@ -90,7 +91,7 @@ class Recording(Hook):
         if self._folder is None or not (output.fields or output.pictures):
             return
         row = self._recorder.rows[-1]
-        if label == "last" and any(s.step == row["step"] for s in self.snapshots):
+        if label == "last" and any(s.step == row[col.STEP] for s in self.snapshots):
             return
         displacement, multiplier = self._archive.displacement(), self._archive.multiplier()
         if displacement is None or multiplier is None:
@@ -99,9 +100,9 @@ class Recording(Hook):
         scene = self._assembly.scene
         shot = Snapshot(
             label=label,
-            step=row["step"],
-            pressure_kpa=row["pressure_kPa"],
-            angle_deg=row["angle_deg"],
+            step=row[col.STEP],
+            pressure_kpa=row[col.PRESSURE],
+            angle_deg=row[col.ANGLE],
             displacement=displacement,
             multiplier=multiplier,
             fiber_force=self._archive.fiber_force(),
@@ -141,10 +142,10 @@ def ended(case: Case, assembly: Assembly, rows: Sequence[dict[str, Any]]) -> tup
         row = rows[-1]
         return "failed", (
             f"{report.reason} after {report.cutbacks} cut-backs; last converged state: "
-            f"{row['pressure_kPa']:.4g} kPa, {row['angle_deg']:.4g}°"
+            f"{row[col.PRESSURE]:.4g} kPa, {row[col.ANGLE]:.4g}°"
         )
     output = case.output
-    reached = max(row["angle_deg"] for row in rows)
+    reached = max(row[col.ANGLE] for row in rows)
     wanted = [np.rad2deg(a) for a in (*output.at_angles, output.stop_at_angle) if a]
     missed = [f"{a:g}°" for a in wanted if a > reached + 1e-6]
     if missed:

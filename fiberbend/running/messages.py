@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from fem.march.records import Critical, Report
+from fiberbend import columns as col
 
 UNSTABLE_END = (
     "the end is unstable where every load is held at its value: given the pressure, no actuator "
@@ -37,12 +38,12 @@ def critical_points(report: Report, symmetry_factor: float) -> list[dict[str, An
 def _values(point: Critical, symmetry_factor: float) -> dict[str, float]:
     values: dict[str, float] = {}
     if point.scalar == "pressure":
-        values["pressure_kPa"] = 1e3 * point.value
-        values["chamber_mm3"] = symmetry_factor * point.conjugate
+        values[col.PRESSURE] = 1e3 * point.value
+        values[col.VOLUME] = symmetry_factor * point.conjugate
     else:
         values["value"] = point.value
     if point.control is not None:
-        values["angle_deg"] = float(np.rad2deg(point.control))
+        values[col.ANGLE] = float(np.rad2deg(point.control))
     return values
 
 
@@ -96,7 +97,7 @@ def stopped(report: Report, target: str, beyond: float) -> str:
 
 def jumped(before: dict[str, Any], after: dict[str, Any]) -> str:
     """A line on a step that has left its branch, from the rows at its ends."""
-    ends = f"{before['pressure_kPa']:.4g} and {after['pressure_kPa']:.4g} kPa"
+    ends = f"{before[col.PRESSURE]:.4g} and {after[col.PRESSURE]:.4g} kPa"
     return (
         f"between {ends} the stored energy changes by what no load has done: the run may have "
         "gone to a neighbouring state there; shorter steps (solver.max_turn) may stay on one branch"

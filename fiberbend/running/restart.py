@@ -10,6 +10,7 @@ import numpy as np
 
 from fem.march.position import Position
 from fem.results.checkpoint import Archive
+from fiberbend import columns as col
 from fiberbend.running.folder import RunFolder
 from fiberbend.states.snapshot import Snapshot
 
@@ -57,7 +58,7 @@ def load(folder: RunFolder, archive: Archive) -> Saved | None:
         with np.load(shot) as file:
             entries = {k: file[k] if file[k].ndim else file[k].item() for k in file.files}
         snapshot = Snapshot(**{"fiber_force": None, **entries})
-        if snapshot.step <= rows[-1]["step"] and snapshot.label != "last":
+        if snapshot.step <= rows[-1][col.STEP] and snapshot.label != "last":
             snapshots.append(snapshot)
     return Saved(
         archive.unpack(arrays), rows, sorted(snapshots, key=lambda snapshot: snapshot.step)

@@ -13,6 +13,7 @@ from fem.march.frames import Frames
 from fem.march.guide import Guide
 from fem.results.checkpoint import Archive
 from fem.scene import Scene
+from fiberbend import columns as col
 from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
 from fiberbend.models.choice import choose_model
@@ -173,7 +174,7 @@ class _Run:
         if saved is not None:
             march.resume(saved.position)
         rows = None if saved is None else saved.rows
-        recorder = Recorder(assembly.scene, gauge, march.rest, rows)
+        recorder = Recorder(assembly.scene, gauge, self.model.name, march.rest, rows)
         recording = Recording(
             self.case,
             assembly,
@@ -186,7 +187,7 @@ class _Run:
         )
         if again:
             recording.warn(messages.remarks(march.report))
-            self.progress.message(f"resumed after step {recorder.rows[-1]['step']}")
+            self.progress.message(f"resumed after step {recorder.rows[-1][col.STEP]}")
         return recorder, recording
 
     # --- after the march -----------------------------------------------------------------------
@@ -195,7 +196,7 @@ class _Run:
         """Say what only a whole history shows: jumps, and an end at which nothing would rest."""
         jumps, rows = recorder.integrate(), recorder.rows
         lines = [messages.jumped(rows[step - 1], rows[step]) for step in jumps]
-        if status == "converged" and rows[-1].get("unstable_modes"):
+        if status == "converged" and rows[-1].get(col.MODES):
             lines.append(messages.UNSTABLE_END)
         recording.warn(lines)
 

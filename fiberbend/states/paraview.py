@@ -13,6 +13,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from fiberbend import columns as col
 from fiberbend.states.fiber_lines import fiber_lines
 from fiberbend.states.recovery import (
     NodalFields,
@@ -82,8 +83,8 @@ def body_grid(
     place[[mesh.regions[name] for name in names]] = np.arange(len(names))
     grid.cell_data["material"] = place[mesh.cell_region]
     grid.field_data["material_names"] = names
-    grid.field_data["pressure_kPa"] = [snapshot.pressure_kpa]
-    grid.field_data["angle_deg"] = [snapshot.angle_deg]
+    grid.field_data[col.PRESSURE] = [snapshot.pressure_kpa]
+    grid.field_data[col.ANGLE] = [snapshot.angle_deg]
     return grid
 
 

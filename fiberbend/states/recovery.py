@@ -163,9 +163,15 @@ def cauchy_stress(material: Material, f: Floats, multiplier: Floats) -> Floats:
         multiplier: p, (...), MPa.
 
     Returns:
-        Cauchy stress, (..., 3, 3), MPa.
+        Cauchy stress, (..., 3, 3), MPa; not a number where J ≤ 0, as between the points at which an
+        extreme state was solved.
     """
     jacobian = np.linalg.det(f)[..., None, None]
+    if not np.all(jacobian > 0):
+        right = jacobian[..., 0, 0] > 0
+        stress: Floats = np.full(f.shape, np.nan)
+        stress[right] = cauchy_stress(material, f[right], multiplier[right])
+        return stress
     squares, axes = np.linalg.eigh(jacobian ** (-2 / 3) * (f @ f.swapaxes(-1, -2)))
     principal = np.stack(material.principal(*np.moveaxis(np.sqrt(squares), -1, 0)), axis=-1)
     shape = (axes * principal[..., None, :]) @ axes.swapaxes(-1, -2)

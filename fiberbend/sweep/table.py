@@ -12,6 +12,7 @@ from typing import Any
 
 from analytic.bending import Hemicircle
 from analytic.stress import CALIBRATED_MODULUS
+from fiberbend import columns as col
 from fiberbend.case.case import Case
 from fiberbend.models.closed_form import analytic_curves, lever_arm
 from fiberbend.schema.units import show
@@ -31,12 +32,12 @@ CAPTIONS = {
     "winding_force": "analytical, pressure acting up to the winding",
 }
 """What readers call the analytical lines that are drawn."""
-MODEL_STRETCH = "crown_stretch"
+MODEL_STRETCH = col.CROWN_STRETCH
 """Column of history.csv with the axial stretch of the wall's crown."""
 BLOCKED_COLUMNS = {
-    "blocked_force_N": "tip_force_N",
-    "blocked_moment_Nmm": "blocked_moment_Nmm",
-    "blocked_axis_stretch": "axis_stretch",
+    "blocked_force_N": col.TIP_FORCE,
+    col.MOMENT: col.MOMENT,
+    "blocked_axis_stretch": col.AXIS_STRETCH,
 }
 """Columns of the table from the history of the body held straight."""
 _SAME = 1e-6
@@ -134,17 +135,15 @@ def _results(point: Point, report: Report, store: Store) -> Row:
         "solved_by": run["model"] if run else None,
     }
     for angle in report.angles:
-        row[pressure_column(angle)] = where(
-            history, "angle_deg", math.degrees(angle), "pressure_kPa"
-        )
-    row["end_pressure_kPa"] = end.get("pressure_kPa")
-    row["end_angle_deg"] = end.get("angle_deg")
+        row[pressure_column(angle)] = where(history, col.ANGLE, math.degrees(angle), col.PRESSURE)
+    row["end_pressure_kPa"] = end.get(col.PRESSURE)
+    row["end_angle_deg"] = end.get(col.ANGLE)
     row["greatest_stretch"] = _stretch(history, report)
-    row["tip_force_N"] = end.get("tip_force_N")
+    row[col.TIP_FORCE] = end.get(col.TIP_FORCE)
     if report.force_at is not None:
         held = store.history(point, BLOCKED) if run is not None and point.blocked else history
         for name, column in BLOCKED_COLUMNS.items():
-            row[name] = where(held, "pressure_kPa", 1e3 * report.force_at, column)
+            row[name] = where(held, col.PRESSURE, 1e3 * report.force_at, column)
     row |= {name: end.get(name) for name in report.history}
     row |= _analytic(point.case, report)
     for key in ("unknowns", "newton_iterations"):
@@ -179,7 +178,7 @@ def _stretch(history: History, report: Report) -> float | None:
     """Stretch at the greatest reported angle, at the end where none is reported."""
     if report.angles:
         angle = math.degrees(max(report.angles, key=abs))
-        return where(history, "angle_deg", angle, MODEL_STRETCH)
+        return where(history, col.ANGLE, angle, MODEL_STRETCH)
     return history[-1].get(MODEL_STRETCH) if history else None
 
 

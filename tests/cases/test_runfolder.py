@@ -34,12 +34,12 @@ def test_new_folder_holds_the_case(folder: RunFolder) -> None:
 
 
 def test_history(folder: RunFolder) -> None:
-    rows: list[dict[str, float | None]] = [{"step": 1, "pressure_kPa": 2.5, "energy_wall_J": 1.0}]
+    rows: list[dict[str, float | None]] = [{"step": 1, "pressure_kPa": 2.5, "energy wall mJ": 1.0}]
     folder.write_history(rows)
-    rows.append({"step": 2, "angle_deg": None, "fiber_max_N": 3.0, "table_N": 4.0})
+    rows.append({"step": 2, "angle_deg": None, "fiber_max_N": 3.0, "roof_force_N": 4.0})
     folder.write_history(rows)
     lines = (folder.path / "history.csv").read_text(encoding="utf-8").splitlines()
-    assert lines[0] == ",".join([*HISTORY_COLUMNS, "energy_wall_J", "table_N"])
+    assert lines[0] == ",".join([*HISTORY_COLUMNS, "energy wall mJ", "roof_force_N"])
     assert lines[2] == "2,,,,,,,,,,3.0,,4.0"
     read = read_history(folder.path / "history.csv")
     assert (read[0]["pressure_kPa"], read[1]["pressure_kPa"]) == (2.5, None)

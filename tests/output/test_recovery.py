@@ -134,3 +134,11 @@ def test_wrong_input_is_refused() -> None:
         dataclasses.replace(
             scene, materials=dict.fromkeys(("wall", "sheath"), RUBBERS["neo-hooke"])
         )
+
+
+def test_where_the_body_is_inside_out_there_is_no_stress() -> None:
+    """Between points of quadrature det F can be negative: no number, and no error."""
+    f = np.stack([np.diag([1.2, 1.0, 1 / 1.2]), np.diag([-0.1, 1.0, 1.0])])
+    stress = cauchy_stress(RUBBERS["yeoh"], f, np.zeros(2))
+    assert np.all(np.isfinite(stress[0]))
+    assert np.all(np.isnan(stress[1]))

@@ -1,0 +1,30 @@
+"""Write the tables of columns in README.md and docs/crosscheck.md from `fiberbend.columns`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fiberbend.columns import table
+
+ROOT = Path(__file__).resolve().parent.parent
+BEGIN, END = "<!-- columns, by `make docs` -->", "<!-- end of columns -->"
+PAGES = {"README.md": False, "docs/crosscheck.md": True}
+"""Pages, and whether they list the columns of other models beside a run or the run's own."""
+
+
+def written(page: str, beside: bool) -> str:
+    """A page with its table as it should be.
+
+    Args:
+        page: its path from the root of the repository.
+        beside: see `PAGES`.
+    """
+    text = (ROOT / page).read_text(encoding="utf-8")
+    before, _, rest = text.partition(BEGIN)
+    _, _, after = rest.partition(END)
+    return "\n".join([before + BEGIN, *table(beside), END]) + after
+
+
+if __name__ == "__main__":
+    for page, beside in PAGES.items():
+        (ROOT / page).write_text(written(page, beside), encoding="utf-8")

@@ -1,0 +1,189 @@
+"""Every column of history.csv: its name, unit, meaning, and the models that fill it.
+
+A new column is a function and a line in `COLUMNS`. What is not in the table is not written.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import re
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
+
+STEP = "step"
+PRESSURE = "pressure_kPa"
+ANGLE = "angle_deg"
+TIP_Y = "tip_y_mm"
+TIP_Z = "tip_z_mm"
+VOLUME = "chamber_mm3"
+TIP_FORCE = "tip_force_N"
+ROOF_FORCE = "roof_force_N"
+ITERATIONS = "newton_iterations"
+DET_F = "min_det_F"
+FIBER_MIN = "fiber_min_N"
+FIBER_MAX = "fiber_max_N"
+UNIFORM_ANGLE = "uniform_angle_deg"
+AXIS_STRETCH = "axis_stretch"
+CROWN_STRETCH = "crown_stretch"
+TWIST = "twist_deg"
+MOMENT = "blocked_moment_Nmm"
+AXIAL_FORCE = "axial_force_N"
+WORK = "work_mJ"
+STORED = "stored_mJ"
+MODES = "unstable_modes"
+BALANCE_FORCE = "balance_force"
+BALANCE_MOMENT = "balance_moment"
+
+UNIFORM = ("section", "cell")
+BODY = ("body",)
+MESHED = (*UNIFORM, *BODY)
+ALL = ("analytic", *MESHED)
+
+Read = Callable[[Any, Any], float]
+"""Reads a value off a `fem.scene.Scene` and the `fem.march.records.State` at which it is."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Column:
+    """A column of history.csv.
+
+    Attributes:
+        name: as in the file's head; a part in braces stands for a name of the case.
+        unit: of its values; empty for a number without one.
+        meaning: what it is.
+        models: names of the models that may fill it.
+        always: the file has it, and in this order, also where no value is known.
+        beside: it is another model's answer at the same row.
+        read: gives the value; None where the model's gauge or the recorder fills it.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    models: tuple[str, ...] = ALL
+    always: bool = False
+    beside: bool = False
+    read: Read | None = None
+
+    def names(self, key: str) -> bool:
+        """Whether it is the column that a row calls so."""
+        pattern = re.sub(r"\\\{\w+\\\}", r".+", re.escape(self.name))
+        return re.fullmatch(pattern, key) is not None
+
+
+COLUMNS = (
+    Column(STEP, "", "number of the load step, 0 at rest", always=True),
+    Column(PRESSURE, "kPa", "chamber pressure", always=True),
+    Column(ANGLE, "°", "rotation of the section z = L against z = 0, toward −y", always=True),
+    Column(TIP_Y, "mm", "y of the centroid of the tip cap's outer face", always=True),
+    Column(TIP_Z, "mm", "z of it", always=True),
+    Column(VOLUME, "mm³", "volume of the chamber", always=True),
+    Column(TIP_FORCE, "N", "force of the tip on the post; kept straight: M / L_f", always=True),
+    Column(ITERATIONS, "", "Newton iterations of the step", always=True),
+    Column(DET_F, "", "least det F at a point of quadrature", MESHED, always=True),
+    Column(FIBER_MIN, "N", "least axial force of a fiber, of each line of a ribbon", MESHED, True),
+    Column(FIBER_MAX, "N", "greatest of them", MESHED, True),
+    Column(UNIFORM_ANGLE, "°", "L times the curvature of the middle half", ("analytic", *BODY)),
+    Column(AXIS_STRETCH, "", "stretch λ0 of the line y = 0", UNIFORM),
+    Column(CROWN_STRETCH, "", "stretch of the highest line", UNIFORM),
+    Column(TWIST, "°", "twist of the whole length", UNIFORM),
+    Column(WORK, "mJ", "work of the loads since rest, Σ ∫ q dQ", MESHED),
+    Column(STORED, "mJ", "stored energy", MESHED),
+    Column("energy {effect} mJ", "mJ", "potential of an effect", MESHED),
+    Column("load {load}", "MPa", "value of a load; of gravity its share, without unit", MESHED),
+    Column("conjugate {load}", "mm³", "what it does work on: the chamber's volume", MESHED),
+    Column(MODES, "", "unstable modes with every load kept at its value", MESHED),
+    Column(ROOF_FORCE, "N", "force of the roof on the body", BODY),
+    Column("clamp_force_y_N", "N", "force of the clamp on the body along y", BODY),
+    Column("clamp_moment_x_Nmm", "N mm", "its moment about x", BODY),
+    Column("contact_{obstacle}_y_N", "N", "force of an obstacle on the body along y", BODY),
+    Column("contact_{obstacle}_z_N", "N", "the same along z", BODY),
+    Column("contact_{obstacle}_moment_x_Nmm", "N mm", "its moment about x", BODY),
+    Column("contact_{obstacle}_area_mm2", "mm²", "area at rest of what touches", BODY),
+    Column("contact_{obstacle}_gap_mm", "mm", "least gap; negative: how deep the body is", BODY),
+    Column(BALANCE_FORCE, "", "what is left of all forces, over their scale", BODY),
+    Column(BALANCE_MOMENT, "", "what is left of all moments, over theirs", BODY),
+    Column(MOMENT, "N mm", "moment about the floor's lower face, kept straight", UNIFORM),
+    Column(AXIAL_FORCE, "N", "axial force, kept in length", UNIFORM),
+    Column(
+        "section_kPa",
+        "kPa",
+        "P of the section model: uniform bending, winding smeared, no ends",
+        beside=True,
+    ),
+    Column(
+        "analytic_kPa",
+        "kPa",
+        "P of eq. (19), wall and sheath by their own laws, nothing fitted",
+        beside=True,
+    ),
+    Column(
+        "analytic_winding_kPa",
+        "kPa",
+        "the same, the pressure acting on all inside the winding",
+        beside=True,
+    ),
+    Column(
+        "analytic_paper_kPa",
+        "kPa",
+        "eq. (19) without its extra L, with the paper's μ̄ = 0.314 MPa",
+        beside=True,
+    ),
+    Column("section_tip_force_N", "N", "M / L_f of the section model kept straight", beside=True),
+    Column("analytic_tip_force_N", "N", "κ P / L_f", beside=True),
+    Column(
+        "analytic_winding_tip_force_N",
+        "N",
+        "the same, the pressure on all inside the winding",
+        beside=True,
+    ),
+)
+"""In the order of a row."""
+
+
+@functools.cache
+def column(key: str) -> Column:
+    """The column that a row calls so.
+
+    Raises:
+        KeyError: there is none.
+    """
+    for known in COLUMNS:
+        if known.names(key):
+            return known
+    raise KeyError(f"column {key!r} is not in the table of columns")
+
+
+def check(keys: Iterable[str], model: str) -> None:
+    """Refuse keys of a row that the table does not have, or not for a model.
+
+    Raises:
+        KeyError: says which.
+    """
+    for key in keys:
+        if model not in column(key).models:
+            raise KeyError(f"column {key!r} is not one of model {model}")
+
+
+def read(model: str, scene: Any, state: Any) -> dict[str, float]:
+    """Values of the columns that read themselves off a state, for a model."""
+    return {
+        known.name: known.read(scene, state)
+        for known in COLUMNS
+        if known.read is not None and model in known.models
+    }
+
+
+def table(beside: bool) -> Iterator[str]:
+    """The columns as lines of a Markdown table.
+
+    Args:
+        beside: those of other models beside a run, or the run's own.
+    """
+    yield "| column | unit | meaning | models |"
+    yield "|---|---|---|---|"
+    for known in COLUMNS:
+        if known.beside == beside:
+            models = "all" if known.models == ALL else ", ".join(known.models)
+            yield f"| `{known.name}` | {known.unit} | {known.meaning} | {models} |"

@@ -1,0 +1,73 @@
+"""Columns of history.csv: what the table does not have is not written; docs say the same."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import pytest
+
+from bench import columns as pages
+from fiberbend import columns
+from fiberbend.columns import ALL, COLUMNS, Column, check, column
+from fiberbend.models.choice import MODELS
+from fiberbend.running.folder import RunFolder
+
+
+def test_models_are_those_that_there_are() -> None:
+    assert tuple(MODELS) == ALL
+    assert all(set(known.models) <= set(ALL) for known in COLUMNS)
+
+
+def test_every_column_is_said_once_and_in_full() -> None:
+    names = [known.name for known in COLUMNS]
+    assert len(set(names)) == len(names)
+    assert all(known.meaning and not known.meaning.endswith(".") for known in COLUMNS)
+    # no row's key is another column's too
+    for name in names:
+        assert [known.name for known in COLUMNS if known.names(name)] == [name]
+
+
+def test_a_part_in_braces_stands_for_a_name() -> None:
+    assert column("contact_roof_area_mm2").unit == "mm²"
+    assert column("energy Elastic[yeoh] mJ").name == "energy {effect} mJ"
+
+
+@pytest.mark.parametrize(
+    ("key", "model"), [("colour", "body"), ("twist_deg", "body"), ("min_det_F", "analytic")]
+)
+def test_what_the_table_does_not_have_is_refused(key: str, model: str) -> None:
+    with pytest.raises(KeyError, match=key):
+        check([key], model)
+
+
+def test_no_file_has_an_unknown_column(tmp_path: Path) -> None:
+    with pytest.raises(KeyError, match="colour"):
+        RunFolder(tmp_path).write_history([{"step": 0, "colour": 1.0}])
+    assert not (tmp_path / "history.csv").exists()
+
+
+@pytest.mark.parametrize(("page", "beside"), pages.PAGES.items())
+def test_docs_are_written_from_the_table(page: str, beside: bool) -> None:
+    text = (pages.ROOT / page).read_text(encoding="utf-8")
+    assert pages.written(page, beside) == text, "make docs"
+
+
+def test_a_made_up_column_works_by_its_line_in_the_table(monkeypatch: pytest.MonkeyPatch) -> None:
+    from fiberbend import run
+    from tests.run.conftest import small
+
+    made = Column(
+        "greatest_v_mm", "mm", "greatest v", ("section",), read=lambda _scene, s: float(s.w.max())
+    )
+    monkeypatch.setattr(columns, "COLUMNS", (*COLUMNS, made))
+    column.cache_clear()
+    short = {"pressure": {"angle": "20 deg"}}
+    case = small(model="section", mesh={}, output={})
+    case["effects"][0] = short
+    for model, there in (("section", True), ("cell", False)):
+        rows = run(case | {"model": model}).rows
+        assert all(("greatest_v_mm" in row) is there for row in rows)
+    column.cache_clear()
+    monkeypatch.setattr(columns, "COLUMNS", (*COLUMNS, dataclasses.replace(made, models=())))
+    assert "greatest_v_mm" not in run(case).rows[-1]
