@@ -7,7 +7,7 @@ import dataclasses
 from collections.abc import Mapping
 from typing import Any
 
-from fiberbend.reader.reader import put
+from fiberbend.schema.paths import put
 
 MODELS = ("section", "cell", "body")
 

@@ -22,7 +22,7 @@ from bench.hard_cases import ANGLE, TO, Hard, bulky
 from fem.scene import Scene
 from fem.solver.factor import Factor
 from fiberbend.case.case import Case
-from fiberbend.models.kinds import make_mesh
+from fiberbend.models.choice import meshed
 from fiberbend.reader.reader import parse_case
 from fiberbend.running.assembly import Assembly, assemble
 
@@ -89,8 +89,8 @@ def constants(ladder: Ladder) -> list[tuple[int, float]]:
 
 def _assemble(changes: dict[str, Any], model: str, mesh: Any = None) -> tuple[Case, Assembly]:
     case = parse_case(Hard("infsup", "", changes).case(model))
-    mesh = mesh or make_mesh(case, model)
-    return case, assemble(case, model, mesh, MPI.COMM_SELF)
+    mesh = mesh or meshed(case).mesh(case)
+    return case, assemble(case, mesh, MPI.COMM_SELF)
 
 
 def fault(betas: list[float]) -> str:

@@ -17,8 +17,9 @@ from fem.march.records import Ramp, Report, State
 from fem.results.measures import Tip
 from fem.solver.newton import Outcome
 from fem.solver.side_conditions import Stationary
-from fiberbend.case.section_beside import as_section, load
-from fiberbend.models.kinds import make_mesh
+from fiberbend.case.section_beside import as_section
+from fiberbend.effects.pressure import inflate
+from fiberbend.models.choice import meshed
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case
 from fiberbend.running import messages
@@ -69,14 +70,14 @@ def plain(hard: Hard, model: str) -> Done:
 def _beside(hard: Hard, model: str, result: RunResult, bounds: tuple[float, float]) -> Check:
     """Pressure over that of the section that bends as much."""
     angle = result.last("uniform_angle_deg" if model == "body" else "angle_deg")
-    case = as_section(parse_case(hard.case(model)), load(angle=float(np.deg2rad(angle))))
+    case = as_section(parse_case(hard.case(model)), inflate(angle=float(np.deg2rad(angle))))
     section = run_case(case, None)
     if section.status == "converged":
         ratio = result.last("pressure_kPa") / section.last("pressure_kPa")
         return ("pressure over the section's", ratio, *bounds)
     # a body that bends to and fro has no pressure for an angle
     pressure = result.last("pressure_kPa") * 1e-3
-    section = run_case(as_section(parse_case(hard.case(model)), load(to=pressure)), None)
+    section = run_case(as_section(parse_case(hard.case(model)), inflate(to=pressure)), None)
     off = angle / section.last("angle_deg") if section.status == "converged" else np.nan
     return ("angle over the section's", off, *bounds)
 
@@ -103,8 +104,8 @@ class Driven(Hook):
 
     def __init__(self, hard: Hard, model: str, mesh: MeshData | None = None) -> None:
         self.case = parse_case(hard.case(model))
-        mesh = mesh or make_mesh(self.case, model)
-        self.built = assemble(self.case, model, mesh, MPI.COMM_SELF, [self])
+        mesh = mesh or meshed(self.case).mesh(self.case)
+        self.built = assemble(self.case, mesh, MPI.COMM_SELF)
         self.scene, self.newton, self.march = self.built.scene, self.built.newton, self.built.march
         self.recorder = Recorder(self.scene, self.built.reading.gauge(), self.march.rest)
         self.extra: list[Floats] = []
@@ -122,7 +123,7 @@ class Driven(Hook):
 
     def run(self, ramps: Sequence[Ramp] | None = None) -> Done:
         """March through the case's ramps, or others."""
-        report = self.march.run(self.built.ramps if ramps is None else ramps)
+        report = self.march.run(self.built.ramps if ramps is None else ramps, [self])
         self.recorder.integrate()
         return Done(self.recorder.rows, self._entry(report))
 
@@ -240,7 +241,7 @@ def distorted(hard: Hard, model: str) -> Done:
 def _distort(hard: Hard, model: str) -> tuple[Done, float, int]:
     """The run on a distorted mesh, how far its angle is off, and the number of nodes moved."""
     case = parse_case(hard.case(model))
-    mesh = make_mesh(case, model)
+    mesh = meshed(case).mesh(case)
     held = np.unique(np.concatenate([mesh.facet_nodes(name).ravel() for name in mesh.facets]))
     inner = np.setdiff1d(np.arange(len(mesh.nodes)), [*held, *mesh.points.values()])
     nodes = mesh.nodes.copy()

@@ -126,6 +126,8 @@ class Scene:
                     forms[f"second {name} {other}"] = second
         if body.pressure_field is not None:
             forms["volume"] = body.part(test, body.pressure_field)[0] * body.dx()
+        if body.stand_ins:
+            forms = {name: ufl.replace(form, body.stand_ins) for name, form in forms.items()}
         with compiling(mesh.comm):
             self._forms = {name: compat.compile_form(mesh, form) for name, form in forms.items()}
         self.signatures = {name: form.signature() for name, form in forms.items()}

@@ -5,32 +5,41 @@ Exit codes: 0 done, 1 wrong input, 2 a solution that failed.
 
 from __future__ import annotations
 
-import argparse
 import json
 import sys
-import traceback
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Annotated, Any, Literal, NoReturn
 
-from fiberbend.control.settings import add_options
+from cyclopts import App, CycloptsError, Parameter
+
+from fiberbend.reader.arguments import CaseFile, Changes
 from fiberbend.running import launch
+from fiberbend.running.launch import FAILED, say
 from fiberbend.version import __version__
 
 WRONG_INPUT = 1
-FAILED = 2
 
-
-class _Parser(argparse.ArgumentParser):
-    """Argparse ends with code 2 on wrong input; here that stands for a failed solution."""
-
-    def error(self, message: str) -> NoReturn:
-        _say(f"{self.prog}: {message}", sys.stderr)
-        raise SystemExit(WRONG_INPUT)
-
-    def _print_message(self, message: str, file: Any = None) -> None:
-        if message:
-            _say(message.rstrip("\n"), file or sys.stdout)
+app = App(
+    name="fiberbend",
+    help="Simulate soft fiber-reinforced bending actuators.",
+    help_format="plaintext",
+    help_epilogue="fiberbend COMMAND --help: options and examples of a command",
+    version=__version__,
+    default_parameter=Parameter(negative=(), show_default=False),
+    suppress_keyboard_interrupt=False,
+)
+# The options of a control loop are many; who does not use them does not load them.
+app.command(
+    "fiberbend.control.arguments:control",
+    name="control",
+    help="Bend under feedback control: step response and sine.",
+    help_epilogue="""Examples:
+  fiberbend control cases/free_bending.yaml
+  fiberbend control cases/free_bending.yaml --supply "180 kPa" --noise "0.5 kPa"
+  fiberbend control cases/section.yaml --steps "30 deg" "90 deg"
+""",
+)
 
 
 def entry() -> NoReturn:
@@ -52,193 +61,204 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     Returns:
         The exit code.
+
+    Raises:
+        SystemExit: with code 1 for a command line that cannot be read.
     """
     launch.set_threads()
-    options = _parser().parse_args(arguments)
-    if options.command == "version":
-        _say(__version__)
-        return 0
-    from fiberbend.schema.problems import CaseError
-
+    tokens = list(sys.argv[1:] if arguments is None else arguments)
+    if tokens == ["--version"]:
+        # without the 25 ms of what prints help
+        return version()
     try:
-        code: int = options.action(options)
-        return code
-    except CaseError as error:
+        if not tokens:
+            raise CycloptsError(msg="no command, expected one of those in fiberbend --help")
+        code = app(
+            tokens,
+            console=_console(),
+            exit_on_error=False,
+            print_error=False,
+            result_action="return_value",
+        )
+    except CycloptsError as error:
+        say(f"fiberbend: {error}", sys.stderr)
+        raise SystemExit(WRONG_INPUT) from None
+    except Exception as error:
+        from fiberbend.schema.problems import CaseError
+
+        if not isinstance(error, CaseError):
+            raise
         # Every rank finds the same and ends by itself, MPI or not; one of them speaks.
-        _say(str(error), sys.stderr)
+        say(str(error), sys.stderr)
         return WRONG_INPUT
+    return code or 0
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(prog="fiberbend", description="Simulate fiber-reinforced bending actuators.")
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    case = _Parser(add_help=False)
-    case.add_argument("case", metavar="CASE", help="case file, YAML")
-    case.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="PATH=VALUE",
-        dest="settings",
-        help='change the case, such as effects.0.pressure.to="150 kPa"; repeatable',
-    )
-    validate = commands.add_parser("validate", parents=[case], help="check a case")
-    validate.set_defaults(action=_validate)
-    plan = commands.add_parser("plan", parents=[case], help="say what a run would do")
-    plan.set_defaults(action=_plan)
-    run = commands.add_parser("run", parents=[case], help="solve a case")
-    run.add_argument("--out", metavar="DIR", type=Path, help="run folder; runs/CASE unless given")
-    existing = run.add_mutually_exclusive_group()
-    existing.add_argument("--overwrite", action="store_true", help="replace an earlier run")
-    existing.add_argument("--resume", action="store_true", help="go on with an interrupted run")
-    run.add_argument("--quiet", action="store_true", help="no progress")
-    run.set_defaults(action=_run)
-    sweep = commands.add_parser("sweep", help="solve a case at many points")
-    sweep.add_argument("sweep", metavar="SWEEP", type=Path, help="sweep file, YAML")
-    sweep.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="PATH=VALUE",
-        dest="settings",
-        help="change the base case of all points; repeatable",
-    )
-    sweep.add_argument("--out", metavar="DIR", type=Path, help="folder; runs/SWEEP unless given")
-    sweep.add_argument("-j", "--jobs", type=_count, default=1, help="processes that solve at once")
-    sweep.add_argument("--retry", action="store_true", help="run failed points again")
-    sweep.add_argument("--worker", action="store_true", help=argparse.SUPPRESS)
-    sweep.set_defaults(action=_sweep)
-    control = commands.add_parser(
-        "control", parents=[case], help="bend under feedback control: step response and sine"
-    )
-    control.add_argument("--out", metavar="DIR", type=Path, help="folder; runs/CASE_control")
-    control.add_argument("--overwrite", action="store_true", help="replace an earlier one")
-    add_options(control)
-    control.set_defaults(action=_control)
-    schema = commands.add_parser("schema", help="print the JSON schema of a case")
-    schema.set_defaults(action=_schema)
-    commands.add_parser("version", help="print the version")
-    return parser
-
-
-def _validate(options: argparse.Namespace) -> int:
+@app.command(
+    help_epilogue="""Examples:
+  fiberbend validate cases/free_bending.yaml
+  fiberbend validate cases/free_bending.yaml --set actuator.wall="3 mm"
+"""
+)
+def validate(case: CaseFile, /, *, settings: Changes = ()) -> None:
+    """Check a case."""
     from fiberbend.reader.reader import read_case
 
-    read_case(options.case, options.settings)
-    _say(f"{options.case}: valid")
-    return 0
+    read_case(case, settings)
+    say(f"{case}: valid")
 
 
-def _plan(options: argparse.Namespace) -> int:
+@app.command(
+    help_epilogue="""Examples:
+  fiberbend plan cases/free_bending.yaml
+  fiberbend plan cases/free_bending.yaml --set mesh.axial="3 mm"
+"""
+)
+def plan(case: CaseFile, /, *, settings: Changes = ()) -> None:
+    """Say what a run would do: its model, size, time, memory and errors."""
     from fiberbend.plan.plan import make_plan
     from fiberbend.reader.reader import read_case
 
-    for line in make_plan(read_case(options.case, options.settings)).lines():
-        _say(line)
-    return 0
+    for line in make_plan(read_case(case, settings)).lines():
+        say(line)
 
 
-def _schema(options: argparse.Namespace) -> int:
-    from fiberbend.reader.reader import json_schema
+@app.command(
+    help_epilogue="""Examples:
+  fiberbend run cases/section.yaml
+  fiberbend run cases/section.yaml --out runs/thick --set actuator.wall="3 mm"
+  mpirun -n 4 fiberbend run cases/free_bending.yaml --resume
+"""
+)
+def run(
+    case: CaseFile,
+    /,
+    *,
+    settings: Changes = (),
+    out: Path | None = None,
+    overwrite: bool = False,
+    resume: bool = False,
+    quiet: bool = False,
+) -> int:
+    """Solve a case.
 
-    _say(json.dumps(json_schema(), indent=2, ensure_ascii=False))
-    return 0
-
-
-def _run(options: argparse.Namespace) -> int:
+    Args:
+        case: Case file.
+        settings: Changes to it.
+        out: Run folder; runs/CASE unless given.
+        overwrite: Replace an earlier run.
+        resume: Go on with an interrupted run.
+        quiet: No progress.
+    """
     from fiberbend.reader.reader import read_case
     from fiberbend.running.progress import Progress
     from fiberbend.schema.problems import CaseError
 
-    case = read_case(options.case, options.settings)
-    out = options.out or Path("runs") / Path(options.case).stem
-    progress = Progress(quiet=options.quiet)
+    if overwrite and resume:
+        raise CycloptsError(msg="--resume and --overwrite together, expected one of them")
+    checked = read_case(case, settings)
+    folder = out or Path("runs") / Path(case).stem
+    progress = Progress(quiet=quiet)
     try:
         launch.start_mpi()
         from fiberbend.running.runner import run_case
 
-        result = run_case(
-            case, out, overwrite=options.overwrite, progress=progress, resume=options.resume
-        )
+        result = run_case(checked, folder, overwrite=overwrite, progress=progress, resume=resume)
     except CaseError:
         raise
     except BaseException as error:
         progress.close()
-        return _crash(error, out)
+        return launch.crash(error, folder)
     progress.close()
     if result.status != "converged":
-        _say(f"{result.status}: {result.reason}", sys.stderr)
-    _say(f"results in {out}")
+        say(f"{result.status}: {result.reason}", sys.stderr)
+    say(f"results in {folder}")
     return FAILED if result.status == "failed" else 0
 
 
-def _sweep(options: argparse.Namespace) -> int:
+def _count(_type: type, number: int) -> None:
+    if number < 1:
+        raise ValueError("Expected a whole number from 1 on.")
+
+
+@app.command(
+    help_epilogue="""Examples:
+  fiberbend sweep cases/sweeps/radius_length_wall.yaml -j 2
+  fiberbend sweep cases/sweeps/radius_length_wall.yaml -j 2 --retry
+"""
+)
+def sweep(
+    file: Annotated[Path, Parameter(name="SWEEP")],
+    /,
+    *,
+    settings: Changes = (),
+    out: Path | None = None,
+    jobs: Annotated[int, Parameter(name=("--jobs", "-j"), validator=_count)] = 1,
+    retry: bool = False,
+    worker: Annotated[bool, Parameter(show=False)] = False,
+) -> int:
+    """Solve a case at many points, in a folder that can be gone on with.
+
+    Args:
+        file: Sweep file, YAML.
+        settings: Changes to the base case.
+        out: Folder; runs/SWEEP unless given.
+        jobs: Processes that solve at once; 1 unless said.
+        retry: Run failed points again.
+        worker: Be one of those processes; for the sweep itself.
+    """
     from fiberbend.schema.problems import CaseError
     from fiberbend.sweep.command import INTERRUPTED, run_sweep, run_worker
 
-    out = options.out or Path("runs") / options.sweep.stem
+    folder = out or Path("runs") / file.stem
     try:
-        if options.worker:
+        if worker:
             launch.start_mpi()
-            return run_worker(options.sweep, out, options.settings)
-        return run_sweep(
-            options.sweep, out, options.settings, options.jobs, options.retry, say=_say
-        )
+            return run_worker(file, folder, settings)
+        return run_sweep(file, folder, settings, jobs, retry, say=say)
     except CaseError:
         raise
     except KeyboardInterrupt:
         return INTERRUPTED
     except Exception as error:
-        return _crash(error, out)
+        return launch.crash(error, folder)
 
 
-def _control(options: argparse.Namespace) -> int:
-    from fiberbend.control.settings import read_settings
-    from fiberbend.reader.reader import read_case
-    from fiberbend.schema.problems import CaseError
+@app.command
+def schema() -> None:
+    """Print the JSON schema of a case, for editors."""
+    from fiberbend.reader.json_schema import json_schema
 
-    case, settings = read_case(options.case, options.settings), read_settings(options)
-    out = options.out or Path("runs") / f"{Path(options.case).stem}_control"
-    try:
-        launch.start_mpi()
-        from fiberbend.control.command import run_control
+    say(json.dumps(json_schema(), indent=2, ensure_ascii=False))
 
-        result = run_control(case, settings, out, options.overwrite)
-    except CaseError:
-        raise
-    except BaseException as error:
-        return _crash(error, out)
-    for line in result.lines():
-        _say(line)
-    _say(f"results in {out}")
+
+@app.command(
+    help_epilogue="""Examples:
+  source <(fiberbend completion bash)
+  fiberbend completion zsh > ~/.zfunc/_fiberbend
+  fiberbend completion fish > ~/.config/fish/completions/fiberbend.fish
+"""
+)
+def completion(shell: Literal["bash", "zsh", "fish"], /) -> None:
+    """Print a script that lets a shell complete commands, options and files.
+
+    Args:
+        shell: Shell that shall run it.
+    """
+    say(app.generate_completion(shell=shell).rstrip("\n"))
+
+
+@app.command
+def version() -> int:
+    """Print the version."""
+    say(__version__)
     return 0
 
 
-def _crash(error: BaseException, out: Path) -> int:
-    """Leave a log and end all ranks: those that wait for this one would wait for ever."""
-    rank = launch.rank()
-    log = out / f"error.rank{rank}.log" if out.is_dir() else Path(f"fiberbend.rank{rank}.log")
-    what = traceback.format_exception_only(error)[-1].strip().splitlines()[0]
-    try:
-        log.write_text("".join(traceback.format_exception(error)), encoding="utf-8")
-        where = f"; see {log}"
-    except OSError:
-        where = ""
-    print(f"fiberbend: rank {rank} stopped: {what}{where}", file=sys.stderr, flush=True)
-    if launch.size() > 1:
-        from mpi4py import MPI
-
-        MPI.COMM_WORLD.Abort(FAILED)
-    return FAILED
-
-
-def _count(text: str) -> int:
-    """A whole number from 1 on."""
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text}, expected a whole number from 1 on")
-    return int(text)
-
-
-def _say(text: str, stream: Any = None) -> None:
+def _console() -> Any:
+    """Where help goes: of several ranks one speaks."""
     if launch.rank() == 0:
-        print(text, file=stream or sys.stdout, flush=True)
+        return None
+    from rich.console import Console
+
+    return Console(quiet=True)

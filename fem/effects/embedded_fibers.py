@@ -14,7 +14,7 @@ from analytic.path import cross_matrix
 from fem.kinematics.kinematics import Kinematics
 from geometry.mesh.data import facet_positions
 from geometry.mesh.reference import shape_functions
-from geometry.winding.embed import EmbeddedFibers
+from geometry.winding.segments import EmbeddedFibers
 
 Floats = npt.NDArray[np.float64]
 

@@ -76,6 +76,8 @@ class Kinematics:
         ties: local dofs that follow others, and these; on one rank only.
         symmetry_factor: how many of what is modelled make up the whole actuator: two halves, or a
             length over that of a slice.
+        stand_ins: constants that stand for frozen scalars while forms are differentiated, and
+            these; whoever compiles a form replaces them.
     """
 
     def __init__(self, domain: Domain, fields: Iterable[str], components: int) -> None:
@@ -106,6 +108,7 @@ class Kinematics:
             first += count
         self.scalars: dict[str, Any] = {}
         self._variables: dict[str, Any] = {}
+        self.stand_ins: dict[Any, Any] = {}
 
         order = np.argsort(compat.node_permutation(cell))
         self.cell_dofs: Dofs = self._dofs[DISPLACEMENT][:, order]
@@ -196,6 +199,12 @@ class Kinematics:
             self.scalars[name] = dfem.Constant(self.domain.mesh, 0.0)
             self._variables[name] = ufl.variable(self.scalars[name])
         return self._variables[name]
+
+    def frozen(self, value: Any) -> Any:
+        """A UFL scalar by its present value alone: no derivative goes through it."""
+        stand_in = ufl.Constant(self.domain.mesh)
+        self.stand_ins[stand_in] = value
+        return stand_in
 
     # --- what measures and predictors ask for ---------------------------------------------
 

@@ -45,7 +45,7 @@ class March:
         rod: the states as rods, to see whether the body passes through itself; None: not looked.
         causes: what tells physical causes of a failure; None: how Newton ended is all that is
             said.
-        hooks: what is called meanwhile, in this order.
+        hooks: what belongs to the scene and is called meanwhile, in this order.
 
     Attributes:
         rest: the state at rest.
@@ -66,7 +66,7 @@ class March:
         hooks: Sequence[Hook] = (),
     ) -> None:
         self.rules = rules
-        self.hooks = tuple(hooks)
+        self.hooks = self._called = tuple(hooks)
         self._predictor = Predictor(scene, frames, guide)
         self.equilibrium = Equilibrium(scene, newton, self._predictor, control)
         self._controlled = control is not None
@@ -91,11 +91,17 @@ class March:
         self.position = position
         self.equilibrium.restore(position.states[-1])
 
-    def run(self, ramps: Sequence[Ramp]) -> Report:
-        """March through all ramps in order; earlier loads keep their values."""
+    def run(self, ramps: Sequence[Ramp], hooks: Sequence[Hook] = ()) -> Report:
+        """March through all ramps in order; earlier loads keep their values.
+
+        Args:
+            ramps: the loads.
+            hooks: what listens to this run, called after the march's own.
+        """
         position = self.position
+        self._called = (*self.hooks, *hooks)
         for ramp in ramps[position.ramp :]:
-            for hook in self.hooks:
+            for hook in self._called:
                 hook.before_ramp(self, ramp)
             if not self._ramp(ramp):
                 break
@@ -205,7 +211,7 @@ class March:
                 )
                 inverted = self._causes.inverted() if hopeless and self._causes else ""
                 self.equilibrium.restore(state)
-                for hook in self.hooks:
+                for hook in self._called:
                     hook.after_cutback(self, outcome.reason)
                 if hopeless:
                     return self._give_up(outcome, inverted)
@@ -229,7 +235,7 @@ class March:
             elif slow:
                 size *= self.rules.shrink
             position.increment = size
-            for hook in self.hooks:
+            for hook in self._called:
                 hook.after_step(self, new, outcome)
             if kind == "control" and ramp.until is not None and aim >= ramp.until - 1e-9:
                 return True

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fem import compat
+from fem.effects.embedded_fibers import FiberPotential
 from fem.march.frames import Frames
 from fem.march.position import Position
 from fem.march.records import Report, State
@@ -140,10 +141,12 @@ class Archive:
             self._multiplier = compat.PointValues(scene.domain.mesh, scene.body.p, nodes)
         return _gather(self._comm, self._cells, self._multiplier()[..., 0])
 
-    def forces(self, key: str) -> Floats | None:
-        """Present force of every fiber segment of an effect, N, on rank 0."""
-        discrete = self._scene.discrete[key]
-        return _gather(self._comm, discrete.index, discrete.force)  # type: ignore[attr-defined]
+    def fiber_force(self) -> Floats | None:
+        """Present force of every fiber segment, N, on rank 0; None without fibers; collective."""
+        for discrete in self._scene.discrete.values():
+            if isinstance(discrete, FiberPotential):
+                return _gather(self._comm, discrete.index, discrete.force)
+        return None
 
 
 def _part(arrays: Mapping[str, Any], prefix: str) -> dict[str, Any]:

@@ -1,25 +1,24 @@
-"""Options of `fiberbend control`: plain text with units into the settings of a loop."""
+"""What a control loop is made of: its options with their units, and the parts made of them."""
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import dataclasses
-import functools
-import math
 import re
-from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any, Literal
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from fiberbend.schema.units import KINDS, parse
+from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic_core import PydanticCustomError
+
+from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.schema.quantities import Model, Quantity
+from fiberbend.schema.validation import from_pydantic
 
 if TYPE_CHECKING:
     from analytic.control.controller import Controller
     from analytic.control.loop import Sensor, Sine, Steps
     from analytic.control.plant import PlantParameters
-
-STEPS = ("150 deg", "210 deg")
-SINE = ("0 deg", "180 deg")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -49,76 +48,94 @@ class Settings:
     sine: Sine
 
 
-@dataclasses.dataclass(frozen=True)
-class _Option:
-    """A quantity among the options; `value` is the default and shows how to write it."""
-
-    kind: str
-    value: str
-    help: str
-
-
-_QUANTITIES = {
-    "supply": _Option("pressure", "207 kPa", "regulated supply pressure"),
-    "inlet": _Option("conductance", "0.03 dm^3/(s*bar)", "sonic conductance of the inlet"),
-    "outlet": _Option("conductance", "0.03 dm^3/(s*bar)", "sonic conductance of the outlet"),
-    "dead-time": _Option("time", "2 ms", "from a command to the valve's motion"),
-    "dead-volume": _Option("volume", "2 mL", "volume of tube and fittings"),
-    "lag": _Option("time", "0 ms", "time constant of the angle behind the pressure"),
-    "rate": _Option("frequency", "100 Hz", "sampling rate of the controller"),
-    "dead-zone": _Option("angle", "0.07 rad", "θ_c of eq. (22)"),
-    "noise": _Option("pressure", "0 kPa", "standard deviation of the pressure sensor"),
-    "hold": _Option("time", "1 s", "time between steps"),
-    "frequency": _Option("frequency", "0.2 Hz", "frequency of the sine"),
-}
-_NUMBERS = {
-    "critical-ratio": (0.3, "critical pressure ratio of the valves"),
-    "exponent": (1.0, "of the air in the chamber: 1 isothermal to 1.4 adiabatic"),
-    "dead-zone-divisor": (50.0, "k of eq. (22)"),
-}
-NAMES = (*_QUANTITIES, *_NUMBERS, "steps", "sine", "plant", "filter", "modulus", "mismatch")
+def _fraction(text: Any) -> float:
+    match = re.fullmatch(r"\s*([+-]?[\d.]+(?:e[+-]?\d+)?)\s*%\s*", str(text), re.IGNORECASE)
+    try:
+        fraction = float(match[1]) / 100 if match else -1.0
+    except ValueError:
+        fraction = -1.0
+    if not -1 < fraction < float("inf"):
+        message = 'expected a percentage above -100 % such as "10 %"'
+        raise PydanticCustomError("fraction", "{message}", {"message": message})
+    return fraction
 
 
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of a loop to a command."""
-    for name, option in _QUANTITIES.items():
-        parser.add_argument(
-            f"--{name}",
-            default=option.value,
-            metavar=KINDS[option.kind].name.split()[-1].upper(),
-            help=f'{option.help}; "{option.value}"',
-        )
-    for name, (value, text) in _NUMBERS.items():
-        parser.add_argument(f"--{name}", default=str(value), metavar="X", help=f"{text}; {value:g}")
-    for name, values in (("steps", STEPS), ("sine", SINE)):
-        parser.add_argument(
-            f"--{name}",
-            nargs=2,
-            default=values,
-            metavar=("LOW", "HIGH"),
-            help='lower and upper angle; "{}" "{}"'.format(*values),
-        )
-    choices = {
-        "plant": (("section", "analytic"), "model of the plant's curve"),
-        "filter": (("analytic", "curve"), "what the filter inverts: eq. (19) or the plant's curve"),
-        "inside": (("hold", "settle", "relay"), "what the valves do inside the dead zone"),
-    }
-    for name, (words, text) in choices.items():
-        parser.add_argument(
-            f"--{name}", choices=words, default=words[0], help=f"{text}; {words[0]}"
-        )
-    parser.add_argument("--modulus", metavar="MODULUS", help="μ̄ of the filter; fitted unless given")
-    parser.add_argument(
-        "--mismatch",
-        default="0 %",
-        metavar="PERCENT",
-        help='error put on the filter\'s μ̄, such as "10 %%"; "0 %%"',
+# Their signs and sizes are for the parts of the loop to judge, which know what they mean.
+_Pressure = Annotated[float, Quantity("pressure", "any")]
+_Modulus = Annotated[float, Quantity("modulus", "any")]
+_Conductance = Annotated[float, Quantity("conductance", "any")]
+_Time = Annotated[float, Quantity("time", "any")]
+_Volume = Annotated[float, Quantity("volume", "any")]
+_Frequency = Annotated[float, Quantity("frequency", "any")]
+_Angle = Annotated[float, Quantity("angle", "any")]
+_Fraction = Annotated[float, BeforeValidator(_fraction)]
+
+
+def _option(text: Any) -> Any:
+    """A default as it would be written on the command line."""
+    return Field(default=text, strict=False)
+
+
+class Options(Model):
+    """The options of a loop; text into numbers in mm, N, MPa, s and rad."""
+
+    model_config = ConfigDict(
+        alias_generator=lambda name: name.replace("_", "-"),
+        validate_by_name=True,
+        validate_default=True,
     )
-    parser.add_argument("--seed", type=int, default=0, help="of the sensor's noise; 0")
+
+    supply: _Pressure = _option("207 kPa")
+    """Regulated supply pressure."""
+    inlet: _Conductance = _option("0.03 dm^3/(s*bar)")
+    """Sonic conductance of the inlet."""
+    outlet: _Conductance = _option("0.03 dm^3/(s*bar)")
+    """Sonic conductance of the outlet."""
+    dead_time: _Time = _option("2 ms")
+    """From a command to the valve's motion."""
+    dead_volume: _Volume = _option("2 mL")
+    """Volume of tube and fittings."""
+    lag: _Time = _option("0 ms")
+    """Time constant of the angle behind the pressure."""
+    rate: _Frequency = _option("100 Hz")
+    """Sampling rate of the controller."""
+    dead_zone: _Angle = _option("0.07 rad")
+    """θ_c of eq. (22)."""
+    noise: _Pressure = _option("0 kPa")
+    """Standard deviation of the pressure sensor."""
+    hold: _Time = _option("1 s")
+    """Time between steps."""
+    frequency: _Frequency = _option("0.2 Hz")
+    """Frequency of the sine."""
+    critical_ratio: float = _option("0.3")
+    """Critical pressure ratio of the valves."""
+    exponent: float = _option("1")
+    """Of the air in the chamber: 1 isothermal to 1.4 adiabatic."""
+    dead_zone_divisor: float = _option("50")
+    """k of eq. (22)."""
+    steps: tuple[_Angle, _Angle] = _option(("150 deg", "210 deg"))
+    """Lower and upper angle of the step response."""
+    sine: tuple[_Angle, _Angle] = _option(("0 deg", "180 deg"))
+    """Lower and upper angle of the sine."""
+    plant: Literal["section", "analytic"] = "section"
+    """Model of the plant's curve."""
+    filter: Literal["analytic", "curve"] = "analytic"
+    """What the filter inverts: eq. (19) or the plant's curve."""
+    inside: Literal["hold", "settle", "relay"] = "hold"
+    """What the valves do inside the dead zone."""
+    modulus: _Modulus | None = None
+    """μ̄ of the filter; fitted unless given."""
+    mismatch: _Fraction = _option("0 %")
+    """Error put on the filter's μ̄, such as "10 %"."""
+    seed: int = _option("0")
+    """Of the sensor's noise."""
 
 
-def read_settings(options: argparse.Namespace) -> Settings:
-    """Read the options.
+def read_settings(given: Mapping[str, Any]) -> Settings:
+    """Read the options of a loop.
+
+    Args:
+        given: text of each option by the name of its field; defaults for what is not given.
 
     Raises:
         CaseError: one line for every option that cannot be read, or else the first that has no
@@ -127,56 +144,37 @@ def read_settings(options: argparse.Namespace) -> Settings:
     from analytic.control.controller import Controller, DeadZone
     from analytic.control.loop import Sensor, Sine, Steps
     from analytic.control.plant import PlantParameters
-    from fiberbend.schema.problems import CaseError, Problem
 
-    problems: list[Problem] = []
-
-    def read(name: str, text: Any, reader: Callable[[Any], float]) -> float:
-        try:
-            return reader(text)
-        except ValueError as error:
-            problems.append(Problem(f"--{name}", f'"{text}", {error}'))
-            return math.nan
-
-    def angles(name: str) -> tuple[float, float]:
-        low, high = (read(name, text, _reader("angle")) for text in getattr(options, name))
-        return low, high
-
-    value = {
-        name: read(name, _given(options, name), _reader(option.kind))
-        for name, option in _QUANTITIES.items()
-    }
-    value |= {name: read(name, _given(options, name), _number) for name in _NUMBERS}
-    mismatch = read("mismatch", options.mismatch, _fraction)
-    modulus = None
-    if options.modulus is not None:
-        modulus = read("modulus", options.modulus, _reader("modulus"))
-    steps, sine = angles("steps"), angles("sine")
-    if problems:
-        raise CaseError(problems)
+    try:
+        options = Options.model_validate(given)
+    except ValidationError as error:
+        raise CaseError(
+            Problem(f"--{problem.path.partition('.')[0]}", problem.text)
+            for problem in from_pydantic(error, Options)
+        ) from None
     with refusals():
-        if modulus is not None and modulus <= 0:
-            raise ValueError(f"modulus: a positive number expected, not {modulus}")
-        zone = DeadZone(value["dead-zone-divisor"], value["dead-zone"])
+        if options.modulus is not None and options.modulus <= 0:
+            raise ValueError(f"modulus: a positive number expected, not {options.modulus}")
+        zone = DeadZone(options.dead_zone_divisor, options.dead_zone)
         return Settings(
             plant=options.plant,
             filter=options.filter,
-            modulus=modulus,
-            mismatch=mismatch,
+            modulus=options.modulus,
+            mismatch=options.mismatch,
             pneumatics=PlantParameters(
-                supply=value["supply"],
-                inlet=value["inlet"],
-                outlet=value["outlet"],
-                critical_ratio=value["critical-ratio"],
-                dead_time=value["dead-time"],
-                dead_volume=value["dead-volume"],
-                exponent=value["exponent"],
-                lag=value["lag"],
+                supply=options.supply,
+                inlet=options.inlet,
+                outlet=options.outlet,
+                critical_ratio=options.critical_ratio,
+                dead_time=options.dead_time,
+                dead_volume=options.dead_volume,
+                exponent=options.exponent,
+                lag=options.lag,
             ),
-            controller=Controller(value["rate"], zone, options.inside),
-            sensor=Sensor(value["noise"], options.seed),
-            steps=Steps(*steps, value["hold"]),
-            sine=Sine(*sine, value["frequency"]),
+            controller=Controller(options.rate, zone, options.inside),
+            sensor=Sensor(options.noise, options.seed),
+            steps=Steps(*options.steps, options.hold),
+            sine=Sine(*options.sine, options.frequency),
         )
 
 
@@ -187,42 +185,12 @@ def refusals(ended: str = "") -> Iterator[None]:
     Args:
         ended: why the plant's curve ends early, told where the loop needs more of it.
     """
-    from fiberbend.schema.problems import CaseError, Problem
-
     try:
         yield
     except ValueError as error:
         name, _, text = str(error).partition(": ")
-        path = f"--{name}" if name in NAMES else name
+        options = {field.alias for field in Options.model_fields.values()}
+        path = f"--{name}" if name in options else name
         if name == "curve" and ended:
             text += f"; the section model stopped there: {ended}"
         raise CaseError([Problem(path, text)]) from None
-
-
-def _given(options: argparse.Namespace, name: str) -> Any:
-    return getattr(options, name.replace("-", "_"))
-
-
-def _reader(kind: str) -> Callable[[Any], float]:
-    return functools.partial(parse, kind=kind)
-
-
-def _number(text: Any) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
-        raise ValueError("expected a number")
-    return number
-
-
-def _fraction(text: Any) -> float:
-    match = re.fullmatch(r"\s*([+-]?[\d.]+(?:e[+-]?\d+)?)\s*%\s*", text, re.IGNORECASE)
-    try:
-        fraction = float(match[1]) / 100 if match else math.nan
-    except ValueError:
-        fraction = math.nan
-    if not -1 < fraction < math.inf:
-        raise ValueError('expected a percentage above -100 % such as "10 %"')
-    return fraction

@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 import math
-import platform
-import resource
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
-from analytic.bending import BACKWARD, FORWARD, Hemicircle
+from analytic.bending import Hemicircle
+from analytic.inverse import first_angle
 from analytic.path import tip
 from analytic.stress import Floats
+from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.measured import read_measured
 from fiberbend.compare.check import crosscheck
-from fiberbend.effects.table import PressureEffect
+from fiberbend.models.choice import choose_model
 from fiberbend.models.closed_form import (
     analytic_curves,
     assumptions,
-    chamber_moment,
-    face_height,
-    held,
     lever_arm,
     no_analytic,
 )
@@ -30,10 +26,9 @@ from fiberbend.models.result import Curve, RunResult
 from fiberbend.running import launch
 from fiberbend.running.folder import RunFolder
 from fiberbend.running.progress import Progress
-from fiberbend.version import __version__
+from fiberbend.running.record import beside, entries, peak_memory_mb
 
 _STEPS = 40
-_GRID = 181
 
 
 def run_analytic(
@@ -54,38 +49,37 @@ def run_analytic(
     if why is not None:
         raise ValueError(why)
     progress.phase("solve")
+    kind, _ = choose_model(case)
     model = analytic_curves(case)["zero-fit"]
-    if held(case):
+    if case.straight:
         rows, status, reason = _blocked_rows(case, model), "converged", ""
     else:
         rows, status, reason = _free_rows(case, model)
-    check = crosscheck(case, "analytic", rows, section, read_measured(case))
+    check = crosscheck(case, kind, rows, section, read_measured(case))
     rows = check.beside(rows)
     progress.phase("output")
     last = rows[-1]
-    run: dict[str, Any] = {
-        "status": status,
-        "reason": reason,
-        "model": "analytic",
-        "unknowns": 0,
-        "load_steps": len(rows) - 1,
-        "newton_iterations": 0,
-        "cutbacks": 0,
-        "wall_s": {name: round(value, 6) for name, value in progress.wall_s.items()},
-        "peak_memory_MB": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1),
-        "ranks": launch.size(),
-        "versions": {
-            "fiberbend": __version__,
-            "python": platform.python_version(),
-            "numpy": np.__version__,
+    run = entries(
+        status,
+        reason,
+        kind.name,
+        {
+            "unknowns": 0,
+            "load_steps": len(rows) - 1,
+            "newton_iterations": 0,
+            "cutbacks": 0,
         },
-        "analytic": {
-            "line": "zero-fit",
-            "kappa_mm3": model.kappa,
-            "assumptions": assumptions(case),
-        },
-        "crosscheck": check.entry(),
+        {name: round(value, 6) for name, value in progress.wall_s.items()},
+        peak_memory_mb(),
+        launch.size(),
+        {"numpy": np.__version__},
+    )
+    run["analytic"] = {
+        "line": "zero-fit",
+        "kappa_mm3": model.kappa,
+        "assumptions": assumptions(case),
     }
+    run |= beside(check)
     if "tip_force_N" in last:
         run["blocked_tip"] = {
             "L_f_mm": lever_arm(case),
@@ -99,7 +93,7 @@ def run_analytic(
             from fiberbend.running.report import draw_curves
 
             draw_curves(
-                folder, case, rows, f"{status}: {reason}" if reason else None, check, "analytic"
+                folder, case, rows, f"{status}: {reason}" if reason else None, check, kind.name
             )
     for line in check.lines():
         progress.message(line)
@@ -108,8 +102,9 @@ def run_analytic(
 
 def _row(step: int, pressure: float, angle: float, case: Case, model: Hemicircle) -> dict[str, Any]:
     """A row of history.csv; the section keeps its shape, so that V = A L + θ ∫ y dA."""
-    along, down = tip(angle, model.length, case.actuator.cap, face_height(case))
-    volume = math.pi * model.radius**2 / 2 * model.length + chamber_moment(model) * angle
+    body = convert.dimensions(case.actuator)
+    along, down = tip(angle, model.length, body.cap, body.face_height)
+    volume = body.chamber_volume + body.chamber_moment * angle
     return {
         "step": step,
         "pressure_kPa": 1e3 * pressure,
@@ -124,10 +119,10 @@ def _row(step: int, pressure: float, angle: float, case: Case, model: Hemicircle
 
 def _blocked_rows(case: Case, model: Hemicircle) -> list[dict[str, Any]]:
     """Held straight: eq. (20)."""
-    pressure = case.find(PressureEffect)
-    assert pressure is not None
-    assert pressure.to is not None
-    steps = _merged(np.linspace(0.0, pressure.to, 11), case.output.at_pressures)
+    load = case.inflation
+    assert load is not None
+    assert load.to is not None
+    steps = _merged(np.linspace(0.0, load.to, 11), case.output.at_pressures)
     rows = []
     for step, value in enumerate(steps):
         row = _row(step, float(value), 0.0, case, model)
@@ -138,19 +133,22 @@ def _blocked_rows(case: Case, model: Hemicircle) -> list[dict[str, Any]]:
 
 def _free_rows(case: Case, model: Hemicircle) -> tuple[list[dict[str, Any]], str, str]:
     """Free bending: angles that grow evenly, and every angle and pressure that is asked for."""
-    effect, output = case.find(PressureEffect), case.output
-    assert effect is not None
-    status, reason, end = "converged", "", effect.angle
+    load, output = case.inflation, case.output
+    assert load is not None
+    status, reason, end = "converged", "", load.angle
     if end is None:
-        assert effect.to is not None
-        end, reason = _angle_at(model, effect.to)
-        status = "stopped" if reason else "converged"
+        assert load.to is not None
+        end, reason = _angle_at(model, load.to)
+    elif not np.isfinite(model.pressure(end)):
+        end, reason = _angle_at(model, math.copysign(math.inf, end))
+    if reason:
+        status = "stopped"
     stop = output.stop_at_angle
     if stop is not None and stop * end > 0 and abs(stop) <= abs(end):
         status, reason, end = "converged", "", stop
     wanted = [angle for angle in output.at_angles if 0 < angle / end <= 1]
     pressures = {}
-    for pressure in (*output.at_pressures, *([effect.to] if effect.to is not None else [])):
+    for pressure in (*output.at_pressures, *([load.to] if load.to is not None else [])):
         angle, beyond = _angle_at(model, pressure)
         if 0 < angle / end <= 1 and not beyond:
             pressures[angle] = pressure
@@ -172,26 +170,18 @@ def _angle_at(model: Hemicircle, pressure: float) -> tuple[float, str]:
 
     Unlike `Hemicircle.angle` it goes as far as it can where the pressure is not reached.
     """
-    roof = model.floor + model.radius + model.wall + model.sheath
-    bound = FORWARD if pressure > 0 else max(BACKWARD, -model.length / roof / 2)
-    if model.sheath:
-        bound = min(bound, 0.99 * model.length / model.sheath)
-    angles = np.linspace(0.0, bound, _GRID)
-    values = np.abs(model.pressure(angles))
-    falls = np.flatnonzero(np.diff(values) <= 0)
-    last = int(falls[0]) if len(falls) else _GRID - 1
-    beyond = np.flatnonzero(values[: last + 1] >= abs(pressure))
-    degrees = math.degrees(angles[last])
-    reached = f"{1e3 * math.copysign(values[last], pressure):.4g} kPa at {degrees:.4g}°"
-    if len(beyond):
-        first = int(beyond[0])
-        angle = brentq(
-            lambda x: float(model.pressure(x)) - pressure, angles[first - 1], angles[first]
-        )
-        return float(angle), ""
-    if len(falls):
-        return float(angles[last]), f"the pressure has its greatest value, {reached}"
-    return float(angles[last]), f"the closed form ends with {reached}"
+    low, high = model.angles
+    bound = high if pressure > 0 else low
+    found = first_angle(model.pressure, pressure, bound)
+    degrees = math.degrees(found.angle)
+    reached = f"{1e3 * math.copysign(found.pressure, pressure):.4g} kPa at {degrees:.4g}°"
+    why = {
+        "": "",
+        "peak": f"the pressure has its greatest value, {reached}",
+        "limit": f"the rubber meets its limiting stretch beyond {reached}",
+        "bound": f"the closed form ends with {reached}",
+    }
+    return found.angle, why[found.end]
 
 
 def _merged(even: Floats, exact: Any) -> Floats:

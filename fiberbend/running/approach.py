@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from fem.effects.contact import Contact
 from fem.march.hooks import Hook, Marching
 from fem.march.records import Ramp, State
-from fem.results.touch import Probe
+from fem.results.touch import probes
 from fem.scene import Scene
 from fem.solver.newton import Outcome
 
@@ -28,8 +27,7 @@ class Approach(Hook):
     """
 
     def __init__(self, scene: Scene) -> None:
-        contacts = [e for e in scene.effects.values() if isinstance(e, Contact)]
-        self._probes = {contact.name: Probe(scene, contact) for contact in contacts}
+        self._probes = probes(scene)
         self._usual: float | None = None
 
     def _gaps(self) -> dict[str, float]:

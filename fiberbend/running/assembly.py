@@ -4,25 +4,21 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 from mpi4py import MPI
 
 from fem.kinematics.domain import Domain
 from fem.march.frames import Frames
 from fem.march.guide import Guide
-from fem.march.hooks import Hook
 from fem.march.march import March
 from fem.march.records import Ramp, Rules
-from fem.march.selfcontact import Rod
 from fem.results.diagnosis import Diagnosis
 from fem.scene import Scene
 from fem.solver.newton import Newton, Settings
 from fiberbend.case.case import Case
-from fiberbend.effects import contact
-from fiberbend.effects.table import ContactEffect
-from fiberbend.models import kinds
-from fiberbend.models.choice import FIRST_TURN, MEMORY, turn_of
+from fiberbend.models.choice import meshed
+from fiberbend.models.model import MeshedModel, Reading
 from fiberbend.models.parts import Parts, build
 from fiberbend.running.approach import Approach
 from geometry.mesh.data import MeshData
@@ -31,6 +27,9 @@ STEERED_TURN = math.radians(90)
 """Greatest change of the angle in a step that leans on the section, unless the case says."""
 STEERED_FIRST = math.radians(15)
 STEERED_GROWTH = 3.0
+
+Lead = Callable[[Scene, Frames], Guide | None]
+"""Makes the shapes on which a body's march leans; None of it where there are none."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -48,69 +47,68 @@ class Assembly:
 
     parts: Parts
     scene: Scene
-    reading: kinds.Reading
+    reading: Reading
     newton: Newton
     march: March
     ramps: list[Ramp]
 
 
-def assemble(
-    case: Case,
-    model: str,
-    mesh: MeshData,
-    comm: MPI.Comm,
-    hooks: Sequence[Hook] = (),
-    rod: Callable[[Scene, Frames | None], Rod] | None = None,
-    guide: Callable[[Scene, Frames], Guide | None] | None = None,
-) -> Assembly:
+def assemble(case: Case, mesh: MeshData, comm: MPI.Comm, lead: Lead | None = None) -> Assembly:
     """Compile a case and put it at rest; collective.
 
     Args:
         case: the case.
-        model: "section", "cell" or "body".
-        mesh: its mesh.
+        mesh: the mesh of its model.
         comm: communicator.
-        hooks: what is called while the march goes on.
-        rod: makes of the states rods, to see whether the body passes through itself.
-        guide: makes the shapes on which a body's march leans; None of it where there are none.
+        lead: makes the guide of a body; without it there is none.
     """
+    model = meshed(case)
     parts = build(case, mesh, model)
-    scene = Scene(Domain(mesh, comm), parts.effects, kinds.kinematics(case, model))
-    reading = kinds.reading(case, scene)
-    settings = contact.settings(case, Settings(tolerance=case.solver.tolerance))
+    scene = Scene(Domain(mesh, comm), parts.effects, model.kinematics(case))
+    reading = model.reading(case, scene)
+    settings = Settings(tolerance=case.solver.tolerance)
+    for effect in case.effects:
+        settings = effect.settings(settings)
     newton = Newton(scene, comm, settings)
-    turn = turn_of(case, model)
-    rules = Rules(
-        cutbacks=case.solver.max_cutbacks,
-        turn=turn,
-        first_turn=min(turn, FIRST_TURN[model]),
-        memory=MEMORY[model],
-    )
-    rules = contact.pace(case, rules)
     frames = reading.frames
-    leads = guide(scene, frames) if guide is not None and frames is not None else None
-    # what leads the march comes before what records where it stands
-    approach = [Approach(scene)] if case.find(ContactEffect) is not None else []
+    guide = None if lead is None or frames is None else lead(scene, frames)
     march = March(
         scene,
         newton,
-        steered(rules, case) if leads is not None else rules,
+        rules(case, model, guide is not None),
         frames=frames,
         control=reading.control,
-        guide=leads,
-        rod=rod(scene, frames) if rod is not None else None,
+        guide=guide,
+        rod=reading.rod,
         causes=Diagnosis(scene),
-        hooks=[*approach, *hooks],
+        hooks=[Approach(scene)] if any(effect.touches() for effect in case.effects) else [],
     )
     return Assembly(parts, scene, reading, newton, march, parts.ramps(scene.body.symmetry_factor))
 
 
-def steered(rules: Rules, case: Case) -> Rules:
-    """Rules of a march with a guide: a short first step, from which the ends are learnt."""
-    turn = case.solver.max_turn
+def rules(case: Case, model: MeshedModel, guided: bool) -> Rules:
+    """Incrementation of a case.
+
+    Args:
+        case: the case.
+        model: its model.
+        guided: there is a guide: a short first step, from which the ends are learnt.
+    """
+    turn = model.largest_turn(case)
+    found = Rules(
+        cutbacks=case.solver.max_cutbacks,
+        turn=turn,
+        first_turn=min(turn, model.first_turn),
+        memory=model.memory,
+    )
+    for effect in case.effects:
+        found = effect.rules(found, case.straight)
+    if not guided:
+        return found
+    said = case.solver.max_turn
     return dataclasses.replace(
-        rules,
-        turn=turn or STEERED_TURN,
-        first_turn=turn or STEERED_FIRST,
+        found,
+        turn=said or STEERED_TURN,
+        first_turn=said or STEERED_FIRST,
         grow=STEERED_GROWTH,
     )

@@ -15,6 +15,7 @@ from typing import IO, Any
 import yaml
 
 from fiberbend.case.case import Case
+from fiberbend.schema.paths import differences, value_at
 from fiberbend.schema.problems import CaseError, Problem, found
 
 HISTORY_COLUMNS = (
@@ -177,19 +178,6 @@ def read_history(path: Path) -> list[dict[str, float | None]]:
         ]
 
 
-def differences(one: Any, other: Any, path: str = "") -> list[str]:
-    """Paths at which two resolved cases differ."""
-    if isinstance(one, dict) and isinstance(other, dict):
-        keys = list(dict.fromkeys([*one, *other]))
-        steps = [(str(key), one.get(key), other.get(key)) for key in keys]
-    elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
-        steps = [(str(i), a, b) for i, (a, b) in enumerate(zip(one, other, strict=True))]
-    else:
-        return [] if one == other else [path]
-    dot = f"{path}." if path else ""
-    return [line for key, a, b in steps for line in differences(a, b, dot + key)]
-
-
 def _make(path: Path, case: Case, overwrite: bool) -> None:
     if path.exists():
         if not overwrite:
@@ -211,7 +199,7 @@ def _make(path: Path, case: Case, overwrite: bool) -> None:
 
 
 def _same_case(path: Path, case: Case) -> None:
-    from fiberbend.reader.reader import load_yaml
+    from fiberbend.reader.yaml_file import load_yaml
 
     if not (path / CASE_FILE).exists():
         raise CaseError([Problem(str(path), f"holds no {CASE_FILE}, expected a run to resume")])
@@ -219,18 +207,10 @@ def _same_case(path: Path, case: Case) -> None:
     changed = differences(before, now)
     if changed:
         raise CaseError(
-            Problem(
-                field,
-                f"{found(_at(now, field))}, expected {found(_at(before, field))} as in {path}",
-            )
+            Problem(field, f"{found(new)}, expected {found(old)} as in {path}")
             for field in changed
+            for new, old in [(value_at(now, field), value_at(before, field))]
         )
-
-
-def _at(data: Any, path: str) -> Any:
-    for key in path.split("."):
-        data = data.get(key) if isinstance(data, dict) else data[int(key)]
-    return data
 
 
 def _cell(value: Any) -> Any:

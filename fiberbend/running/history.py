@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +11,7 @@ from fem.effects.embedded_fibers import FiberPotential
 from fem.march.records import MODES, State
 from fem.scene import Scene
 from fem.solver.newton import Outcome
+from fiberbend.models.model import Gauge
 
 Floats = npt.NDArray[np.float64]
 
@@ -18,19 +19,6 @@ DEGREE = 3
 """Of the spline through the steps."""
 DOUBTS, NOTHING = 2.0, 2e-5
 """Energy out of nowhere: more than so many doubts, and than this part of the greatest."""
-
-
-class Gauge(Protocol):
-    """What a model reads off a state beside pressure, angle and energies."""
-
-    def tip(self, state: State) -> tuple[float, float]:
-        """y and z of the centroid of the tip cap's outer face, mm."""
-
-    def columns(self, state: State) -> dict[str, float]:
-        """Further columns, behind the chamber's volume."""
-
-    def last_columns(self, state: State) -> dict[str, float]:
-        """Columns at the end of the row; only at equilibria under load."""
 
 
 class Recorder:

@@ -5,6 +5,12 @@ from __future__ import annotations
 import os
 import sys
 import time
+import traceback
+from pathlib import Path
+from typing import TextIO
+
+FAILED = 2
+"""Exit code of a solution that failed."""
 
 _RANK = ("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID")
 _PATIENCE = 20.0
@@ -60,6 +66,42 @@ def let_rank_0_speak() -> None:
     """
     if rank() > 0 and "mpi4py.MPI" not in sys.modules:
         time.sleep(_PATIENCE)
+
+
+def say(text: str, stream: TextIO | None = None) -> None:
+    """A line for the user, from one rank.
+
+    Args:
+        text: the line.
+        stream: where to write, the standard output unless said.
+    """
+    if rank() == 0:
+        print(text, file=stream or sys.stdout, flush=True)
+
+
+def crash(error: BaseException, out: Path) -> int:
+    """Leave a log and end all ranks: those that wait for this one would wait for ever.
+
+    Args:
+        error: what has ended the command.
+        out: its folder, which may not be there yet.
+
+    Returns:
+        The exit code, where this process is alone.
+    """
+    log = out / f"error.rank{rank()}.log" if out.is_dir() else Path(f"fiberbend.rank{rank()}.log")
+    what = traceback.format_exception_only(error)[-1].strip().splitlines()[0]
+    try:
+        log.write_text("".join(traceback.format_exception(error)), encoding="utf-8")
+        where = f"; see {log}"
+    except OSError:
+        where = ""
+    print(f"fiberbend: rank {rank()} stopped: {what}{where}", file=sys.stderr, flush=True)
+    if size() > 1:
+        from mpi4py import MPI
+
+        MPI.COMM_WORLD.Abort(FAILED)
+    return FAILED
 
 
 def _first(names: tuple[str, ...], default: int) -> int:

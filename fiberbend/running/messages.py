@@ -6,11 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fem.kinematics.uniform import Uniform
-from fem.march.frames import Frames
 from fem.march.records import Critical, Report
-from fem.march.selfcontact import BodyRod, Rod, UniformRod
-from fem.scene import Scene
 
 UNSTABLE_END = (
     "the end is unstable where every load is held at its value: given the pressure, no actuator "
@@ -107,26 +103,12 @@ def jumped(before: dict[str, Any], after: dict[str, Any]) -> str:
     )
 
 
-def rod(scene: Scene, frames: Frames | None, cap: float) -> Rod:
-    """A model's states as rods with caps.
-
-    Args:
-        scene: the scene.
-        frames: rod frames of a body; None where the kinematics turns by itself.
-        cap: length of each cap, mm.
-    """
-    if isinstance(scene.body, Uniform):
-        return UniformRod(scene.body, cap)
-    assert frames is not None
-    return BodyRod(scene.body, frames)
-
-
 def self_contact(measures: dict[str, float]) -> str:
     """A line on a body that begins to pass through itself."""
     pressure = measures.get("value pressure")
     at = "" if pressure is None else f" ({1e3 * pressure:.4g} kPa)"
     return (
-        f"from {_degrees(measures['followed'])}{at} on the body passes through itself: contact "
+        f"from {_degrees(measures['control'])}{at} on the body passes through itself: contact "
         "with itself is not modelled"
     )
 

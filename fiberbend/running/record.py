@@ -1,66 +1,97 @@
-"""Parts of run.json."""
+"""Content of run.json."""
 
 from __future__ import annotations
 
 import platform
+import resource
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fem import kernels
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.contact import obstacles, stiffness
-from fiberbend.models.closed_form import lever_arm
+from fiberbend.compare.check import Check
+from fiberbend.models.resolution import winding_remark
+from fiberbend.running import messages
+from fiberbend.running.assembly import Assembly
 from fiberbend.version import __version__
 
+Row = Mapping[str, Any]
 
-def versions() -> dict[str, str]:
-    """Versions that a result depends on."""
+
+def versions(*libraries: Mapping[str, str]) -> dict[str, str]:
+    """Versions that a result depends on: the program's, Python's and those of libraries."""
+    found = {"fiberbend": __version__, "python": platform.python_version()}
+    for more in libraries:
+        found |= more
+    return found
+
+
+def peak_memory_mb() -> float:
+    """Greatest memory of this process so far, MB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def entries(
+    status: str,
+    reason: str,
+    model: str,
+    counts: Mapping[str, Any],
+    wall_s: Mapping[str, float],
+    memory_mb: float,
+    ranks: int,
+    libraries: Mapping[str, str],
+) -> dict[str, Any]:
+    """What run.json says of a run of any model, in this order.
+
+    Args:
+        status: 'converged', 'stopped' or 'failed'.
+        reason: why not converged, or empty.
+        model: name of the model.
+        counts: "unknowns", "load_steps", "newton_iterations", "cutbacks" and what the model adds.
+        wall_s: seconds by phase.
+        memory_mb: greatest memory of all ranks together, MB.
+        ranks: number of ranks.
+        libraries: versions beside the program's and Python's.
+    """
     return {
-        "fiberbend": __version__,
-        "python": platform.python_version(),
-        **kernels.versions(),
+        "status": status,
+        "reason": reason,
+        "model": model,
+        **counts,
+        "wall_s": dict(wall_s),
+        "peak_memory_MB": round(memory_mb, 1),
+        "ranks": ranks,
+        "versions": versions(libraries),
     }
 
 
-def blocked_tip(case: Case, row: Mapping[str, Any]) -> dict[str, float]:
-    """F L_f beside κ P of Polygerinos et al. 2015, eqs. (20) and (21).
-
-    Args:
-        case: κ is its chamber's first moment about y = 0, L_f reaches from z = L to the middle of
-            the post.
-        row: the last row of the history, under load.
-    """
-    kappa, lever = convert.dimensions(case.actuator).chamber_moment, lever_arm(case)
+def counted(assembly: Assembly, warnings: Sequence[str]) -> dict[str, Any]:
+    """What a run of finite elements has counted, and what it warns of."""
+    scene, report = assembly.scene, assembly.march.report
+    data = scene.domain.data
     return {
-        "L_f_mm": lever,
-        "tip_force_N": row["tip_force_N"],
-        "roof_force_N": row["roof_force_N"],
-        "F_L_f_Nmm": row["tip_force_N"] * lever,
-        "kappa_P_Nmm": kappa * row["pressure_kPa"] * 1e-3,
-        "tip_section_rotation_deg": row["angle_deg"],
-        "balance_force": row["balance_force"],
-        "balance_moment": row["balance_moment"],
+        "half": data.half,
+        "unknowns": scene.body.size,
+        "elements": len(data.cells),
+        "element": data.cell_type,
+        "effects": scene.keys,
+        "load_steps": report.steps,
+        "newton_iterations": report.iterations,
+        "factorisations": report.factorisations,
+        "cutbacks": report.cutbacks,
+        "warnings": list(warnings),
+        "critical_points": messages.critical_points(report, scene.body.symmetry_factor),
     }
 
 
-def contact(case: Case, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """When each obstacle was touched and left, and the force on the body at the end.
+def of_effects(case: Case, rows: Sequence[Row]) -> dict[str, Any]:
+    """What the effects of a case report of a body, and whether its winding is resolved."""
+    found: dict[str, Any] = {"winding": winding_remark(case)}
+    for effect in case.effects:
+        found |= effect.summary(convert.site(case), rows)
+    return found
 
-    Args:
-        case: a case with obstacles.
-        rows: its history, from rest on.
-    """
-    entry: dict[str, Any] = {"stiffness_MPa_per_mm": stiffness(case)}
-    for name in obstacles(case):
-        touching = [bool(row.get(f"contact_{name}_area_mm2")) for row in rows]
-        changes = [i for i in range(1, len(rows)) if touching[i] != touching[i - 1]]
-        depth = max(-row.get(f"contact_{name}_gap_mm", 0.0) for row in rows)
-        entry[name] = {
-            "touched_at_kPa": [rows[i]["pressure_kPa"] for i in changes if touching[i]],
-            "left_at_kPa": [rows[i]["pressure_kPa"] for i in changes if not touching[i]],
-            "force_y_N": rows[-1].get(f"contact_{name}_y_N"),
-            "force_z_N": rows[-1].get(f"contact_{name}_z_N"),
-            "greatest_depth_mm": max(depth, 0.0),
-        }
-    return entry
+
+def beside(check: Check | None) -> dict[str, Any]:
+    """How the run compares with other models, where that is known."""
+    return {} if check is None else {"crosscheck": check.entry()}

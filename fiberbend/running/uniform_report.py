@@ -10,7 +10,6 @@ import numpy as np
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.table import WindingEffect
 from fiberbend.running.folder import RunFolder
 from fiberbend.states.recovery import NodalFields, recover
 from fiberbend.states.snapshot import Scenery, Snapshot, Write
@@ -76,12 +75,12 @@ def _draw(
     draw_sections(scenery, snapshots, write, fields, name)
     try:
         draw_bent(whole(), scenery, snapshots, write, fields)
-        winding = case.find(WindingEffect)
-        if winding is not None and scenery.lines is not None:
+        turns = case.turns
+        if turns is not None and scenery.lines is not None:
             from fiberbend.drawing.cell import draw_cell
 
-            stiffness = convert.fiber(winding.fiber).stiffness
-            draw_cell(scenery, snapshots, write, convert.dimensions(case.actuator), stiffness)
+            actuator = convert.dimensions(case.actuator)
+            draw_cell(scenery, snapshots, write, actuator, turns.stiffness)
     except PictureError as error:
         say(f"no pictures in space: {error}")
 

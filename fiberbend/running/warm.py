@@ -17,13 +17,9 @@ from fem.scene import Scene
 from fem.solver.newton import Outcome
 from fiberbend.case.case import Case
 from fiberbend.case.section_beside import as_section
-from fiberbend.effects.table import (
-    BlockedTipEffect,
-    ContactEffect,
-    PressureEffect,
-    WindingEffect,
-)
-from fiberbend.models.kinds import make_mesh
+from fiberbend.effects.pressure import inflate
+from fiberbend.models.choice import meshed
+from fiberbend.models.result import Curve
 from fiberbend.running.assembly import assemble
 
 Floats = npt.NDArray[np.float64]
@@ -43,6 +39,7 @@ class SectionStates:
         curvature: k, 1/mm, (m,).
         stretch: λ0, (m,).
         displacement: u and v, mm, (m, n, 2).
+        bending: pressure, angle and volume of the whole actuator.
     """
 
     nodes: Floats
@@ -50,6 +47,7 @@ class SectionStates:
     curvature: Floats
     stretch: Floats
     displacement: Floats
+    bending: Curve
 
     def guide(self, scene: Scene, frames: Frames, length: float) -> Guide:
         """The guide of a body."""
@@ -71,13 +69,7 @@ class SectionStates:
 
 def guides(case: Case) -> bool:
     """Whether a section bends as the body of a case does, between its ends."""
-    winding = case.find(WindingEffect)
-    return (
-        case.find(PressureEffect) is not None
-        and case.find(BlockedTipEffect) is None
-        and case.find(ContactEffect) is None
-        and (winding is None or winding.pattern == "double-helix")
-    )
+    return case.inflation is not None and all(effect.steers() for effect in case.effects)
 
 
 def section_states(case: Case) -> SectionStates | None:
@@ -89,13 +81,13 @@ def section_states(case: Case) -> SectionStates | None:
     Returns:
         The states; None where the section does not get anywhere.
     """
-    pressure = case.find(PressureEffect)
-    assert pressure is not None
-    if pressure.angle is not None:
-        pressure = pressure.model_copy(update={"angle": BEYOND * pressure.angle})
-    section = as_section(case, pressure)
+    load = next(effect for effect in case.effects if effect.inflation() is not None)
+    inflation = load.inflation()
+    if inflation is not None and inflation.angle is not None:
+        load = inflate(angle=BEYOND * inflation.angle)
+    section = as_section(case, load)
     stop = case.output.stop_at_angle
-    if stop is not None and pressure.angle is None:
+    if stop is not None and inflation is not None and inflation.angle is None:
         output = section.output.model_copy(update={"stop_at_angle": BEYOND * stop})
         section = section.model_copy(update={"output": output})
     states: list[State] = []
@@ -103,10 +95,10 @@ def section_states(case: Case) -> SectionStates | None:
     def keep(state: State, _outcome: Outcome) -> None:
         states.append(state)
 
-    mesh = make_mesh(section, "section")
-    assembly = assemble(section, "section", mesh, MPI.COMM_SELF, [AfterStep(keep)])
+    mesh = meshed(section).mesh(section)
+    assembly = assemble(section, mesh, MPI.COMM_SELF)
     states.append(assembly.march.rest)
-    assembly.march.run(assembly.ramps)
+    assembly.march.run(assembly.ramps, [AfterStep(keep)])
     if len(states) < 4:
         return None
     copies = assembly.scene.body.symmetry_factor
@@ -117,10 +109,14 @@ def section_states(case: Case) -> SectionStates | None:
         if np.all(np.diff(values) > 0):
             measures[name] = values * (copies if name.startswith("conjugate") else 1.0)
     dofs = assembly.scene.body.node_dofs
+    pressure, angle, volume = (
+        np.array([state.measures[name] for state in states]) for name in names
+    )
     return SectionStates(
         mesh.nodes,
         measures,
         np.array([state.scalars[CURVATURE] for state in states]),
         np.array([state.scalars[STRETCH] for state in states]),
         np.array([state.w[dofs] for state in states]),
+        Curve(pressure, angle, copies * volume),
     )

@@ -9,6 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from fiberbend.schema.paths import value_at
 from fiberbend.schema.units import KINDS, parse
 
 _QUANTITY = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)? ?[A-Za-z^/0-9]*")
@@ -60,18 +61,6 @@ def labels(paths: Sequence[str]) -> dict[str, str]:
         )
         result[path] = ".".join(parts[-next(counts, len(parts)) :])
     return result
-
-
-def value_at(resolved: Any, path: str) -> Any:
-    """Value at a dotted path of a resolved case, or None where there is none."""
-    for key in path.split("."):
-        if isinstance(resolved, Mapping):
-            resolved = resolved.get(key)
-        elif isinstance(resolved, list) and key.isdecimal() and int(key) < len(resolved):
-            resolved = resolved[int(key)]
-        else:
-            return None
-    return resolved
 
 
 def columns(names: Mapping[str, str], resolved: Sequence[Any]) -> tuple[Column, ...]:

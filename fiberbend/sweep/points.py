@@ -15,22 +15,19 @@ from typing import Any
 from pydantic import ValidationError
 
 from fiberbend.case.case import Case
-from fiberbend.effects.table import PressureEffect, StraightEffect
-from fiberbend.models.choice import UNIFORM, choose_model
-from fiberbend.reader.reader import (
-    apply_setting,
-    load_yaml,
-    parse_case,
-    put,
-)
-from fiberbend.schema.problems import CaseError, Problem, from_pydantic
+from fiberbend.effects.straight import kept_straight
+from fiberbend.models.choice import choose_model
+from fiberbend.reader.reader import parse_case
+from fiberbend.reader.yaml_file import apply_setting, load_yaml
+from fiberbend.schema.paths import put, value_at
+from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.units import parse, show
+from fiberbend.schema.validation import from_pydantic
 from fiberbend.sweep.fields import (
     Column,
     columns,
     labels,
     point_name,
-    value_at,
 )
 from fiberbend.sweep.file import Report, SweepFile, contradictions
 
@@ -101,8 +98,11 @@ def read_sweep(path: Path | str, settings: Iterable[str] = ()) -> Sweep:
         CaseError: everything that is wrong with the file and with its points.
     """
     path = Path(path)
+    data = load_yaml(path)
+    if "case" not in data and "actuator" in data:
+        raise CaseError([Problem(str(path), f"this is a case: fiberbend run {path}")])
     try:
-        file = SweepFile.model_validate(load_yaml(path))
+        file = SweepFile.model_validate(data)
     except ValidationError as error:
         raise CaseError(from_pydantic(error, SweepFile)) from None
     problems = list(contradictions(file))
@@ -236,15 +236,11 @@ def _case(base: dict[str, Any], settings: tuple[_Setting, ...], report: Report) 
 
 
 def _blocked(case: Case, report: Report) -> Case | None:
-    model, _ = choose_model(case)
-    if report.force_at is None or model not in UNIFORM or case.find(StraightEffect) is not None:
+    model = choose_model(case)[0]
+    if report.force_at is None or case.straight or not model.is_kept_straight:
         return None
-    data = case.resolved()
-    for entry in data["effects"]:
-        if PressureEffect.name in entry:
-            entry[PressureEffect.name] = {"to": show(report.force_at, "pressure")}
-    data["effects"].append({StraightEffect.name: {}})
-    data |= {"model": model, "output": {"pictures": False, "fields": False}}
+    data = kept_straight(case.resolved(), show(report.force_at, "pressure"))
+    data |= {"model": model.name, "output": {"pictures": False, "fields": False}}
     try:
         return parse_case(data)
     except CaseError as error:

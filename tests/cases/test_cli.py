@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import subprocess
 import sys
 import types
@@ -13,14 +14,16 @@ from typing import Any
 import pytest
 
 from fiberbend import __version__
-from fiberbend.cli import main
+from fiberbend.cli import app, main
 from fiberbend.reader.reader import read_case
 from fiberbend.running import launch
 from fiberbend.running.folder import RunFolder
+from fiberbend.sweep.points import read_sweep
 from tests.cases import bad_cases
 
 ROOT = Path(__file__).resolve().parents[2]
 BASELINE = str(ROOT / "cases" / "free_bending.yaml")
+SWEEP = str(ROOT / "cases" / "sweeps" / "radius_length_wall.yaml")
 TERSE = ["actuator.radius=8", "effects.1.winding.pitch=0 mm", "effects.2.friction.mu=0.3"]
 
 
@@ -57,16 +60,96 @@ def test_wrong_input_ends_with_1(
     assert err.count("\n") == 1
 
 
-@pytest.mark.parametrize("arguments", [[], ["bend"], ["run"], ["validate", BASELINE, "--sett"]])
-def test_wrong_command_line_ends_with_1(arguments: list[str]) -> None:
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        ([], "no command"),
+        (["bend"], 'Unknown command "bend"'),
+        (["valdate", BASELINE], 'Unknown command "valdate". Did you mean "validate"?'),
+        (["run"], 'Command "run" parameter CASE requires an argument'),
+        (["validate", BASELINE, BASELINE], "Unused Tokens"),
+        (["validate", BASELINE, "--sett"], "Unknown option: --sett. Did you mean --set?"),
+        (["validate", "--case", BASELINE], "Unknown option: --case"),
+        (["run", BASELINE, "--no-quiet"], "Unknown option: --no-quiet"),
+        (["run", BASELINE, "--overwrite", "--resume"], "--resume and --overwrite together"),
+        (["sweep", BASELINE, "-j", "0"], 'Invalid value "0" for -j. Expected a whole number'),
+        (["sweep", BASELINE, "--jobs", "x"], "Invalid value for --jobs"),
+        (["control", BASELINE, "--suply", "1"], "Unknown option: --suply. Did you mean --supply?"),
+        (["control", BASELINE, "--plant", "sectio"], 'Invalid value "sectio" for --plant'),
+        (["completion", "bsh"], 'Invalid value "bsh" for SHELL'),
+    ],
+)
+def test_wrong_command_line_ends_with_1(
+    arguments: list[str], line: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     with pytest.raises(SystemExit) as stop:
         main(arguments)
     assert stop.value.code == 1
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith(f"fiberbend: {line}")
+    assert err.count("\n") == 1
 
 
-def test_version(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["version"]) == 0
+@pytest.mark.parametrize("arguments", [["version"], ["--version"]])
+def test_version(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(arguments) == 0
     assert capsys.readouterr().out.strip() == __version__
+
+
+COMMANDS = ("validate", "plan", "run", "sweep", "control", "completion")
+
+
+@pytest.mark.parametrize("flag", ["--help", "-h"])
+def test_help_lists_the_commands(flag: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([flag]) == 0
+    out = capsys.readouterr().out
+    for command in (*COMMANDS, "schema", "version"):
+        assert f" {command} " in out
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_of_a_command_has_examples_that_can_be_read(
+    command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([command, "--help"]) == 0
+    _, _, examples = capsys.readouterr().out.partition("Examples:")
+    lines = [line for line in examples.splitlines() if f"fiberbend {command}" in line]
+    assert len(lines) >= 2
+    for line in lines:
+        _, _, text = line.partition("fiberbend ")
+        words = shlex.split(text.partition(" >")[0].removesuffix(")"))
+        _, bound, _ = app.parse_args(words, exit_on_error=False, print_error=False)
+        if command != "completion":
+            path = ROOT / str(bound.args[0])
+            settings = bound.kwargs.get("settings", ())
+            read = read_sweep if command == "sweep" else read_case
+            read(path, settings)  # type: ignore[operator]
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion_names_commands_and_options(
+    shell: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["completion", shell]) == 0
+    script = capsys.readouterr().out
+    for word in ("validate", "overwrite", "dead-zone-divisor"):
+        assert word in script
+    if shell == "bash":
+        done = subprocess.run(["bash", "-n"], input=script, text=True, capture_output=True)
+        assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("command", ["validate", "plan", "run", "control"])
+def test_a_sweep_is_no_case(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([command, SWEEP, "--set", "actuator.radius=8"]) == 1
+    assert capsys.readouterr() == ("", f"{SWEEP}: this is a sweep: fiberbend sweep {SWEEP}\n")
+
+
+def test_a_case_is_no_sweep(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sweep", BASELINE, "--out", str(tmp_path / "out")]) == 1
+    assert capsys.readouterr() == ("", f"{BASELINE}: this is a case: fiberbend run {BASELINE}\n")
+    assert not (tmp_path / "out").exists()
 
 
 def test_schema(capsys: pytest.CaptureFixture[str]) -> None:
@@ -140,6 +223,8 @@ def test_other_ranks_are_silent(
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
     assert main(["validate", BASELINE, "--set", "actuator.radius=8"]) == 1
     assert main(["plan", BASELINE]) == 0
+    for arguments in (["--help"], ["run", "--help"], ["--version"], ["completion", "bash"]):
+        assert main(arguments) == 0
     with pytest.raises(SystemExit):
         main(["bend"])
     assert capsys.readouterr() == ("", "")
@@ -250,7 +335,7 @@ entry()
     ("arguments", "line"),
     [
         (["run", BASELINE, "--set", "actuator.radius=8"], "actuator.radius: 8, expected a length"),
-        (["bend"], "fiberbend: argument COMMAND: invalid choice"),
+        (["bend"], 'fiberbend: Unknown command "bend"'),
     ],
 )
 def test_rank_0_speaks_though_it_is_last(

@@ -15,7 +15,6 @@ from fiberbend.running.folder import (
     HISTORY_COLUMNS,
     RUN_KEYS,
     RunFolder,
-    differences,
     read_history,
 )
 from fiberbend.running.progress import Progress
@@ -88,11 +87,6 @@ def test_overwrite_spares_what_is_no_run(tmp_path: Path) -> None:
     with pytest.raises(CaseError, match="expected a folder"):
         RunFolder.create(tmp_path / "thesis.tex" / "run", CASE)
     assert (tmp_path / "thesis.tex").read_text(encoding="utf-8") == "years"
-
-
-def test_differences() -> None:
-    assert differences({"a": {"b": 1, "c": [1, 2]}}, {"a": {"b": 1, "c": [1, 3]}}) == ["a.c.1"]
-    assert differences({"a": [1]}, {"a": [1, 2], "d": 0}) == ["a", "d"]
 
 
 class _Terminal(io.StringIO):

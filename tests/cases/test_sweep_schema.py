@@ -214,7 +214,10 @@ BAD: list[tuple[dict[str, Any], list[str]]] = [
     ({"case": 3}, ["case: 3, expected the path of a case file, or a case"]),
     (
         {"vari": {}},
-        ["vari: unknown key, expected one of title, case, set, vary, zip, points, report"],
+        [
+            "vari: unknown key, expected one of title, case, set, vary, zip, points, report; "
+            "did you mean vary?"
+        ],
     ),
     (
         {"report": {"angles": [90], "maps": ["colour"]}},

@@ -33,19 +33,21 @@ from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome, Settings
 from geometry.actuator import Actuator
 from geometry.bodies.extrude import swept_body
-from geometry.bodies.solids import tube_sector
 from geometry.mesh.data import MeshData
 from geometry.mesh.tets import to_tetrahedra
+from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize
-from geometry.winding.embed import embed, smear
+from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
+from geometry.winding.smear import smear
+from tests.exact.solids import tube_sector
 
 Floats = npt.NDArray[np.float64]
 CELLS = ("hexahedron", "tetrahedron")
 
-STUB = Actuator(radius=8, length=8, wall=2, floor=2, sheath=None, cap=4)
+STUB = HemicircleActuator(radius=8, length=8, wall=2, floor=2, cap=4)
 """Shortest actuator with every surface."""
-SHORT = Actuator(radius=8, length=24, wall=2, floor=2, sheath=1, cap=5)
+SHORT = HemicircleActuator(radius=8, length=24, wall=2, floor=2, sheath=1, cap=5)
 """Cheapest actuator that bends."""
 PITCH = 3.0
 EA = 881.0
@@ -73,6 +75,11 @@ def law(name: str, regions: Sequence[str], scale: float = 1.0) -> Elastic:
         "neo-hooke": {"mu": 0.22 * scale},
         "mooney-rivlin": {"c10": 0.09 * scale, "c01": 0.03 * scale},
         "yeoh": {"c1": 0.11 * scale, "c2": 0.02 * scale, "c3": 0.003 * scale},
+        "gent": {"mu": 0.22 * scale, "jm": 30.0},
+        "ogden": {
+            **{"mu1": 0.2 * scale, "alpha1": 1.3, "mu2": 0.01 * scale, "alpha2": 5.0},
+            **{"mu3": 0.03 * scale, "alpha3": -2.0},
+        },
     }
     return Elastic(name, dict.fromkeys(regions, parameters[name]))
 

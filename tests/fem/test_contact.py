@@ -23,7 +23,7 @@ from fem.results.measures import balance
 from fem.results.touch import Probe
 from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome, Settings
-from geometry.bodies.solids import box
+from tests.exact.solids import box
 from tests.fem.parts import Floats, stub
 
 LENGTH, SIDE = 100.0, 5.0

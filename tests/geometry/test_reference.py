@@ -6,7 +6,6 @@ import basix
 import numpy as np
 import pytest
 
-from geometry.actuator import Actuator
 from geometry.bodies.extrude import swept_body, swept_section
 from geometry.checks import surface_area
 from geometry.mesh.data import (
@@ -19,12 +18,13 @@ from geometry.mesh.data import (
 )
 from geometry.mesh.reference import facet_rules, shape_functions, surface_weights
 from geometry.mesh.tets import to_tetrahedra
+from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize
 
 CELLS = ("quadrilateral", "hexahedron", "tetrahedron")
 DEGREE = {"quadrilateral": 5, "hexahedron": 5, "tetrahedron": 4}
 """Of the finite elements' measures."""
-STUB = Actuator(radius=8, length=8, wall=2, floor=2, sheath=None, cap=4)
+STUB = HemicircleActuator(radius=8, length=8, wall=2, floor=2, cap=4)
 PLANE = ("clamp", "section_root", "section_tip", "tip")
 CURVED = ("chamber", "winding", "outer")
 

@@ -49,14 +49,14 @@ NAMES = [f"radius-{r}mm_wall-{w}mm" for r in (7, 8) for w in (1.5, 2, 2.5)]
 LAST = NAMES[-1]
 
 SOLVER = '''
-"""Stands for fiberbend.runner. FAKE holds what happens at which point, "name=what …"."""
+"""Stands for fiberbend.running.runner. FAKE holds what happens at which point, "name=what …"."""
 import os, signal, sys, time, types
 from pathlib import Path
 
 ACTS = dict(item.split("=", 1) for item in os.environ["FAKE"].split() if "=" in item)
 
 def run_case(case, out, overwrite=False, progress=None, resume=False):
-    from fiberbend.result import RunResult
+    from fiberbend.models.result import RunResult
     from fiberbend.running.folder import RunFolder
     folder = RunFolder.resume(out, case) if resume else RunFolder.create(out, case, overwrite)
     with open(os.environ["FAKE_LOG"], "a") as log:

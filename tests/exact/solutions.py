@@ -1,7 +1,8 @@
-"""Exact solutions of incompressible elasticity for laws W(I1), to verify a solver against.
+"""Exact solutions of incompressible elasticity for any isotropic law, to verify a solver against.
 
-mm, N, MPa. With the isochoric energy W(Ī1) + p (J − 1) the Cauchy stress at J = 1 is
-σ = p I + 2 W' (b − I1/3 I), so the multiplier p is the mean stress tr σ / 3.
+mm, N, MPa. With the principal stretches λi and βi = λi ∂W/∂λi the principal Cauchy stresses are βi
+but for a pressure. With the energy W of the isochoric deformation and p (J − 1) the multiplier p is
+the mean stress tr σ / 3.
 """
 
 from __future__ import annotations
@@ -14,16 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 
+from analytic.stress import Law
+
 Floats = NDArray[np.float64]
-Slope = Callable[[Floats], Floats]
-"""dW/dI1 in MPa as a function of I1."""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
-
-
-def yeoh_slope(c1: float, c2: float = 0.0, c3: float = 0.0) -> Slope:
-    """Derivative of W = c1 (I1 − 3) + c2 (I1 − 3)² + c3 (I1 − 3)³; neo-Hooke is c1 = μ/2."""
-    return lambda i1: c1 + 2 * c2 * (i1 - 3) + 3 * c3 * (i1 - 3) ** 2
 
 
 def _integral(f: Callable[[Floats], Floats], low: Floats | float, high: Floats | float) -> Floats:
@@ -39,7 +35,7 @@ class Tube:
     """Inflation and uniform extension of a thick tube about the z axis, r² = a² + (R² − A²)/λz.
 
     Attributes:
-        slope: dW/dI1.
+        law: the rubber.
         inner: inner radius at rest, A.
         outer: outer radius at rest, B.
         deformed_inner: inner radius, a.
@@ -47,7 +43,7 @@ class Tube:
         outside: pressure on the outer surface, MPa.
     """
 
-    slope: Slope
+    law: Law
     inner: float
     outer: float
     deformed_inner: float
@@ -58,19 +54,18 @@ class Tube:
         """Deformed radius of the material at radius R."""
         return np.sqrt(self.deformed_inner**2 + (np.square(R) - self.inner**2) / self.stretch)
 
-    def _stretches(self, R: Floats | float) -> tuple[Floats, Floats, Floats]:
-        """λr, λθ and 2 W'."""
+    def _stresses(self, R: Floats | float) -> tuple[Floats, Floats, Floats]:
+        """βr, βθ, βz."""
         around = self.radius(R) / R
-        across = 1 / (around * self.stretch)
-        i1 = across**2 + around**2 + self.stretch**2
-        return across, around, 2 * self.slope(i1)
+        along = np.full_like(around, self.stretch)
+        return self.law(1 / (around * along), around, along)
 
     def radial_stress(self, R: Floats | float) -> Floats:
         """Cauchy stress σ_rr, from dσ_rr/dr = (σ_θθ − σ_rr)/r and the outer surface."""
 
         def rate(s: Floats) -> Floats:
-            across, around, twice = self._stretches(s)
-            return twice * (around**2 - across**2) / (around**2 * s * self.stretch)
+            across, around, _ = self._stresses(s)
+            return (around - across) * s / (self.radius(s) ** 2 * self.stretch)
 
         return -self.outside - _integral(rate, R, self.outer)
 
@@ -84,9 +79,8 @@ class Tube:
         """Force on a section less the thrust π a² of the pressure on closed ends, N."""
 
         def axial(R: Floats) -> Floats:
-            across, _, twice = self._stretches(R)
-            stress = self.radial_stress(R) + twice * (self.stretch**2 - across**2)
-            return stress * R / self.stretch
+            across, _, along = self._stresses(R)
+            return (self.radial_stress(R) + along - across) * R / self.stretch
 
         section = 2 * math.pi * float(_integral(axial, self.inner, self.outer))
         return section - math.pi * self.deformed_inner**2 * self.pressure
@@ -100,23 +94,22 @@ class Tube:
     def multiplier(self, X: Floats) -> Floats:
         """Mean stress p at reference points (n, 3)."""
         R = np.hypot(X[:, 0], X[:, 1])
-        across, around, twice = self._stretches(R)
-        third = (across**2 + around**2 + self.stretch**2) / 3
-        return self.radial_stress(R) - twice * (across**2 - third)
+        across, around, along = self._stresses(R)
+        return self.radial_stress(R) - across + (across + around + along) / 3
 
 
-def closed_tube(slope: Slope, inner: float, outer: float, deformed_inner: float) -> Tube:
+def closed_tube(law: Law, inner: float, outer: float, deformed_inner: float) -> Tube:
     """A tube whose closed ends are free: λz follows from the thrust."""
 
     def force(stretch: float) -> float:
-        return Tube(slope, inner, outer, deformed_inner, stretch).axial_force
+        return Tube(law, inner, outer, deformed_inner, stretch).axial_force
 
     stretch = brentq(force, 0.8, 1.3, xtol=1e-14)
-    return Tube(slope, inner, outer, deformed_inner, stretch)
+    return Tube(law, inner, outer, deformed_inner, stretch)
 
 
 def wound_tube(
-    slope: Slope, inner: float, outer: float, stretch: float, stiffness: float = math.inf
+    law: Law, inner: float, outer: float, stretch: float, stiffness: float = math.inf
 ) -> Tube:
     """A tube with closed free ends and hoops on its outer surface.
 
@@ -124,7 +117,7 @@ def wound_tube(
     thrust of the pressure inside alone balances the section.
 
     Args:
-        slope: dW/dI1.
+        law: the rubber.
         inner: inner radius at rest, mm.
         outer: outer radius at rest, mm.
         stretch: axial stretch.
@@ -134,7 +127,7 @@ def wound_tube(
 
     def at(radius: float) -> Tube:
         deformed_inner = math.sqrt(radius**2 - (outer**2 - inner**2) / stretch)
-        bare = Tube(slope, inner, outer, deformed_inner, stretch)
+        bare = Tube(law, inner, outer, deformed_inner, stretch)
         # the same pressure more inside and outside moves nothing, and adds π b² of thrust
         return dataclasses.replace(bare, outside=bare.axial_force / (math.pi * radius**2))
 
@@ -151,35 +144,54 @@ class Torsion:
     """Torsion of a solid cylinder about the z axis at constant length, θ = Θ + ψ Z.
 
     Attributes:
-        slope: dW/dI1.
+        law: the rubber.
         outer: radius, mm.
         twist: ψ, rad/mm.
     """
 
-    slope: Slope
+    law: Law
     outer: float
     twist: float
 
-    def _twice(self, R: Floats) -> Floats:
-        return 2 * self.slope(3 + (self.twist * R) ** 2)
+    def _stresses(self, R: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """βr, and of the two other directions θθ, zz and the shear θz.
+
+        In simple shear by γ = ψ R the stretches are (√(4 + γ²) ± γ)/2, and the greatest one makes
+        the angle φ with the direction of shear, tan 2φ = 2/γ.
+        """
+        shear = self.twist * R
+        root = np.sqrt(4 + shear**2)
+        first, second, radial = self.law((root + shear) / 2, (root - shear) / 2, np.ones_like(R))
+        mean, half = (first + second) / 2, (first - second) / 2
+        return radial, mean + half * shear / root, mean - half * shear / root, 2 * half / root
 
     def radial_stress(self, R: Floats) -> Floats:
-        """Cauchy stress σ_rr = σ_zz."""
-        return -_integral(lambda s: self._twice(s) * self.twist**2 * s, R, self.outer)
+        """Cauchy stress σ_rr, from dσ_rr/dr = (σ_θθ − σ_rr)/r and the free outer surface."""
+
+        def rate(s: Floats) -> Floats:
+            radial, around, _, _ = self._stresses(s)
+            return (around - radial) / s
+
+        return -_integral(rate, R, self.outer)
 
     @property
     def moment(self) -> float:
         """Torque, N mm."""
 
         def shear(R: Floats) -> Floats:
-            return 2 * math.pi * self._twice(R) * self.twist * R**3
+            return 2 * math.pi * self._stresses(R)[3] * R**2
 
         return float(_integral(shear, 0.0, self.outer))
 
     @property
     def axial_force(self) -> float:
         """Axial force that keeps the length, N; negative: the bar would grow."""
-        return float(_integral(lambda R: 2 * math.pi * self.radial_stress(R) * R, 0.0, self.outer))
+
+        def axial(R: Floats) -> Floats:
+            radial, _, along, _ = self._stresses(R)
+            return 2 * math.pi * (self.radial_stress(R) + along - radial) * R
+
+        return float(_integral(axial, 0.0, self.outer))
 
     def displacement(self, X: Floats) -> Floats:
         """Displacement at reference points (n, 3)."""
@@ -190,7 +202,8 @@ class Torsion:
     def multiplier(self, X: Floats) -> Floats:
         """Mean stress p at reference points (n, 3)."""
         R = np.hypot(X[:, 0], X[:, 1])
-        return self.radial_stress(R) + self._twice(R) * (self.twist * R) ** 2 / 3
+        radial, around, along, _ = self._stresses(R)
+        return self.radial_stress(R) - radial + (radial + around + along) / 3
 
 
 @dataclasses.dataclass(frozen=True)
@@ -200,12 +213,12 @@ class Flexure:
     r² = 2 α Y + β and θ = Z/α, toward −y; both curved faces are free, so r₁ r₂ = α².
 
     Attributes:
-        slope: dW/dI1.
+        law: the rubber.
         thickness: H, mm.
         length_per_angle: α, mm/rad.
     """
 
-    slope: Slope
+    law: Law
     thickness: float
     length_per_angle: float
 
@@ -220,16 +233,15 @@ class Flexure:
         result: Floats = np.sqrt(2 * self.length_per_angle * Y + self.radii[0] ** 2)
         return result
 
-    def _stretches(self, r: Floats) -> tuple[Floats, Floats, Floats]:
-        """λr, λθ and 2 W'."""
+    def _stresses(self, r: Floats) -> tuple[Floats, Floats, Floats]:
+        """βr, βθ, βx."""
         around = r / self.length_per_angle
-        across = 1 / around
-        return across, around, 2 * self.slope(1 + across**2 + around**2)
+        return self.law(1 / around, around, np.ones_like(around))
 
     def _radial_stress(self, r: Floats) -> Floats:
         def rate(s: Floats) -> Floats:
-            across, around, twice = self._stretches(s)
-            return twice * (around**2 - across**2) / s
+            across, around, _ = self._stresses(s)
+            return (around - across) / s
 
         return -_integral(rate, r, self.radii[1])
 
@@ -238,8 +250,8 @@ class Flexure:
         """Moment per depth, N."""
 
         def around(r: Floats) -> Floats:
-            across, hoop, twice = self._stretches(r)
-            return (self._radial_stress(r) + twice * (hoop**2 - across**2)) * r
+            across, hoop, _ = self._stresses(r)
+            return (self._radial_stress(r) + hoop - across) * r
 
         return float(_integral(around, *self.radii))
 
@@ -252,27 +264,26 @@ class Flexure:
     def multiplier(self, X: Floats) -> Floats:
         """Mean stress p at reference points (n, 3)."""
         r = self._radius(X[:, 1])
-        across, around, twice = self._stretches(r)
-        third = (1 + across**2 + around**2) / 3
-        return self._radial_stress(r) - twice * (across**2 - third)
+        across, around, along = self._stresses(r)
+        return self._radial_stress(r) - across + (across + around + along) / 3
 
 
-def sphere_pressure(slope: Slope, inner: float, outer: float, deformed_inner: float) -> float:
+def sphere_pressure(law: Law, inner: float, outer: float, deformed_inner: float) -> float:
     """Pressure in MPa inside a thick sphere of radii A, B (mm) whose inner radius is a."""
 
     def rate(R: Floats) -> Floats:
         r = np.cbrt(deformed_inner**3 + R**3 - inner**3)
         stretch = r / R
-        twice = 2 * slope(2 * stretch**2 + stretch**-4)
-        return 2 * twice * (stretch**2 - stretch**-4) * R**2 / r**3
+        around, _, across = law(stretch, stretch, stretch**-2)
+        return 2 * (around - across) * R**2 / r**3
 
     return float(_integral(rate, inner, outer))
 
 
-def sphere_limit(slope: Slope, inner: float, outer: float) -> tuple[float, float]:
+def sphere_limit(law: Law, inner: float, outer: float) -> tuple[float, float]:
     """Limit point of a thick sphere: a/A and the greatest pressure in MPa, 1 ≤ a/A ≤ 2."""
     best = minimize_scalar(
-        lambda ratio: -sphere_pressure(slope, inner, outer, ratio * inner),
+        lambda ratio: -sphere_pressure(law, inner, outer, ratio * inner),
         bounds=(1.0, 2.0),
         method="bounded",
         options={"xatol": 1e-10},

@@ -8,15 +8,15 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from geometry.bodies.solids import (
+from geometry.checks import determinants, region_volumes, surface_area
+from geometry.mesh.data import MeshData
+from geometry.mesh.tets import to_tetrahedra
+from tests.exact.solids import (
     box,
     cylinder,
     sphere_octant,
     tube_sector,
 )
-from geometry.checks import determinants, region_volumes, surface_area
-from geometry.mesh.data import MeshData
-from geometry.mesh.tets import to_tetrahedra
 
 
 def _tube(n: int) -> MeshData:

@@ -1,0 +1,90 @@
+"""The command `fiberbend control`, with an option for everything that a loop is made of."""
+
+from __future__ import annotations
+
+import dataclasses
+import typing
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from fiberbend.control.settings import Options, read_settings
+from fiberbend.reader.arguments import CaseFile, Changes
+from fiberbend.running import launch
+from fiberbend.running.launch import say
+from fiberbend.schema.quantities import Quantity
+from fiberbend.schema.units import KINDS
+
+
+def _text(name: str) -> tuple[str, Any, Any]:
+    """An option as text, its help and default from the field that reads it."""
+    field = Options.model_fields[name]
+    default = field.default
+    pair = isinstance(default, tuple)
+    shown = " ".join(f'"{part}"' for part in default) if pair else str(default or "fitted")
+    kinds = [part.kind for part in field.metadata if isinstance(part, Quantity)]
+    kind = KINDS[kinds[0]].name.split()[-1] if kinds else name.split("_")[-1]
+    annotation: Any = tuple[str, str] if pair else str
+    if typing.get_origin(field.annotation) is typing.Literal:
+        annotation = field.annotation
+    option = Parameter(
+        name=f"--{field.alias}",
+        help=field.description,
+        show_default=shown,
+        metavar="LOW HIGH" if pair else kind.upper(),
+        # "-10 deg" is a value
+        allow_leading_hyphen=True,
+    )
+    return name, Annotated[annotation | None, option], dataclasses.field(default=None)
+
+
+if TYPE_CHECKING:
+
+    class Loop:
+        """The options of a loop as text."""
+else:
+    Loop = dataclasses.make_dataclass("Loop", map(_text, Options.model_fields), frozen=True)
+    # cyclopts looks into no class of the module types, where Python 3.11 puts this one
+    Loop.__module__ = __name__
+
+_DEFAULT = Loop()
+
+
+def control(
+    case: CaseFile,
+    /,
+    *,
+    settings: Changes = (),
+    out: Path | None = None,
+    overwrite: bool = False,
+    loop: Annotated[Loop, Parameter(name="*")] = _DEFAULT,
+) -> int:
+    """Bend under feedback control: step response and sine.
+
+    Args:
+        case: Case file.
+        settings: Changes to it.
+        out: Folder; runs/CASE_control unless given.
+        overwrite: Replace an earlier one.
+        loop: The options of the loop.
+    """
+    from fiberbend.reader.reader import read_case
+    from fiberbend.schema.problems import CaseError
+
+    given = {name: value for name, value in vars(loop).items() if value is not None}
+    checked, wanted = read_case(case, settings), read_settings(given)
+    folder = out or Path("runs") / f"{Path(case).stem}_control"
+    try:
+        launch.start_mpi()
+        from fiberbend.control.command import run_control
+
+        result = run_control(checked, wanted, folder, overwrite)
+    except CaseError:
+        raise
+    except BaseException as error:
+        return launch.crash(error, folder)
+    for line in result.lines():
+        say(line)
+    say(f"results in {folder}")
+    return 0
