@@ -49,8 +49,8 @@ class Scene:
         keys: names of the effects, sorted.
         effects: the effects by these names.
         natural: global scalars in which the potential is stationary at an equilibrium.
-        force_scale: scale of the forces in the last residual.
-        force_noise: norm of the forces that round-off in stiff discrete potentials makes.
+        force_scale: scale of the forces in the last residual, N.
+        force_noise: norm of the forces that round-off in stiff discrete potentials makes, N.
         free: local dofs (owned and ghosts) that no constraint fixes, (local,).
         discrete: by key, the potentials with own code.
 
@@ -184,7 +184,7 @@ class Scene:
         return values
 
     def set(self, w: Floats) -> None:
-        """Take the owned coefficients w as the state; fixed dofs take their values."""
+        """Take the owned coefficients w, (owned,), as the state; fixed dofs take their values."""
         w = np.where(self.free[: self.body.owned], w, self._fixed_values[: self.body.owned])
         follow, lead = self.body.ties
         w[follow] = w[lead]
@@ -272,7 +272,7 @@ class Scene:
         return result
 
     def conjugate(self, name: str) -> float:
-        """−∂Π/∂q of a global scalar q: the chamber volume in mm³ for the pressure."""
+        """Work-conjugate −∂Π/∂q of a scalar q: the chamber volume in mm³ for the pressure."""
         mine = -compat.assemble_scalar(self._forms[f"conjugate {name}"])
         mine += sum(discrete.conjugate(name) for discrete in self.discrete.values())
         return float(total(self.domain.comm, mine))
@@ -333,7 +333,7 @@ class Scene:
         return r, self.force_scale
 
     def load(self, name: str, constrained: bool = False) -> Floats:
-        """∂R/∂q of a global scalar, owned part; zero on constrained dofs unless they are wanted."""
+        """∂R/∂q of a scalar, (owned,); zero on constrained dofs unless these are wanted."""
         if name not in self._loads:
             fills = [functools.partial(item.add_load, name) for item in self.discrete.values()]
             self._loads[name], _ = self._sum(self._forms[f"load {name}"], fills)
@@ -364,7 +364,7 @@ class Scene:
         return [key for key in self.keys if f"force {key}" in self._forms]
 
     def force(self, key: str) -> Floats:
-        """What an effect does to the body at the present state, −∂Π_e/∂w, owned part."""
+        """What an effect does to the body at the present state, −∂Π_e/∂w, owned part, N."""
         return -self._sum(self._forms[f"force {key}"], ())[0]
 
     @property

@@ -43,13 +43,13 @@ class Discrete(Protocol):
     index: npt.NDArray[np.int64]
 
     def update(self, w: Floats) -> None:
-        """Take the local coefficients (owned and ghosts) of the fields as the present state."""
+        """Take local coefficients of the fields (owned, then ghosts), (local,), as the state."""
 
     def energy(self) -> float:
         """This rank's energy, N mm."""
 
     def add_residual(self, b: Floats) -> None:
-        """Add ∂Π/∂w to local coefficients (owned and ghosts)."""
+        """Add ∂Π/∂w to local coefficients, (local,), N."""
 
     def add_noise(self, b: Floats) -> None:
         """Add the least forces that double precision resolves, at rest, to local coefficients."""
@@ -60,13 +60,13 @@ class Discrete(Protocol):
     def predict(
         self, correction: Floats | None, scalars: Mapping[str, float] | None = None
     ) -> None:
-        """Take Newton's last correction, which the next tangent may use; None: none yet."""
+        """Take Newton's last correction, (local,), for the next tangent to use; None: none yet."""
 
     def conjugate(self, name: str) -> float:
-        """This rank's −∂Π/∂q of a global scalar; zero where it does not enter."""
+        """This rank's work-conjugate −∂Π/∂q of a global scalar; zero where it does not enter."""
 
     def add_load(self, name: str, b: Floats) -> None:
-        """Add ∂²Π/∂w∂q of a global scalar to local coefficients (owned and ghosts)."""
+        """Add ∂²Π/∂w∂q of a global scalar to local coefficients, (local,)."""
 
     def second_derivative(self, first: str, second: str) -> float:
         """This rank's ∂²Π/∂q∂r of two global scalars."""

@@ -92,7 +92,7 @@ class March:
         self.equilibrium.restore(position.states[-1])
 
     def run(self, ramps: Sequence[Ramp], hooks: Sequence[Hook] = ()) -> Report:
-        """March through all ramps in order, earlier loads keep their values.
+        """March through all ramps in order; earlier loads keep their values.
 
         Args:
             ramps: the loads.

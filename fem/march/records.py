@@ -25,7 +25,7 @@ class State:
     """A converged state, this rank's part.
 
     Attributes:
-        w: owned coefficients.
+        w: owned coefficients of the fields, (owned,).
         scalars: values of the global scalars.
         measures: values that ramps and requests refer to, by name.
         shape: rod description of the displacement; None where the kinematics turns by itself.

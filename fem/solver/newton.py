@@ -28,7 +28,15 @@ PATIENCE = 6
 
 
 class Problem(Protocol):
-    """What Newton needs of a scene."""
+    """What Newton needs of a scene.
+
+    Attributes:
+        matrix: storage of K.
+        free: local dofs that no constraint fixes, (local,).
+        volumetric: owned dofs whose residual is a volume, not a force, (owned,).
+        volume_scale: what those are measured by, mm³.
+        force_noise: norm of the forces that round-off makes, N.
+    """
 
     matrix: PETSc.Mat
     free: npt.NDArray[np.bool_]
@@ -46,13 +54,13 @@ class Problem(Protocol):
         """Value of a global scalar."""
 
     def residual(self) -> tuple[Floats, float]:
-        """R, owned part, and a scale of the forces in it."""
+        """R, owned part, (owned,), and a scale of the forces in it, N."""
 
     def assemble_tangent(self) -> PETSc.Mat:
         """K at the present state."""
 
     def load(self, name: str) -> Floats:
-        """∂R/∂q of a scalar, owned part."""
+        """∂R/∂q of a scalar, owned part, (owned,)."""
 
     def det_f(self) -> float:
         """Least det F over all ranks."""
@@ -122,7 +130,8 @@ class Newton:
         settings: limits.
 
     Attributes:
-        seconds: wall time by phase.
+        seconds: wall time by phase, s.
+        owned: number of dofs of the fields that this rank owns.
     """
 
     def __init__(self, problem: Problem, comm: MPI.Comm, settings: Settings) -> None:
@@ -133,9 +142,13 @@ class Newton:
         self._assembly = {"residual": 0.0, "tangent": 0.0}
         self._b = problem.matrix.createVecRight()
         self._x = problem.matrix.createVecRight()
-        self._owned = self._b.getLocalSize()
+        self.owned = self._b.getLocalSize()
         self.schur: Floats = np.zeros((0, 0))
         """Schur complement of the unknown scalars at the last tangent, in the order given."""
+
+    def spend(self, phase: str, seconds: float) -> None:
+        """Add to the wall time of a phase."""
+        self._assembly[phase] += seconds
 
     @property
     def seconds(self) -> dict[str, float]:
@@ -148,7 +161,7 @@ class Newton:
         """Find w and the unknown scalars from a starting guess.
 
         Args:
-            w: owned coefficients to start from.
+            w: owned coefficients to start from, (owned,).
             unknown: names of the scalars that are found; they start from their present values.
             conditions: as many equations.
 
@@ -173,13 +186,22 @@ class Newton:
         bad = int(np.sum(np.linalg.eigvals(block).real < 0)) if len(natural) else 0
         return self.factor.negative_pivots + bad
 
-    def bordered(
+    def factorise(
         self, unknown: Sequence[str], conditions: Sequence[SideCondition]
     ) -> BorderedSystem:
-        """Rows and columns of scalars at the present state and factor."""
+        """Factorise the assembled tangent, and take its rows and columns of scalars.
+
+        Args:
+            unknown: names of m scalars that are found.
+            conditions: as many side conditions.
+        """
+        self.factor.renew()
         columns = [self.problem.load(name) for name in unknown]
-        free = self.problem.free[: self._owned]
-        return BorderedSystem(columns, unknown, conditions, free, self.factor.solve_many, self.comm)
+        free = self.problem.free[: self.owned]
+        solve = self.factor.solve_many
+        system = BorderedSystem(columns, unknown, conditions, free, solve, self.comm)
+        self.schur = system.schur
+        return system
 
     def response(
         self, scalar: str, unknown: Sequence[str] = (), conditions: Sequence[SideCondition] = ()
@@ -189,16 +211,14 @@ class Newton:
         The tangent at the present state is assembled and factorised for it.
         """
         self.problem.assemble_tangent()
-        self.factor.renew()
-        system = self.bordered(unknown, conditions)
-        self.schur = system.schur
+        system = self.factorise(unknown, conditions)
         a = self.solve_linear(self.problem.load(scalar))
         sides = np.array([condition.slope(scalar) for condition in conditions])
         a, q = system.eliminate(a, sides)
         return -a, dict(zip(unknown, -q, strict=True))
 
     def solve_linear(self, r: Floats) -> Floats:
-        """K⁻¹ r with the present factor, owned part."""
+        """K⁻¹ r with the present factor, owned parts, (owned,)."""
         self._b.array_w[:] = r
         self.factor.solve(self._b, self._x)
         return self._x.array_r.copy()
@@ -214,7 +234,7 @@ class _Solve:
         self.unknown = unknown
         self.conditions = conditions
         self.last = self.comm.rank == self.comm.size - 1
-        self.owned = newton._owned
+        self.owned = newton.owned
         self.history: list[tuple[float, float, float]] = []
         self.scale = 0.0
         self.least = np.inf
@@ -253,7 +273,7 @@ class _Solve:
         if not self.least > 0:
             self.join(f, np.full(self.owned, np.nan), np.full(len(self.unknown), np.nan))
             self.history.append((np.nan, np.nan, np.nan))
-            self.newton._assembly["residual"] += time.perf_counter() - start
+            self.newton.spend("residual", time.perf_counter() - start)
             return
         r, scale = problem.residual()
         self.scale = max(scale, 1e-30)
@@ -268,7 +288,7 @@ class _Solve:
             )
         )
         self.join(f, r, g)
-        self.newton._assembly["residual"] += time.perf_counter() - start
+        self.newton.spend("residual", time.perf_counter() - start)
 
     def jacobian(self, _snes: PETSc.SNES, _x: PETSc.Vec, _a: PETSc.Mat, _p: PETSc.Mat) -> None:
         """Tangent, its factor, and the bordered system; or the last ones again."""
@@ -281,10 +301,8 @@ class _Solve:
             # predicted fiber forces can cycle where fibers are very stiff
             problem.predict(None)
         problem.assemble_tangent()
-        self.newton._assembly["tangent"] += time.perf_counter() - start
-        self.newton.factor.renew()
-        self.system = self.newton.bordered(self.unknown, self.conditions)
-        self.newton.schur = self.system.schur
+        self.newton.spend("tangent", time.perf_counter() - start)
+        self.system = self.newton.factorise(self.unknown, self.conditions)
 
     def fast(self) -> bool:
         """Whether the last factor is likely to reduce the residual tenfold once more."""

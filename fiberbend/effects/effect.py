@@ -213,7 +213,7 @@ class Effect(Model):
         """Strips of the surface that a mesh must show for it."""
         return None
 
-    def held_scalars(self) -> tuple[str, ...]:
+    def fixed_scalars(self) -> tuple[str, ...]:
         """Global unknowns of uniform bending that it holds."""
         return ()
 

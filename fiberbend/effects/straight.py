@@ -31,7 +31,7 @@ class StraightEffect(Effect):
         """That is all it does."""
         return True
 
-    def held_scalars(self) -> tuple[str, ...]:
+    def fixed_scalars(self) -> tuple[str, ...]:
         """Curvature, and stretch where that is held."""
         return ("curvature",) if self.stretch == "free" else ("curvature", "stretch")
 

@@ -46,7 +46,7 @@ class UniformModel(MeshedModel):
 
     def scalars(self, case: Case) -> tuple[str, ...]:
         """Global unknowns: those of uniform bending that nothing holds, and a pressure found."""
-        held = {name for effect in case.effects for name in effect.held_scalars()}
+        held = {name for effect in case.effects for name in effect.fixed_scalars()}
         names = ["curvature", "stretch", *(["twist"] if twists(case) else [])]
         return (*(name for name in names if name not in held), *found_pressure(case))
 

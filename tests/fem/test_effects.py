@@ -18,7 +18,7 @@ from fem.kinematics.domain import Domain
 from fem.scene import Scene
 from geometry.checks import region_volumes
 from materials.laws.table import LAWS
-from tests.fem.parts import CELLS, Floats, gravity, law, perturb, smeared, stub, winding
+from tests.fem.parts import CELLS, EA, Floats, gravity, law, perturb, smeared, stub, winding
 
 REGIONS = ("wall", "floor")
 # The fibers' matrix lives in the sparsity of a solid: one so soft that it does not count.
@@ -192,6 +192,18 @@ def test_slack_fibers_carry_nothing() -> None:
         assert (potential.energy() > 0) == carries
         e = scene.discrete["Winding"].strain  # type: ignore[attr-defined]
         assert e == pytest.approx(factor, abs=1e-12)
+
+
+def test_round_off_at_rest_tightens_no_fiber() -> None:
+    # strains of ±1e-14 are none: their sign decided which fibers stood in the first tangent
+    scene = _scene("tension-only", "hexahedron")
+    v = _direction(scene, 6)
+    for factor in (-1e-14, 1e-14):
+        w = np.zeros(scene.body.owned)
+        w[scene.body.node_dofs] = factor * scene.domain.data.nodes
+        scene.predict(None)
+        # what is left is the geometric part of a force of 1e-11 N
+        assert np.abs(_times_tangent(scene, w, v)).max() < 1e-9 * EA
 
 
 STATES = {
