@@ -13,13 +13,9 @@ from typing import Literal
 
 import numpy as np
 
-from analytic.inverse import MonotoneInverse
+from analytic.inverse import MonotoneInverse, angle_range
 from analytic.layers import Layer, rectangle, ring
 from analytic.stress import Floats, Stress, effective
-
-BACKWARD = -math.pi / 2
-FORWARD = 4 * math.pi
-"""Greatest angles either way for which θ(P) is tabulated, rad."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -113,16 +109,24 @@ class Hemicircle:
             parts.append((around + rectangle(2 * (outer + s), -s, 0.0), self.sheath_stress))
         return parts
 
+    @property
+    def roof(self) -> float:
+        """Height of the highest line above the fulcrum, mm."""
+        return self.floor + self.radius + self.wall + self.sheath
+
+    @property
+    def angles(self) -> tuple[float, float]:
+        """Least and greatest angle that `angle` returns, rad."""
+        return angle_range(self.length, self.roof, self.sheath)
+
     @functools.cached_property
     def _inverse(self) -> MonotoneInverse:
-        # backward bending ends at half the angle at which the roof is squeezed to nothing
-        roof = self.floor + self.radius + self.wall + self.sheath
         kappa = self.kappa
 
         def pressure(angle: Floats) -> Floats:
             return self._moment(angle) / kappa
 
-        return MonotoneInverse(pressure, max(BACKWARD, -self.length / roof / 2), FORWARD)
+        return MonotoneInverse(pressure, *self.angles)
 
     def _moment(self, angle: Floats) -> Floats:
         total = sum(part.moment(angle, self.length, stress) for part, stress in self._layers)
@@ -145,8 +149,7 @@ class Hemicircle:
             ValueError: an angle at which the stretch reaches zero somewhere in the section.
         """
         angle = np.asarray(angle, dtype=float)
-        roof = self.floor + self.radius + self.wall + self.sheath
-        low, high = -self.length / roof, self.length / self.sheath if self.sheath else math.inf
+        low, high = -self.length / self.roof, self.length / self.sheath if self.sheath else math.inf
         if not np.all((angle > low) & (angle < high)):
             raise ValueError(f"angle: between {low:.4g} and {high:.4g} rad expected, not {angle}")
         return self._moment(angle)

@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from pathlib import Path
 
 import numpy as np
 
-from analytic.bending import FORWARD, Hemicircle
+from analytic.bending import Hemicircle
+from analytic.inverse import FORWARD
 from analytic.stress import Floats, effective
-from analytic.table import read_columns
 
-COLUMNS = ("pressure_kPa", "angle_deg")
 FEWEST = 3
 """Points that bend: one fixes μ̄, and a scatter of fewer than two others says nothing."""
 GREATEST_SCATTER = 0.25
@@ -86,17 +84,3 @@ def calibrate(pressure: Floats, angle: Floats, actuator: Hemicircle) -> Calibrat
             f"more than {GREATEST_SCATTER:.0%}; check units, signs and dimensions"
         )
     return Calibration(modulus, scatter / math.sqrt(square), scatter, len(rest))
-
-
-def read_curve(path: Path) -> tuple[Floats, Floats]:
-    """Read a measured curve from a CSV file with the columns `COLUMNS`; others are left alone.
-
-    Returns:
-        Pressures in MPa and angles in rad, (n,) each.
-
-    Raises:
-        ValueError: a missing column, a value that is not a finite number, or no rows.
-        OSError: the file cannot be read.
-    """
-    pressure, angle = np.array(read_columns(path, COLUMNS)).T
-    return 1e-3 * pressure, np.radians(angle)

@@ -1,14 +1,73 @@
-"""Inverse of a smooth rising function, fast enough for a control loop."""
+"""Inverse of P(θ): tabulated, fast enough for a control loop, or one angle as far as it goes."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from analytic.stress import Floats
 
+BACKWARD = -math.pi / 2
+FORWARD = 4 * math.pi
+"""Greatest angles either way for which θ(P) is looked for, rad."""
+
 _INTERVALS = 400
+_GRID = 181
+
+
+def angle_range(length: float, roof: float, below: float = 0.0) -> tuple[float, float]:
+    """Least and greatest angle in rad for which θ(P) of an actuator is looked for.
+
+    Backward bending ends at half the angle at which the roof is squeezed to nothing, forward
+    bending just before what lies below y = 0 is.
+
+    Args:
+        length: length L of the inextensible line y = 0, mm.
+        roof: height of the highest line above it, mm.
+        below: depth of the lowest line below it, mm.
+    """
+    forward = min(FORWARD, 0.99 * length / below) if below else FORWARD
+    return max(BACKWARD, -length / roof / 2), forward
+
+
+class Found(NamedTuple):
+    """An angle that `first_angle` found."""
+
+    angle: float
+    """θ in rad."""
+    pressure: float
+    """P there, MPa, without sign."""
+    end: Literal["", "peak", "limit", "bound"]
+    """Nothing where θ holds the pressure; else why it is not reached: P has its greatest value at
+    θ, the rubber meets its limiting stretch beyond θ, or θ is the bound."""
+
+
+def first_angle(pressure: Callable[[Floats], Floats], target: float, bound: float) -> Found:
+    """The first angle from 0 on that a pressure holds, or the last one before P falls or θ ends.
+
+    Args:
+        pressure: P(θ) in MPa, elementwise, P(0) = 0.
+        target: P wanted, MPa, of the sign of P(bound).
+        bound: where the search ends, rad, either way.
+    """
+    from scipy.optimize import brentq
+
+    angles = np.linspace(0.0, bound, _GRID)
+    values = np.abs(pressure(angles))
+    falls = np.flatnonzero(~(np.diff(values) > 0))
+    last = int(falls[0]) if len(falls) else _GRID - 1
+    beyond = np.flatnonzero(values[: last + 1] >= abs(target))
+    if len(beyond):
+        first = int(beyond[0])
+        angle = brentq(lambda x: float(pressure(x)) - target, angles[first - 1], angles[first])
+        return Found(float(angle), abs(target), "")
+    end: Literal["peak", "limit", "bound"] = "bound"
+    if len(falls):
+        end = "peak" if np.isfinite(values[last + 1]) else "limit"
+    return Found(float(angles[last]), float(values[last]), end)
 
 
 class MonotoneInverse:

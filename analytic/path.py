@@ -1,4 +1,4 @@
-"""Where the tip of a uniformly bent actuator is. mm, rad."""
+"""Lines of constant curvature, plane and in space, and where the tip of one is. mm, rad."""
 
 from __future__ import annotations
 
@@ -7,6 +7,80 @@ import math
 import numpy as np
 
 from analytic.stress import Floats
+
+
+def cross_matrix(vector: Floats) -> Floats:
+    """The matrix of the cross product with a vector, [a×] x = a × x.
+
+    Args:
+        vector: a, (3,).
+
+    Returns:
+        Skew matrix (3, 3).
+    """
+    x, y, z = vector
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def screw(z: Floats, spin: Floats, stretch: float) -> tuple[Floats, Floats]:
+    """A frame that moves along its own axis e3 at a constant rate while it turns at one.
+
+    R' = R [ω×] and c' = λ R e3 from R = I and c = 0. With φ = |ω| z and N = [ω×]/|ω|
+
+        R = I + sin φ N + (1 − cos φ) N²,
+        c = λ z [I + (1 − cos φ)/φ N + (1 − sin φ/φ) N²] e3:
+
+    a straight line, an arc (ω ⊥ e3), a twist (ω ∥ e3) or a helix. Rodrigues' formula and its
+    integral; Murray, Li and Sastry 1994, A Mathematical Introduction to Robotic Manipulation,
+    eqs. (2.14) and (2.36).
+
+    Args:
+        z: stations z, (n,), mm.
+        spin: ω in the frame itself, (3,), rad/mm; (k, 0, τ) bends toward −y and twists.
+        stretch: λ, mm of axis a mm of z.
+
+    Returns:
+        Rotations R, (n, 3, 3), and places c, (n, 3), mm.
+    """
+    rate = float(np.linalg.norm(spin))
+    cross = cross_matrix(spin / rate if rate else spin)
+    square = cross @ cross
+    reach = z[:, None, None]
+    turn = rate * reach
+    rotation = np.eye(3) + np.sin(turn) * cross + (1 - np.cos(turn)) * square
+    # sin φ/φ and (1 − cos φ)/φ by sinc, which needs no limit at φ = 0
+    chord = reach * np.sinc(turn / np.pi)
+    rise = reach * np.sinc(turn / (2 * np.pi)) * np.sin(turn / 2)
+    place = reach * np.eye(3) + rise * cross + (reach - chord) * square
+    return rotation, stretch * place[..., 2]
+
+
+def arc(
+    angle: Floats | float,
+    length: Floats | float,
+    ahead: Floats | float = 0.0,
+    height: Floats | float = 0.0,
+) -> Floats:
+    """Points at the end of plane arcs that start along z at the origin; `screw` in the plane.
+
+    The chord is L sin(θ/2)/(θ/2) long, at half the angle. All arguments broadcast.
+
+    Args:
+        angle: turns θ of the tangent, rad, positive toward −y.
+        length: arc lengths L, mm.
+        ahead: of a point, along the end's tangent, mm.
+        height: of a point, along the end's normal (y where θ = 0), mm.
+
+    Returns:
+        Points (z, −y), (..., 2), mm.
+    """
+    angle = np.asarray(angle, dtype=float)
+    # sinc needs no limit at θ = 0
+    chord = np.asarray(length) * np.sinc(angle / (2 * math.pi))
+    cos, sin = np.cos(angle), np.sin(angle)
+    along = chord * np.cos(angle / 2) + ahead * cos + height * sin
+    down = chord * np.sin(angle / 2) + ahead * sin - height * cos
+    return np.stack(np.broadcast_arrays(along, down), axis=-1)
 
 
 def tip(
@@ -27,14 +101,9 @@ def tip(
     Raises:
         ValueError: a length or a cap that is negative or not finite.
     """
-    angle, length = np.asarray(angle, dtype=float), np.asarray(length, dtype=float)
+    length = np.asarray(length, dtype=float)
     if not np.all((length >= 0) & (length < math.inf)):
         raise ValueError(f"length: zero or positive mm expected, not {length}")
     if not 0 <= cap < math.inf:
         raise ValueError(f"cap: zero or positive mm expected, not {cap}")
-    # the chord is L sin(θ/2)/(θ/2) long at half the angle; sinc needs no limit at θ = 0
-    chord = length * np.sinc(angle / (2 * math.pi))
-    cos, sin = np.cos(angle), np.sin(angle)
-    along = chord * np.cos(angle / 2) + cap * cos + height * sin
-    down = chord * np.sin(angle / 2) + cap * sin - height * cos
-    return np.stack(np.broadcast_arrays(along, down), axis=-1)
+    return arc(angle, length, cap, height)

@@ -1,11 +1,11 @@
 """Axial stress of rubber inside a winding: circumference fixed, thickness free. MPa.
 
 Polygerinos et al. 2015, doi 10.1109/TRO.2015.2428504, eqs. (6)–(11): λ1 = λ, λ2 = 1, λ3 = 1/λ and
-s3 = 0. For any W(I1) they give the nominal stresses
+s3 = 0. For any W(I1) they give the nominal stress
 
-    s1 = 2 W'(I1) (λ − λ⁻³),   s2 = 2 W'(I1) (1 − λ⁻²),   I1 = 1 + λ² + λ⁻²,
+    s1 = 2 W'(I1) (λ − λ⁻³),   I1 = 1 + λ² + λ⁻²,
 
-of which (8) and (9) are the case 2 W' = μ̄.
+of which (8) is the case 2 W' = μ̄.
 """
 
 from __future__ import annotations
@@ -18,6 +18,9 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Stress = Callable[[Floats], Floats]
 """Nominal axial stress s in MPa, elementwise, as a function of the axial stretch λ > 0."""
+Law = Callable[[Floats, Floats, Floats], tuple[Floats, Floats, Floats]]
+"""λi ∂W/∂λi in MPa of principal stretches with the product 1, elementwise: the principal Cauchy
+stresses but for a pressure that they share."""
 
 CALIBRATED_MODULUS = 0.314
 """μ̄ in MPa that the paper's section IV-B calibrated on (a, b, t, L) = (8, 2, 2, 160) mm."""
@@ -42,25 +45,17 @@ def effective(modulus: float = CALIBRATED_MODULUS) -> Stress:
     return stress
 
 
-def wound(slope: Callable[[Floats], Floats]) -> Stress:
-    """Eqs. (6)–(11) for any law W(I1), so that measured materials replace the fitted μ̄.
+def wound(law: Law) -> Stress:
+    """Eqs. (6)–(11) for any law, so that measured materials replace the fitted μ̄.
+
+    The stretches λ, 1, 1/λ with s3 = 0 leave s1 = (σ1 − σ3)/λ.
 
     Args:
-        slope: dW/dI1 in MPa as a function of I1, elementwise.
+        law: the rubber.
     """
 
     def stress(stretch: Floats) -> Floats:
-        square = stretch * stretch
-        return 2 * slope(1 + square + 1 / square) * (stretch - 1 / (stretch * square))
+        along, _, across = law(stretch, np.ones_like(stretch), 1 / stretch)
+        return (along - across) / stretch
 
     return stress
-
-
-def hoop_ratio(stretch: Floats | float) -> Floats:
-    """s2/s1 = λ/(λ² + 1), of any law W(I1) under (7).
-
-    The paper drops s2 as 'significantly smaller, s2 < s1/2' under (9); the ratio is 0.50 at rest
-    and still 0.46 at λ = 1.5.
-    """
-    stretch = np.asarray(stretch, dtype=float)
-    return stretch / (stretch**2 + 1)

@@ -11,9 +11,10 @@ import numpy.typing as npt
 
 from bench.contact_runs import Solved
 from bench.fig11 import Fig11
+from fiberbend.case import convert
 from fiberbend.drawing.page import COLORS, figure, save
-from fiberbend.effects.contact import obstacles
-from fiberbend.models.kinds import make_mesh
+from fiberbend.effects.contact import placed_obstacles
+from fiberbend.models.choice import meshed
 from fiberbend.reader.reader import as_case
 from geometry.mesh.data import FACET_VERTICES, vertex_positions
 
@@ -80,7 +81,7 @@ class _Side:
     def __init__(self, solved: Solved) -> None:
         self.case = as_case(solved.case)
         self.folder = solved.folder
-        mesh = make_mesh(self.case, "body")
+        mesh = meshed(self.case).mesh(self.case)
         pairs = mesh.facets["symmetry"]
         corners = np.array(vertex_positions(mesh.cell_type))[
             np.array(FACET_VERTICES[mesh.cell_type])
@@ -123,7 +124,8 @@ class _Side:
         """Bars as disks and planes as hatched lines."""
         from matplotlib.patches import Circle, Rectangle
 
-        for name, item in obstacles(self.case).items():
+        actuator = convert.dimensions(self.case.actuator)
+        for name, item in placed_obstacles(self.case.effects, actuator).items():
             numbers = item.numbers()
             if name == "cylinder":
                 y, z, radius = numbers

@@ -16,9 +16,9 @@ from mpi4py import MPI
 from bench.tables import ROOT
 from fem.results.measures import UniformAngle
 from fiberbend import run
-from fiberbend.models.kinds import make_mesh
+from fiberbend.models.choice import meshed
 from fiberbend.reader.reader import as_case
-from fiberbend.run.assembly import assemble
+from fiberbend.running.assembly import assemble
 
 RUNS = ROOT / "runs" / "contact"
 PRESSURES = (50, 100, 150, 200, 250)
@@ -113,8 +113,8 @@ def carried(name: str, way: str, kpa: int) -> dict[str, float]:
         if kept["case"] == case:
             return dict(kept["found"])
     checked = as_case(case)
-    mesh = make_mesh(checked, "body")
-    built = assemble(checked, "body", mesh, MPI.COMM_SELF, lambda _s, _o: None, print)
+    mesh = meshed(checked).mesh(checked)
+    built = assemble(checked, mesh, MPI.COMM_SELF)
     report = built.march.run(built.ramps)
     if report.status != "converged":
         raise RuntimeError(report.reason)

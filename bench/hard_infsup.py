@@ -22,9 +22,9 @@ from bench.hard_cases import ANGLE, TO, Hard, bulky
 from fem.scene import Scene
 from fem.solver.factor import Factor
 from fiberbend.case.case import Case
-from fiberbend.models.kinds import make_mesh
+from fiberbend.models.choice import meshed
 from fiberbend.reader.reader import parse_case
-from fiberbend.run.assembly import Assembly, assemble
+from fiberbend.running.assembly import Assembly, assemble
 
 STUB = {"actuator.length": "8 mm", "actuator.cap": "4 mm", TO: "1 kPa"}
 """A body as short as it can be: its size on the third mesh is what limits it."""
@@ -89,8 +89,8 @@ def constants(ladder: Ladder) -> list[tuple[int, float]]:
 
 def _assemble(changes: dict[str, Any], model: str, mesh: Any = None) -> tuple[Case, Assembly]:
     case = parse_case(Hard("infsup", "", changes).case(model))
-    mesh = mesh or make_mesh(case, model)
-    return case, assemble(case, model, mesh, MPI.COMM_SELF, lambda *_: None, lambda _: None)
+    mesh = mesh or meshed(case).mesh(case)
+    return case, assemble(case, mesh, MPI.COMM_SELF)
 
 
 def fault(betas: list[float]) -> str:
@@ -117,8 +117,7 @@ def _constant(changes: dict[str, Any], ladder: Ladder) -> tuple[int, float]:
 
 def _blocks(scene: Scene) -> tuple[Any, Any, Any]:
     """K, B and the block of the pressures of a scene's tangent, on its free dofs."""
-    for discrete in scene.discrete.values():
-        discrete.predict(None)
+    scene.predict(None)
     matrix = scene.assemble_tangent()
     plain = matrix.copy().convert("aij")
     rows, columns, values = plain.getValuesCSR()

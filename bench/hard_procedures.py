@@ -12,19 +12,21 @@ import numpy as np
 from mpi4py import MPI
 
 from bench.hard_cases import Hard
+from fem.march.hooks import Hook, Steered
 from fem.march.records import Ramp, Report, State
 from fem.results.measures import Tip
 from fem.solver.closures import Stationary
 from fem.solver.newton import Outcome
-from fiberbend.case.section_beside import as_section, load
-from fiberbend.models.kinds import make_mesh
+from fiberbend.case.section_beside import as_section
+from fiberbend.effects.pressure import inflate
+from fiberbend.models.choice import meshed
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case
-from fiberbend.run import messages
-from fiberbend.run.assembly import assemble
-from fiberbend.run.history import Recorder
-from fiberbend.run.progress import Progress
-from fiberbend.run.runner import run_case
+from fiberbend.running import messages
+from fiberbend.running.assembly import assemble
+from fiberbend.running.history import Recorder
+from fiberbend.running.progress import Progress
+from fiberbend.running.runner import run_case
 from geometry.mesh.data import Floats, MeshData
 
 Check = tuple[str, float, float, float]
@@ -68,14 +70,14 @@ def plain(hard: Hard, model: str) -> Done:
 def _beside(hard: Hard, model: str, result: RunResult, bounds: tuple[float, float]) -> Check:
     """Pressure over that of the section that bends as much."""
     angle = result.last("uniform_angle_deg" if model == "body" else "angle_deg")
-    case = as_section(parse_case(hard.case(model)), load(angle=float(np.deg2rad(angle))))
+    case = as_section(parse_case(hard.case(model)), inflate(angle=float(np.deg2rad(angle))))
     section = run_case(case, None)
     if section.status == "converged":
         ratio = result.last("pressure_kPa") / section.last("pressure_kPa")
         return ("pressure over the section's", ratio, *bounds)
     # a body that bends to and fro has no pressure for an angle
     pressure = result.last("pressure_kPa") * 1e-3
-    section = run_case(as_section(parse_case(hard.case(model)), load(to=pressure)), None)
+    section = run_case(as_section(parse_case(hard.case(model)), inflate(to=pressure)), None)
     off = angle / section.last("angle_deg") if section.status == "converged" else np.nan
     return ("angle over the section's", off, *bounds)
 
@@ -91,7 +93,7 @@ def _against(hard: Hard, model: str, result: RunResult) -> Check:
 # --- what no case file can say ------------------------------------------------------------------
 
 
-class Driven:
+class Driven(Hook):
     """A case that is marched by hand.
 
     Args:
@@ -102,16 +104,16 @@ class Driven:
 
     def __init__(self, hard: Hard, model: str, mesh: MeshData | None = None) -> None:
         self.case = parse_case(hard.case(model))
-        mesh = mesh or make_mesh(self.case, model)
-        comm, warnings = MPI.COMM_SELF, []  # type: ignore[var-annotated]
-        self.built = assemble(self.case, model, mesh, comm, self._on_step, warnings.append)
+        mesh = mesh or meshed(self.case).mesh(self.case)
+        self.built = assemble(self.case, mesh, MPI.COMM_SELF)
         self.scene, self.newton, self.march = self.built.scene, self.built.newton, self.built.march
-        self.recorder = Recorder(self.scene, self.built.reading.gauge(), self.march.states[0])
+        self.recorder = Recorder(self.scene, self.built.reading.gauge(), self.march.rest)
         self.extra: list[Floats] = []
         self.tip = Tip(self.scene.body) if model == "body" else None
         self._note()
 
-    def _on_step(self, state: State, outcome: Outcome) -> None:
+    def after_step(self, march: Steered, state: State, outcome: Outcome) -> None:
+        """Record it."""
         self.recorder.add(state, outcome)
         self._note()
 
@@ -121,7 +123,7 @@ class Driven:
 
     def run(self, ramps: Sequence[Ramp] | None = None) -> Done:
         """March through the case's ramps, or others."""
-        report = self.march.run(self.built.ramps if ramps is None else ramps)
+        report = self.march.run(self.built.ramps if ramps is None else ramps, [self])
         self.recorder.integrate()
         return Done(self.recorder.rows, self._entry(report))
 
@@ -239,7 +241,7 @@ def distorted(hard: Hard, model: str) -> Done:
 def _distort(hard: Hard, model: str) -> tuple[Done, float, int]:
     """The run on a distorted mesh, how far its angle is off, and the number of nodes moved."""
     case = parse_case(hard.case(model))
-    mesh = make_mesh(case, model)
+    mesh = meshed(case).mesh(case)
     held = np.unique(np.concatenate([mesh.facet_nodes(name).ravel() for name in mesh.facets]))
     inner = np.setdiff1d(np.arange(len(mesh.nodes)), [*held, *mesh.points.values()])
     nodes = mesh.nodes.copy()

@@ -59,9 +59,9 @@ def uniform(model: str, limit: float, *settings: str) -> tuple[str, float, float
     """A curve from 0 to 360° after its kernels are compiled."""
     from mpi4py import MPI
 
-    from fiberbend.models.kinds import make_mesh
+    from fiberbend.models.choice import meshed
     from fiberbend.reader.reader import read_case
-    from fiberbend.run.assembly import assemble
+    from fiberbend.running.assembly import assemble
 
     case = read_case(CASE, [f"model={model}", "output={}", *settings])
     case = case.model_copy(
@@ -74,11 +74,11 @@ def uniform(model: str, limit: float, *settings: str) -> tuple[str, float, float
             )
         }
     )
-    mesh = make_mesh(case, model)
+    mesh = meshed(case).mesh(case)
     steps = []
 
     def solve() -> None:
-        built = assemble(case, model, mesh, MPI.COMM_SELF, lambda *_: None, lambda _: None)
+        built = assemble(case, mesh, MPI.COMM_SELF)
         start = time.perf_counter()
         report = built.march.run(built.ramps)
         steps.append((time.perf_counter() - start, report.steps, report.iterations))

@@ -15,7 +15,7 @@ import yaml
 
 from fiberbend import run
 from fiberbend.models.result import RunResult
-from fiberbend.run import launch
+from fiberbend.running import launch
 
 ROOT = Path(__file__).resolve().parent.parent
 CASE = yaml.safe_load((ROOT / "cases" / "free_bending.yaml").read_text(encoding="utf-8"))

@@ -18,7 +18,7 @@ import numpy as np
 from bench.tables import BASELINE, WINDING, table
 from fiberbend import run
 from fiberbend.models.result import RunResult
-from fiberbend.run import launch
+from fiberbend.running import launch
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "accuracy_uniform.md"
 ANGLES = (90.0, 180.0, 270.0, 360.0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -46,7 +46,6 @@ class Scene:
         effects: the effects by these names.
         natural: global scalars in which the potential is stationary at an equilibrium.
         force_scale: scale of the forces in the last residual.
-        force_floor: the least that `force_scale` can be; Newton sets it by the states it has found.
         force_noise: norm of the forces that round-off in stiff discrete potentials makes.
         free: local dofs (owned and ghosts) that no constraint holds.
         discrete: by key, the potentials with own code.
@@ -70,7 +69,7 @@ class Scene:
         self.domain = domain
         self.body = kinematics(domain, (name for effect in ordered for name in effect.fields))
         self.force_scale = 1.0
-        self.force_floor = 1e-30
+        self._force_floor = 1e-30
         self._corners: dict[tuple[str, str], float] = {}
         self._loads: dict[str, Floats] = {}
         self._at: Floats | None = None
@@ -119,8 +118,10 @@ class Scene:
                 corner = _differentiate(conjugate, body.scalar(other))
                 if corner is not None:
                     forms[f"corner {name} {other}"] = corner
-        if "p" in body.names:
-            forms["volume"] = body.part(test, "p")[0] * body.dx()
+        if body.pressure_field is not None:
+            forms["volume"] = body.part(test, body.pressure_field)[0] * body.dx()
+        if body.stand_ins:
+            forms = {name: ufl.replace(form, body.stand_ins) for name, form in forms.items()}
         with compat.compiling(mesh.comm):
             self._forms = {name: compat.compile_form(mesh, form) for name, form in forms.items()}
         self.signatures = {name: form.signature() for name, form in forms.items()}
@@ -153,9 +154,10 @@ class Scene:
         follow, lead = body.ties
         self.free[follow] = self.free[lead]
         self._dirichlet = compat.dirichlet(body.space, np.flatnonzero(~self.free))
-        p = body.dofs("p").ravel() if "p" in body.names else np.zeros(0, dtype=np.int32)
         self.volumetric = np.zeros(body.owned, dtype=bool)
-        self.volumetric[p[p < body.owned]] = True
+        if body.pressure_field is not None:
+            p = body.dofs(body.pressure_field)
+            self.volumetric[p[p < body.owned]] = True
         """Owned dofs of the pressure field."""
 
     def hold(self, dofs: npt.NDArray[np.int32], values: Floats) -> None:
@@ -210,11 +212,43 @@ class Scene:
             self._forget()
             self.body.scalars[name].value = value
 
+    # --- what the potentials with own code remember ----------------------------------------------
+
+    def predict(
+        self, correction: Floats | None, scalars: Mapping[str, float] | None = None
+    ) -> None:
+        """Take Newton's last correction, which the next tangent may use; None: none yet.
+
+        Args:
+            correction: of the fields, owned part, (owned,).
+            scalars: of the global scalars, by name.
+        """
+        if not self.discrete:
+            return
+        full = None if correction is None else self.body.with_ghosts(correction)
+        for discrete in self.discrete.values():
+            discrete.predict(full, scalars)
+
+    def memory(self) -> dict[str, dict[str, Floats]]:
+        """What a converged step must remember beside the unknowns, by effect; this rank's part."""
+        return {key: discrete.state() for key, discrete in self.discrete.items()}
+
+    def extrapolate(
+        self, memories: Sequence[dict[str, dict[str, Floats]]], weights: Floats
+    ) -> None:
+        """Start a step from a weighted sum of what earlier ones remembered."""
+        for key, discrete in self.discrete.items():
+            discrete.extrapolate([memory[key] for memory in memories], weights)
+
     # --- the potential and its derivatives ---------------------------------------------------
 
     def det_f(self) -> float:
         """Least det F over the quadrature points of all ranks."""
         return self._det_f()
+
+    def raise_force_floor(self, floor: float) -> None:
+        """Let `force_scale` be no less than this from now on, N."""
+        self._force_floor = max(self._force_floor, floor)
 
     def energies(self) -> dict[str, float]:
         """Π_e of every effect that has a potential, N mm, summed over all ranks."""
@@ -290,7 +324,7 @@ class Scene:
         held = ~self.free[: self.body.owned]
         reaction = self.norm(r[held])
         total = float(np.sqrt(compat.total(self.domain.comm, norm**2)))
-        self.force_scale = max(reaction, total, self.force_floor)
+        self.force_scale = max(reaction, total, self._force_floor)
         return r, self.force_scale
 
     def load(self, name: str, constrained: bool = False) -> Floats:

@@ -34,11 +34,11 @@ def run(
         fiberbend.schema.problems.CaseError: everything that is wrong with the case.
     """
     from fiberbend.reader.reader import as_case
-    from fiberbend.run import launch
-    from fiberbend.run.progress import Progress
+    from fiberbend.running import launch
+    from fiberbend.running.progress import Progress
 
     launch.start_mpi()
-    from fiberbend.run.runner import run_case
+    from fiberbend.running.runner import run_case
 
     progress = Progress(quiet=quiet)
     folder = None if out is None else Path(out)

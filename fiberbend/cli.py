@@ -14,8 +14,8 @@ from typing import Annotated, Any, Literal, NoReturn
 from cyclopts import App, CycloptsError, Parameter
 
 from fiberbend.reader.arguments import CaseFile, Changes
-from fiberbend.run import launch
-from fiberbend.run.launch import FAILED, say
+from fiberbend.running import launch
+from fiberbend.running.launch import FAILED, say
 from fiberbend.version import __version__
 
 WRONG_INPUT = 1
@@ -151,7 +151,7 @@ def run(
         quiet: No progress.
     """
     from fiberbend.reader.reader import read_case
-    from fiberbend.run.progress import Progress
+    from fiberbend.running.progress import Progress
     from fiberbend.schema.problems import CaseError
 
     if overwrite and resume:
@@ -161,7 +161,7 @@ def run(
     progress = Progress(quiet=quiet)
     try:
         launch.start_mpi()
-        from fiberbend.run.runner import run_case
+        from fiberbend.running.runner import run_case
 
         result = run_case(checked, folder, overwrite=overwrite, progress=progress, resume=resume)
     except CaseError:

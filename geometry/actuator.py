@@ -1,76 +1,118 @@
-"""Dimensions of an actuator and the closed forms that follow from them."""
+"""Dimensions of an actuator and the closed forms that follow from them.
+
+y = 0 is the lowest line of wall and floor together; a separate layer and the sheath lie below it.
+"""
 
 from __future__ import annotations
 
+import abc
 import dataclasses
 import functools
 import math
+from typing import ClassVar, NamedTuple
 
-from geometry.sections.profiles import PROFILES, Profile, misfits
+Point = tuple[float, float]
 
-SECTIONS = tuple(PROFILES)
-"""Names of the section shapes."""
+
+class Side(NamedTuple):
+    """A straight line or an arc of less than half a turn, a piece of the winding's outline."""
+
+    name: str
+    """For labels."""
+    start: Point
+    """First end in mm."""
+    end: Point
+    """Last end in mm."""
+    center: Point | None = None
+    """Centre of the circle, or None for a straight line."""
 
 
 @dataclasses.dataclass(frozen=True)
-class Actuator:
+class Profile:
+    """Lengths in mm and areas in mm² of a section.
+
+    Attributes:
+        half_width: half of the chamber's greatest width.
+        bottom: y of the chamber's lowest line.
+        top: y of its highest line.
+        outline_bottom: y of the winding's lowest line.
+        chamber_area: area of the chamber.
+        chamber_centroid: y of the chamber's centroid.
+        outer_centroid: y of the centroid of the area inside the outer surface.
+        inlays: area of each region inside the outline beside chamber and wall, that is of "floor"
+            and "layer" where the section has them.
+        outline_area: area inside the winding's outline.
+        outer_area: area inside the outer surface.
+        perimeter: perimeter of the winding's outline.
+        widest_roof: half widths of a roof on the top of the section lie below this.
+    """
+
+    half_width: float
+    bottom: float
+    top: float
+    outline_bottom: float
+    chamber_area: float
+    chamber_centroid: float
+    outer_centroid: float
+    inlays: dict[str, float]
+    outline_area: float
+    outer_area: float
+    perimeter: float
+    widest_roof: float
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Actuator(abc.ABC):
     """A soft bending actuator; all lengths in mm.
 
     x is lateral, y points up from the lower face of the floor, z runs along the axis; the section
-    is symmetric about x = 0. The chamber reaches over 0 ≤ z ≤ `length`. Its section is
-
-    - hemicircle: the half disk of radius `radius` on the line y = `floor`; the wall goes around
-      the arc, the floor reaches from y = 0 to `floor` over the width of chamber and walls;
-    - rectangle: `width` × `height` on the line y = `floor`; walls at both sides and on top, the
-      floor as above; all corners are sharp;
-    - circle: the disk of radius `radius` about (0, `radius` + `wall`), in a concentric wall that
-      touches y = 0. The floor is the outer `floor` of the wall's thickness over the lowest quarter
-      of the ring, |angle from −y| ≤ 45°; without it the section is a plain tube.
+    is symmetric about x = 0. The chamber reaches over 0 ≤ z ≤ `length`. The shape of the section
+    is a subclass, which adds its own dimensions; a region (floor, sheath, …) is named after the
+    dimension that is its thickness.
 
     Attributes:
-        radius: radius of a hemicircle or circle, a; None for a rectangle.
         length: length of the chamber, L.
         wall: thickness of the wall around the chamber, t.
-        floor: thickness of the floor, b; None for a plain tube only.
         sheath: thickness of the sheath around everything, s, or None.
         cap: length of each of the two solid end caps.
-        layer: thickness of a separate strain-limiting layer below the flat floor, h, or None.
-        section: shape of the section, one of `SECTIONS`.
-        width: width of a rectangle's chamber, else None.
-        height: height of a rectangle's chamber, else None.
 
     Raises:
-        ValueError: a dimension that is not a positive finite number, that the section misses or
-            has no use for, or an unknown section.
+        ValueError: a dimension that is not a positive finite number.
     """
 
-    radius: float | None
+    section: ClassVar[str]
+    """Name of the section's shape."""
+
     length: float
     wall: float
-    floor: float | None
-    sheath: float | None
+    sheath: float | None = None
     cap: float
-    layer: float | None = None
-    section: str = "hemicircle"
-    width: float | None = None
-    height: float | None = None
 
     def __post_init__(self) -> None:
-        if self.section not in SECTIONS:
-            raise ValueError(
-                f"section {self.section!r} is unknown: expected one of {', '.join(SECTIONS)}"
-            )
-        given = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
-        for name, value in given.items():
-            if isinstance(value, float | int) and not (math.isfinite(value) and value > 0):
-                raise ValueError(f"{name} {value} mm: expected a positive length")
-        for name, text in misfits(given):
-            raise ValueError(f"{name}: {text}")
+        for field in dataclasses.fields(self):
+            value = getattr(self, field.name)
+            if value is None and field.default is None:
+                continue
+            if value is None or not (math.isfinite(value) and value > 0):
+                raise ValueError(f"{field.name} {value} mm: expected a positive length")
+
+    @abc.abstractmethod
+    def closed_forms(self) -> Profile:
+        """Lengths and areas of the section."""
+
+    @abc.abstractmethod
+    def outline(self) -> tuple[Side, ...]:
+        """The line on which the winding lies: its half x ≥ 0, from the top to the bottom."""
 
     @functools.cached_property
     def profile(self) -> Profile:
-        """Closed forms of the section."""
-        return PROFILES[self.section](self)
+        """Closed forms of the section, computed once."""
+        return self.closed_forms()
+
+    @property
+    def wall_above_floor(self) -> float:
+        """Thickness in mm of the wall between the chamber and a floor that is part of the wall."""
+        return 0.0
 
     @property
     def outline_half_width(self) -> float:
@@ -84,8 +126,8 @@ class Actuator:
 
     @property
     def outline_bottom(self) -> float:
-        """Y of the winding's lowest line, −h."""
-        return -(self.layer or 0.0)
+        """Y of the winding's lowest line."""
+        return self.profile.outline_bottom
 
     @property
     def outline_top(self) -> float:
@@ -94,7 +136,7 @@ class Actuator:
 
     @property
     def outer_bottom(self) -> float:
-        """Y of the lowest line, −h − s."""
+        """Y of the lowest line."""
         return self.outline_bottom - (self.sheath or 0.0)
 
     @property
@@ -135,11 +177,7 @@ class Actuator:
     def region_areas(self) -> dict[str, float]:
         """Area in mm² of each region of a section between the caps."""
         p = self.profile
-        areas = {"wall": p.outline_area - p.chamber_area - p.floor_area - p.layer_area}
-        if self.floor is not None:
-            areas["floor"] = p.floor_area
-        if self.layer is not None:
-            areas["layer"] = p.layer_area
+        areas = {"wall": p.outline_area - p.chamber_area - sum(p.inlays.values()), **p.inlays}
         if self.sheath is not None:
             areas["sheath"] = p.outer_area - p.outline_area
         return areas

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from materials.laws import Material
+from materials.material import Material
 
 _PAPER = "Polygerinos et al. 2015, IEEE Trans. Robotics 31(3)"
 

@@ -13,7 +13,7 @@ import time
 
 import numpy as np
 
-from analytic.bending import BACKWARD, FORWARD, Hemicircle
+from analytic.bending import Hemicircle
 from analytic.control.cubic_table import CubicTable
 from analytic.stress import Floats
 
@@ -70,9 +70,7 @@ class AngleFilter:
         Raises:
             ValueError: P does not rise with θ all the way, or the table misses `TOLERANCE`.
         """
-        roof = actuator.floor + actuator.radius + actuator.wall + actuator.sheath
-        low = max(BACKWARD, -actuator.length / roof / 2)
-        angle = np.linspace(low, FORWARD, _INTERVALS + 1)
+        angle = np.linspace(*actuator.angles, _INTERVALS + 1)
         pressure = actuator.pressure(angle)
         _check_rising(pressure, angle)
         table = CubicTable.smooth(pressure, angle)

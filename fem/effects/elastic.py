@@ -4,22 +4,21 @@ from __future__ import annotations
 
 from typing import Any
 
-import ufl
-
 from fem.effects.effect import Effect
+from fem.effects.isochoric import Isochoric
 from fem.kinematics.kinematics import Kinematics
-from materials.laws import LAWS
+from materials.laws.table import LAWS
 
 
 class Elastic(Effect):
-    """Π = ∫ ψ(Ī1, Ī2) dX with Ī1 = J^(−2/3) tr C, Ī2 = J^(−4/3) (tr² C − tr C²)/2.
+    """Π = ∫ ψ dX of a law that takes the isochoric part of the deformation.
 
     Args:
-        law: name in `materials.laws.LAWS`.
-        regions: for each region that follows the law, its parameters in MPa.
+        law: name in `materials.laws.table.LAWS`.
+        regions: for each region that follows the law, its parameters in their units.
 
     Raises:
-        ValueError: unknown law or parameter.
+        ValueError: unknown law or parameter, or a parameter that is missing.
     """
 
     def __init__(self, law: str, regions: dict[str, dict[str, float]]) -> None:
@@ -27,12 +26,12 @@ class Elastic(Effect):
             raise ValueError(f"unknown law {law!r}, expected one of {sorted(LAWS)}")
         self.law = LAWS[law]
         for region, parameters in regions.items():
-            unknown = set(parameters) - set(self.law.parameters)
+            unknown, missing = self.law.unknown(parameters), self.law.missing(parameters)
             if unknown:
                 raise ValueError(f"{region}: {law} has no parameter {sorted(unknown)}")
-        self.regions = {
-            region: {**self.law.defaults, **parameters} for region, parameters in regions.items()
-        }
+            if missing:
+                raise ValueError(f"{region}: {law} needs {missing}")
+        self.regions = {region: self.law.complete(row) for region, row in regions.items()}
 
     @property
     def key(self) -> str:
@@ -40,14 +39,17 @@ class Elastic(Effect):
         return f"Elastic[{self.law.name}]"
 
     def potential(self, body: Kinematics) -> Any:
-        """The energy as a form; parameters are piecewise constant fields."""
-        c = body.F.T * body.F
-        j = ufl.det(body.F)
-        i1 = ufl.tr(c)
-        i2 = (i1**2 - ufl.tr(c * c)) / 2
-        values = [
-            body.coefficient({region: row[name] for region, row in self.regions.items()})
-            for name in self.law.parameters
-        ]
-        density = self.law.energy(j ** (-2 / 3) * i1, j ** (-4 / 3) * i2, *values)
-        return density * body.dx()
+        """The energy as a form; parameters are piecewise constant fields.
+
+        A term that no region has is not in it.
+        """
+        used = self.law.used(self.regions.values())
+        values = {
+            parameter.name: body.coefficient(
+                dict.fromkeys(body.domain.data.regions, parameter.neutral)
+                | {region: row[parameter.name] for region, row in self.regions.items()}
+            )
+            for parameter in self.law.parameters
+            if parameter.name in used
+        }
+        return self.law.energy(Isochoric(body), **values) * body.dx()

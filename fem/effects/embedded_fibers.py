@@ -13,7 +13,7 @@ from petsc4py import PETSc
 from fem import compat
 from fem.kinematics.kinematics import Kinematics
 from geometry.mesh.data import facet_positions
-from geometry.winding.embed import EmbeddedFibers
+from geometry.winding.segments import EmbeddedFibers
 
 Floats = npt.NDArray[np.float64]
 

@@ -30,7 +30,8 @@ def _pressure(cell: str) -> Any:
     return ufl.FiniteElement(family, cell, 1)
 
 
-FIELDS: dict[str, Callable[[str], Any]] = {"u": _displacement, "p": _pressure}
+DISPLACEMENT, PRESSURE = "u", "p"
+FIELDS: dict[str, Callable[[str], Any]] = {DISPLACEMENT: _displacement, PRESSURE: _pressure}
 """Scalar element of each field that an effect may ask for."""
 
 
@@ -65,6 +66,8 @@ class Kinematics:
         space: the one mixed space of all fields.
         w: all unknown fields together, a dolfinx function.
         names: the fields present, in their order within the space.
+        pressure_field: that of them that is a pressure, which multiplies a change of volume; None
+            where no effect asked for it.
         components: number of displacement components.
         scalars: the global scalars, by name, that effects and kinematics declared.
         natural: those of them that are unknowns of the kinematics: at an equilibrium the
@@ -72,6 +75,8 @@ class Kinematics:
         pins: (node, component) held so that no rigid motion is left.
         ties: local dofs that follow others, and these; on one rank only.
         copies: how many of what is modelled the whole actuator is.
+        stand_ins: constants that stand for frozen scalars while forms are differentiated, and
+            these; whoever compiles a form replaces them.
     """
 
     def __init__(self, domain: Domain, fields: Iterable[str], components: int) -> None:
@@ -84,7 +89,8 @@ class Kinematics:
         cell = domain.data.cell_type
         wanted = set(fields)
         self.names = [name for name in FIELDS if name in wanted]
-        counts = {"u": components, "p": 1}
+        self.pressure_field = PRESSURE if PRESSURE in self.names else None
+        counts = {DISPLACEMENT: components, PRESSURE: 1}
         elements = {name: (FIELDS[name](cell), counts[name]) for name in self.names}
         self.space = compat.mixed_space(
             domain.mesh, [element for element, count in elements.values() for _ in range(count)]
@@ -101,9 +107,10 @@ class Kinematics:
             first += count
         self.scalars: dict[str, Any] = {}
         self._variables: dict[str, Any] = {}
+        self.stand_ins: dict[Any, Any] = {}
 
         order = np.argsort(compat.node_permutation(cell))
-        self.cell_dofs: Dofs = self._dofs["u"][:, order]
+        self.cell_dofs: Dofs = self._dofs[DISPLACEMENT][:, order]
         """Displacement dofs of every local cell, (cells, nodes, components), `geometry.mesh`
         order."""
         self.node_dofs: Dofs = np.full((len(domain.data.nodes), components), -1, dtype=np.int32)
@@ -131,7 +138,7 @@ class Kinematics:
     @property
     def u(self) -> Any:
         """Displacement, a UFL vector in mm; in uniform bending in the section's own frame."""
-        return ufl.as_vector(self.part(self.w, "u"))
+        return ufl.as_vector(self.part(self.w, DISPLACEMENT))
 
     @property
     def p(self) -> Any:
@@ -140,7 +147,7 @@ class Kinematics:
         Raises:
             KeyError: no effect of the scene asked for it.
         """
-        return self.part(self.w, "p")[0]
+        return self.part(self.w, PRESSURE)[0]
 
     @property
     def x(self) -> Any:
@@ -191,6 +198,12 @@ class Kinematics:
             self.scalars[name] = dfem.Constant(self.domain.mesh, 0.0)
             self._variables[name] = ufl.variable(self.scalars[name])
         return self._variables[name]
+
+    def frozen(self, value: Any) -> Any:
+        """A UFL scalar by its present value alone: no derivative goes through it."""
+        stand_in = ufl.Constant(self.domain.mesh)
+        self.stand_ins[stand_in] = value
+        return stand_in
 
     # --- what measures and predictors ask for ---------------------------------------------
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from fem import compat
-from fem.march.frames import Frames
 from fem.march.predictor import Predictor
 from fem.march.records import MODES, State, measure
 from fem.scene import Scene
@@ -23,17 +22,15 @@ class Equilibrium:
     Args:
         scene: the scene.
         newton: its solver.
-        frames: rod frames; None where the kinematics turns by itself.
-        followed: functional that requests refer to (the bending angle), or None.
+        predictor: what a solve starts from.
+        control: functional that requests refer to (the bending angle), or None.
     """
 
     def __init__(
-        self, scene: Scene, newton: Newton, frames: Frames | None, followed: Functional | None
+        self, scene: Scene, newton: Newton, predictor: Predictor, control: Functional | None
     ) -> None:
         self.scene, self.newton = scene, newton
-        self.followed = followed
-        self.predictor = Predictor(scene, frames)
-        self._frames = frames
+        self._predictor, self._control = predictor, control
         comm, volumetric = scene.domain.comm, int(np.count_nonzero(scene.volumetric))
         self._volumetric = int(compat.total(comm, volumetric))
 
@@ -45,14 +42,14 @@ class Equilibrium:
         for name in scalars:
             if name not in scene.natural:  # there it is zero
                 measures[measure("conjugate", name)] = scene.conjugate(name)
-        if self.followed is not None:
-            measures["followed"] = self.followed.value()
+        if self._control is not None:
+            measures["followed"] = self._control.value()
         return State(
             w=scene.w.copy(),
             scalars=scalars,
             measures=measures,
-            shape=self._frames.fit(scene.body.displacement()) if self._frames else None,
-            discrete={key: item.state() for key, item in scene.discrete.items()},
+            shape=self._predictor.describe(),
+            discrete=scene.memory(),
         )
 
     def restore(self, state: State) -> None:
@@ -69,8 +66,7 @@ class Equilibrium:
         """A state near another along its linear response to a scalar; the scene is left at that."""
         scene, body = self.scene, self.scene.body
         self.restore(base)
-        for discrete in scene.discrete.values():
-            discrete.predict(None)
+        scene.predict(None)
         rate, natural = self.newton.response(scalar, scene.natural, self._natural())
         nodal = body.with_ghosts(rate)[body.node_dofs[body.owned_nodes]]
         top = float(np.max(np.abs(nodal), initial=0.0))
@@ -97,7 +93,7 @@ class Equilibrium:
             target: what that is to be.
             along: states from which the start is extrapolated, a measure and its value there.
         """
-        start = self.predictor.start(*along)
+        start = self._predictor.start(*along)
         unknown: list[str] = list(self.scene.natural)
         closures: list[Closure] = list(self._natural())
         if kind == "value":
@@ -106,8 +102,8 @@ class Equilibrium:
         if kind == "conjugate":
             closures.append(Conjugate(self.scene, scalar, target))
         else:
-            assert self.followed is not None
-            closures.append(Target(self.followed, target))
+            assert self._control is not None
+            closures.append(Target(self._control, target))
         return self.newton.solve(start, [*unknown, scalar], closures)
 
     def judge(self, state: State, before: State, scalar: str) -> None:

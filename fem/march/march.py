@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from fem.march.equilibrium import Equilibrium
 from fem.march.frames import Frames
+from fem.march.guide import Guide
+from fem.march.hooks import Hook
 from fem.march.limit_points import (
     critical,
     crossing,
@@ -16,9 +18,11 @@ from fem.march.limit_points import (
     limit_between,
     softens,
 )
-from fem.march.predictor import distinct, lagrange
+from fem.march.position import Position
+from fem.march.predictor import Predictor, distinct, lagrange
 from fem.march.records import Causes, Critical, Ramp, Report, Rules, State, measure
 from fem.march.selfcontact import Rod, first_contact
+from fem.march.ways import Requests, Way
 from fem.scene import Scene
 from fem.solver.closures import Functional
 from fem.solver.newton import Newton, Outcome
@@ -28,134 +32,119 @@ BEYOND = "the load falls from here on"
 CREEPS = "increments shrink to nothing, each of them converging slowly"
 
 
-@dataclasses.dataclass(frozen=True)
-class _Way:
-    """How a ramp is driven at present.
-
-    Attributes:
-        kind: 'value', 'conjugate' or 'followed'.
-        key: the measure that is driven.
-        sign: whether it grows.
-        end: its value at the end.
-        span: all the way to go.
-        stops: its values to be hit exactly.
-        largest: greatest increment.
-    """
-
-    kind: str
-    key: str
-    sign: float
-    end: float
-    span: float
-    stops: tuple[float, ...]
-    largest: float
-
-    def next(self, now: float, size: float) -> float:
-        """Where an increment of a size would end; at a stop that is near."""
-        target = now + self.sign * size
-        stops = [s for s in (*self.stops, self.end) if self.sign * (s - now) > 1e-9 * self.span]
-        nearest = min(stops, key=lambda s: abs(s - now))
-        return nearest if self.sign * (target - nearest) > -0.2 * size else target
-
-
-class _Requests:
-    """Values of the followed functional that a ramp is to hit.
-
-    Attributes:
-        insist: the next increment hits one, whatever is expected.
-    """
-
-    def __init__(self, ramp: Ramp) -> None:
-        self.insist = False
-        self._pending = sorted(ramp.at) if ramp.drive != "followed" else []
-        if ramp.until is not None:
-            before = (a for a in self._pending if a < ramp.until)
-            self._pending = sorted({*before, ramp.until})
-
-    def due(self, state: State) -> float | None:
-        """The next one."""
-        here = state.measures.get("followed", np.inf)
-        return next((a for a in self._pending if a > here + 1e-9), None)
-
-    def met(self, new: State, goal: float, kind: str, way: _Way) -> bool:
-        """Whether a new state may be kept: it has not run past the one that was due."""
-        if kind != "followed":
-            self.insist = new.measures["followed"] > goal + 1e-9
-            return not self.insist
-        if way.kind != kind and way.sign * (new.measures[way.key] - way.end) > 0:
-            # the angle lies beyond the load's end: go there by the load instead
-            self._pending = [a for a in self._pending if a < goal - 1e-12]
-            return False
-        return True
-
-
 class March:
     """Drives a scene along its ramps.
 
     Args:
         scene: the problem, at rest.
         newton: solver of that problem.
-        frames: rod frames for the predictor; None where the kinematics turns by itself.
-        followed: functional that requests refer to (the bending angle), or None.
         rules: incrementation.
-        on_step: called after every converged increment with the state and its outcome.
-        warn: called with a line of text when an increment fails.
+        frames: rod frames for the predictor; None where the kinematics turns by itself.
+        control: functional that requests refer to (the bending angle), or None.
+        guide: a cheaper model's shapes, on which the predictor leans, or None.
+        rod: the states as rods, to see whether the body passes through itself; None: not looked.
+        causes: what tells physical causes of a failure; None: how Newton ended is all that is
+            said.
+        hooks: what belongs to the scene and is called meanwhile, in this order.
+
+    Attributes:
+        rest: the state at rest.
+        position: where it stands.
     """
 
     def __init__(
         self,
         scene: Scene,
         newton: Newton,
-        frames: Frames | None,
-        followed: Functional | None,
         rules: Rules,
-        on_step: Callable[[State, Outcome], None],
-        warn: Callable[[str], None],
+        *,
+        frames: Frames | None = None,
+        control: Functional | None = None,
+        guide: Guide | None = None,
+        rod: Rod | None = None,
+        causes: Causes | None = None,
+        hooks: Sequence[Hook] = (),
     ) -> None:
-        self.followed = followed
         self.rules = rules
-        self.on_step = on_step
-        self.warn = warn
-        self.equilibrium = Equilibrium(scene, newton, frames, followed)
-        self.predictor = self.equilibrium.predictor
-        self.causes: Causes | None = None
-        """What tells physical causes of a failure; None: how Newton ended is all that is said."""
-        self.rod: Rod | None = None
-        """The states as rods, to see whether the body passes through itself; None: not looked."""
-        self.states: list[State] = []
-        self.report = Report()
-        self.ramp = 0
-        """Number of the ramp under way."""
-        self.increment: float | None = None
-        """Increment of the driven quantity to try next; None at the start of a ramp."""
-
-    def start(self) -> None:
-        """Capture the state at rest; without it nothing can be predicted."""
-        scene = self.equilibrium.scene
+        self.hooks = self._called = tuple(hooks)
+        self._predictor = Predictor(scene, frames, guide)
+        self.equilibrium = Equilibrium(scene, newton, self._predictor, control)
+        self._controlled = control is not None
+        self._guided = guide is not None
+        self._rod, self._causes = rod, causes
         scene.set(scene.w.copy())
         self.rest = self.equilibrium.capture()
-        self.states = [self.rest]
+        self.position = Position([self.rest])
 
-    def run(self, ramps: Sequence[Ramp]) -> Report:
-        """March through all ramps in order, earlier loads held."""
-        if not self.states:
-            self.start()
-        for ramp in ramps[self.ramp :]:
+    @property
+    def states(self) -> list[State]:
+        """The last converged states, oldest first; to be read."""
+        return self.position.states
+
+    @property
+    def report(self) -> Report:
+        """What happened so far; to be read."""
+        return self.position.report
+
+    def resume(self, position: Position) -> None:
+        """Go on from where a march of the same scene stood; puts the scene there."""
+        self.position = position
+        self.equilibrium.restore(position.states[-1])
+
+    def run(self, ramps: Sequence[Ramp], hooks: Sequence[Hook] = ()) -> Report:
+        """March through all ramps in order, earlier loads held.
+
+        Args:
+            ramps: the loads.
+            hooks: what listens to this run, called after the march's own.
+        """
+        position = self.position
+        self._called = (*self.hooks, *hooks)
+        for ramp in ramps[position.ramp :]:
+            for hook in self._called:
+                hook.before_ramp(self, ramp)
             if not self._ramp(ramp):
                 break
-            self.ramp += 1
-            self.increment = None
-            self.report.detour = False
-        return self.report
+            position.ramp += 1
+            position.increment = None
+            position.path_following = False
+        return position.report
 
-    def _way(self, ramp: Ramp, span: float) -> _Way:
+    # --- what hooks may change -----------------------------------------------------------------
+
+    def limit_increment(self, size: float) -> None:
+        """Let the next increment of the driven quantity be no longer than this."""
+        if self.position.increment is not None:
+            self.position.increment = min(self.position.increment, size)
+
+    def restart_from_response(self, scalar: str, increment: float) -> None:
+        """Start the next increment from the linear response alone: the path has a kink here.
+
+        Args:
+            scalar: the load that is driven.
+            increment: the next increment of the driven quantity.
+        """
+        state = self.states[-1]
+        self.position.states = [self.equilibrium.neighbour(state, scalar), state]
+        self.position.increment = increment
+
+    def extrapolate_in_frames(self, turning: bool) -> None:
+        """Whether displacements are extrapolated in frames that turn with the body, or as they are.
+
+        Frames are the better start unless something holds the body from outside.
+        """
+        self._predictor.turn(turning)
+
+    # --- ramps ---------------------------------------------------------------------------------
+
+    def _way(self, ramp: Ramp, span: float) -> Way:
         """How a ramp is driven from the last state on; `span` is all of it."""
         now = self.states[-1].measures
-        if not self.report.detour:
+        if not self.position.path_following:
             sign = np.sign(ramp.target - now[ramp.key])
             stops = ramp.stops if ramp.drive != "followed" else (*ramp.stops, *ramp.at)
             largest = abs(ramp.largest) if ramp.largest else np.inf
-            return _Way(ramp.drive, ramp.key, sign, ramp.target, abs(span), stops, largest)
+            return Way(ramp.drive, ramp.key, sign, ramp.target, abs(span), stops, largest)
         key = measure("conjugate", ramp.scalar)
         volume = now[key]
         sign = np.sign(span)
@@ -163,7 +152,7 @@ class March:
         limit = self._limit(ramp)
         if limit is not None and now.get(measure("rate", ramp.scalar), 1.0) < 0:
             end = limit.conjugate * self.rules.beyond**sign
-        return _Way("conjugate", key, sign, end, volume, (), self.rules.swell * volume)
+        return Way("conjugate", key, sign, end, volume, (), self.rules.swell * volume)
 
     def _limit(self, ramp: Ramp) -> Critical | None:
         """The last limit point beyond which the ramp's load falls."""
@@ -175,18 +164,19 @@ class March:
         return next(found, None)
 
     def _ramp(self, ramp: Ramp) -> bool:
+        position = self.position
         span = ramp.target - self.states[-1].measures[ramp.key]
         if span == 0:
             return True
-        if self.increment is None:
+        if position.increment is None:
             base = self.states[-1]
             seed = self.equilibrium.neighbour(base, ramp.scalar)
             size = abs(ramp.first) if ramp.first else self._first_size(seed, ramp, abs(span))
-            self.states = [seed, base]
-            self.increment = min(size, abs(ramp.largest or np.inf), abs(span))
-        requests = _Requests(ramp)
+            position.states = [seed, base]
+            position.increment = min(size, abs(ramp.largest or np.inf), abs(span))
+        requests = Requests(ramp)
         # a load that hardly bends begins with tiny increments of the angle
-        first = self.increment
+        first = position.increment
         failures = 0
         slow: Outcome | None = None
         while True:
@@ -195,35 +185,34 @@ class March:
                 return True
             way = self._way(ramp, span)
             now = state.measures[way.key]
-            if self.report.detour and way.sign * (way.end - now) <= 1e-9 * way.span:
+            if position.path_following and way.sign * (way.end - now) <= 1e-9 * way.span:
                 return self._end("")
-            if slow and self.increment < self.rules.least * min(way.span, first):
+            if slow and position.increment < self.rules.least * min(way.span, first):
                 return self._give_up(dataclasses.replace(slow, reason=CREEPS), "")
-            size = min(self.increment, self._turn_limit(way.key), way.largest)
+            size = min(position.increment, self._turn_limit(way.key), way.largest)
             target = way.next(now, size)
             if way.kind == "value" and limit_ahead(self.states, ramp.scalar, target):
                 self._turn_off(ramp)
                 continue
             kind, aim = way.kind, target
             goal = requests.due(state)
-            if goal is not None and (
-                requests.insist or self._guess(way.key, target, "followed") > goal - 0.02
-            ):
+            if goal is not None and requests.hits(goal, self._guess(way.key, target, "followed")):
                 kind, aim = "followed", goal
-            requests.insist = False
             new, outcome, kind = self._attempt(ramp, span, kind, aim)
-            self.predictor.astray = new is None
+            self._predictor.heed(failed=new is None)
             if new is None:
                 failures += 1
                 self.report.cutbacks += 1
                 # what was tried: a stop may have clipped it, and the next try would be the same
-                self.increment = min(size, abs(target - now)) * self.rules.cut
+                position.increment = min(size, abs(target - now)) * self.rules.cut
                 hopeless = (
-                    failures > self.rules.cutbacks or self.increment < self.rules.least * way.span
+                    failures > self.rules.cutbacks
+                    or position.increment < self.rules.least * way.span
                 )
-                inverted = self.causes.inverted() if hopeless and self.causes else ""
+                inverted = self._causes.inverted() if hopeless and self._causes else ""
                 self.equilibrium.restore(state)
-                self.warn(f"increment cut back: {outcome.reason}")
+                for hook in self._called:
+                    hook.after_cutback(self, outcome.reason)
                 if hopeless:
                     return self._give_up(outcome, inverted)
                 if way.kind == kind == "value" and (
@@ -234,9 +223,9 @@ class March:
             if goal is not None and not requests.met(new, goal, kind, way):
                 self.equilibrium.restore(state)
                 continue
-            if not (self.report.detour and np.isfinite(way.end)):
+            if not (position.path_following and np.isfinite(way.end)):
                 failures = 0
-            self.states = [*self.states[1 - self.rules.memory :], new]
+            position.states = [*self.states[1 - self.rules.memory :], new]
             self.report.steps += 1
             self.report.per_step.append(outcome.iterations)
             self._note(ramp.scalar)
@@ -245,8 +234,9 @@ class March:
                 size = min(size * self.rules.grow, way.largest)
             elif slow:
                 size *= self.rules.shrink
-            self.increment = size
-            self.on_step(new, outcome)
+            position.increment = size
+            for hook in self._called:
+                hook.after_step(self, new, outcome)
             if kind == "followed" and ramp.until is not None and aim >= ramp.until - 1e-9:
                 return True
 
@@ -263,9 +253,9 @@ class March:
         outcome = self._find(scalar, kind, aim, start)
         new = self._found(scalar, outcome)
         if new is not None and kind == "value" and self._jumped(scalar, aim, new):
-            outcome.reason, new = JUMPED, None
+            outcome, new = dataclasses.replace(outcome, reason=JUMPED), None
         if new is not None and kind == "value" and new.measures[measure("rate", scalar)] < 0:
-            outcome.reason, new = BEYOND, None
+            outcome, new = dataclasses.replace(outcome, reason=BEYOND), None
         if new is None:
             return new, outcome, kind
         states, key = [*self.states[-2:], new], measure("conjugate", scalar)
@@ -313,12 +303,12 @@ class March:
         """Drive the conjugate from here on, at the pace it had."""
         key = measure("conjugate", ramp.scalar)
         a, b = (state.measures[key] for state in self.states[-2:])
-        self.increment = abs(b - a)
-        self.report.detour = True
+        self.position.increment = abs(b - a)
+        self.position.path_following = True
 
     def _passed(self, ramp: Ramp, span: float, new: State) -> float | None:
         """Value asked for that a detour has passed and never reached before."""
-        if not self.report.detour:
+        if not self.position.path_following:
             return None
         sign, key = np.sign(span), measure("value", ramp.scalar)
         limit = self._limit(ramp)
@@ -333,10 +323,10 @@ class March:
     def _note(self, scalar: str) -> None:
         """Report what happened in the last increment to stability and to the body's clearance."""
         self.report.critical += critical(self.states, scalar)
-        if self.rod is None or self.report.self_contact is not None:
+        if self._rod is None or self.report.self_contact is not None:
             return
         old, new = self.states[-2:]
-        share = first_contact(self.rod, old, new)
+        share = first_contact(self._rod, old, new)
         if share is not None:
             self.report.self_contact = {
                 name: (1 - share) * value + share * new.measures[name]
@@ -345,14 +335,16 @@ class March:
 
     def _give_up(self, outcome: Outcome, inverted: str) -> bool:
         """No increment leads on from the last state."""
-        if self.causes is None:
+        if self._causes is None:
             return self._end(outcome.reason)
         critical = self.report.critical
-        return self._end(self.causes.explain(self.states, self.rest, critical, outcome, inverted))
+        return self._end(self._causes.explain(self.states, self.rest, critical, outcome, inverted))
 
     def _end(self, reason: str) -> bool:
         """The load cannot be reached."""
-        beyond = self.report.detour and any(c.kind == "limit" for c in self.report.critical)
+        beyond = self.position.path_following and any(
+            c.kind == "limit" for c in self.report.critical
+        )
         self.report.status = "stopped" if beyond else "failed"
         self.report.reason = reason
         return False
@@ -367,7 +359,7 @@ class March:
 
     def _turn_limit(self, drive: str) -> float:
         """Increment that turns the followed functional by `turn`, from the last two states."""
-        if self.followed is None or len(self.states) < min(self.rules.memory, 3):
+        if not self._controlled or len(self.states) < min(self.rules.memory, 3):
             return np.inf
         a, b = (state.measures for state in self.states[-2:])
         turned = abs(b["followed"] - a["followed"])
@@ -386,6 +378,6 @@ class March:
         if driven < 1e-300:
             return span / 20
         size = span / 20 if turned < 1e-14 else driven / turned * self.rules.first_turn
-        if self.predictor.guide is None and base[volume] and change[volume]:
+        if not self._guided and base[volume] and change[volume]:
             size = min(size, driven * self.rules.swell * abs(base[volume]) / change[volume])
         return float(size)

@@ -21,18 +21,24 @@ class Predictor:
     Args:
         scene: the scene.
         frames: rod frames; None where the kinematics turns by itself.
-
-    Attributes:
-        frames: rod frames, or None.
         guide: a cheaper model's shapes, from which the difference is extrapolated; None: without.
-        astray: the last increment failed: the next one does without the guide, and goes straight
-            on from the last two states.
     """
 
-    def __init__(self, scene: Scene, frames: Frames | None) -> None:
-        self._scene, self.frames = scene, frames
-        self.guide: Guide | None = None
-        self.astray = False
+    def __init__(self, scene: Scene, frames: Frames | None, guide: Guide | None = None) -> None:
+        self._scene, self._frames, self._guide = scene, frames, guide
+        self._turning, self._astray = True, False
+
+    def describe(self) -> Shape | None:
+        """The scene's present displacement as a rod; None without frames."""
+        return self._frames.fit(self._scene.body.displacement()) if self._frames else None
+
+    def turn(self, turning: bool) -> None:
+        """Extrapolate displacements in the frames that turn with the body, or as they are."""
+        self._turning = turning
+
+    def heed(self, failed: bool) -> None:
+        """After a failed increment do without the guide, straight on from the last two states."""
+        self._astray = failed
 
     def start(self, states: Sequence[State], key: str, target: float) -> Floats:
         """Set the scene to the state extrapolated to the value of a measure; its coefficients.
@@ -42,7 +48,7 @@ class Predictor:
             key: name of the measure.
             target: its value.
         """
-        states = states[-2:] if self.astray else states
+        states = states[-2:] if self._astray else states
         t = np.array([state.measures[key] for state in states])
         weights = lagrange(t, target)
         scene, body = self._scene, self._scene.body
@@ -50,25 +56,24 @@ class Predictor:
             values = [state.scalars[name] for state in states]
             scene.set_scalar(name, float(weights @ values))
         scene.set(np.tensordot(weights, [state.w for state in states], axes=1))
-        if self.frames is not None:
+        if self._frames is not None and self._turning:
             shapes = [state.shape for state in states if state.shape is not None]
             guides = self._guides(key, [*t, target])
-            shape = self.frames.extrapolate(shapes, weights, guides)
-            body.set_displacement(self.frames.rebuild(shape))
+            shape = self._frames.extrapolate(shapes, weights, guides)
+            body.set_displacement(self._frames.rebuild(shape))
             scene.set(scene.w.copy())
-        for name, discrete in scene.discrete.items():
-            discrete.extrapolate([state.discrete[name] for state in states], weights)
+        scene.extrapolate([state.discrete for state in states], weights)
         return scene.w.copy()
 
     def _guides(self, key: str, values: Sequence[float]) -> list[Shape] | None:
         """Shapes of the guide at the given values of what is driven; None where it has none."""
         if (
-            self.guide is None
-            or self.astray
-            or not all(self.guide.covers(key, value) for value in values)
+            self._guide is None
+            or self._astray
+            or not all(self._guide.covers(key, value) for value in values)
         ):
             return None
-        return [self.guide.shape(key, value) for value in values]
+        return [self._guide.shape(key, value) for value in values]
 
 
 def lagrange(t: Floats, target: float) -> Floats:

@@ -152,7 +152,6 @@ class Report:
         per_step: iterations of each converged increment.
         critical: where stability was lost or gained, in the order of the march.
         self_contact: measures where the body begins to pass through itself; None: it does not.
-        detour: the ramp under way has turned from the value of its scalar to the conjugate.
     """
 
     status: str = "converged"
@@ -164,7 +163,6 @@ class Report:
     per_step: list[int] = dataclasses.field(default_factory=list)
     critical: list[Critical] = dataclasses.field(default_factory=list)
     self_contact: dict[str, float] | None = None
-    detour: bool = False
 
     def __post_init__(self) -> None:
         # a checkpoint gives back mappings

@@ -1,7 +1,9 @@
-"""States by input numbers: independent of ranks, of the mesh order and of dolfinx."""
+"""A march's position by input numbers: independent of ranks, of the mesh order and of dolfinx."""
 
 from __future__ import annotations
 
+import dataclasses
+import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -9,8 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from fem import compat
+from fem.effects.embedded_fibers import FiberPotential
 from fem.march.frames import Frames
-from fem.march.records import State
+from fem.march.position import Position
+from fem.march.records import Report, State
 from fem.scene import Scene
 from geometry.mesh.data import reference_nodes
 
@@ -45,8 +49,39 @@ class Archive:
         self._cells = scene.domain.cells[:owned]
         self._multiplier: compat.PointValues | None = None
 
-    def pack(self, state: State) -> dict[str, Any] | None:
-        """A state as arrays on rank 0, None elsewhere; collective."""
+    def pack(self, position: Position) -> dict[str, Any]:
+        """A position as arrays, on rank 0; nothing elsewhere; collective."""
+        states = [self._pack(state) for state in position.states]
+        if self._comm.rank != 0:
+            return {}
+        rest = {
+            field.name: getattr(position, field.name)
+            for field in dataclasses.fields(position)
+            if field.name != "states"
+        }
+        rest["report"] = dataclasses.asdict(position.report)
+        arrays: dict[str, Any] = {"position": np.array(json.dumps(rest, default=float))}
+        for number, state in enumerate(states):
+            arrays |= {f"{number}|{name}": value for name, value in state.items()}
+        return arrays
+
+    def unpack(self, arrays: Mapping[str, Any]) -> Position:
+        """A position from arrays that every rank holds; the scene is left in its last state.
+
+        Raises:
+            TypeError: an entry that no position has.
+        """
+        rest = json.loads(str(arrays["position"]))
+        states: dict[int, dict[str, Any]] = {}
+        for key, value in arrays.items():
+            number, found, name = key.partition("|")
+            if found:
+                states.setdefault(int(number), {})[name] = value
+        report = Report(**rest.pop("report"))
+        return Position([self._unpack(states[i]) for i in sorted(states)], report=report, **rest)
+
+    def _pack(self, state: State) -> dict[str, Any]:
+        """A state as arrays on rank 0, whatever elsewhere; collective."""
         body = self._scene.body
         full = body.with_ghosts(state.w)
         arrays: dict[str, Any] = {}
@@ -61,9 +96,9 @@ class Archive:
             arrays[f"scalar/{name}"] = value
         for name, value in state.measures.items():
             arrays[f"measure/{name}"] = value
-        return arrays if self._comm.rank == 0 else None
+        return arrays
 
-    def unpack(self, arrays: Mapping[str, Any]) -> State:
+    def _unpack(self, arrays: Mapping[str, Any]) -> State:
         """A state from arrays that every rank holds; the scene is left in that state."""
         scene, body = self._scene, self._scene.body
         full = np.zeros(body.local)
@@ -99,17 +134,19 @@ class Archive:
     def multiplier(self) -> Floats | None:
         """Pressure field at the nodes of every cell, MPa, (m, k), on rank 0."""
         scene = self._scene
-        if "p" not in scene.body.names:
+        if scene.body.pressure_field is None:
             return None
         if self._multiplier is None:
             nodes = reference_nodes(scene.domain.data.cell_type)
             self._multiplier = compat.PointValues(scene.domain.mesh, scene.body.p, nodes)
         return _gather(self._comm, self._cells, self._multiplier()[..., 0])
 
-    def forces(self, key: str) -> Floats | None:
-        """Present force of every fiber segment of an effect, N, on rank 0."""
-        discrete = self._scene.discrete[key]
-        return _gather(self._comm, discrete.index, discrete.force)  # type: ignore[attr-defined]
+    def fiber_force(self) -> Floats | None:
+        """Present force of every fiber segment, N, on rank 0; None without fibers; collective."""
+        for discrete in self._scene.discrete.values():
+            if isinstance(discrete, FiberPotential):
+                return _gather(self._comm, discrete.index, discrete.force)
+        return None
 
 
 def _part(arrays: Mapping[str, Any], prefix: str) -> dict[str, Any]:

@@ -28,15 +28,25 @@ class Touch:
     area: float
 
 
+def probes(scene: Scene) -> dict[str, Probe]:
+    """A probe for every contact of a scene, by the name of its obstacle."""
+    contacts = [effect for effect in scene.effects.values() if isinstance(effect, Contact)]
+    return {contact.name: Probe(scene, contact) for contact in contacts}
+
+
 class Probe:
     """Reads a contact at the points of quadrature.
 
     Args:
         scene: the scene.
         contact: one of its effects.
+
+    Attributes:
+        key: the effect's key, under which the scene has the forces on it.
     """
 
     def __init__(self, scene: Scene, contact: Contact) -> None:
+        self.key = contact.key
         self._body, self._obstacle = scene.body, contact.obstacle
         self._numbers = contact.obstacle.numbers()
         domain = scene.domain

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from collections.abc import Sequence
-from typing import Any, Protocol
+from collections.abc import Mapping, Sequence
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -35,9 +35,6 @@ class Problem(Protocol):
     volumetric: npt.NDArray[np.bool_]
     volume_scale: float
     force_noise: float
-    force_floor: float
-    discrete: dict[str, Any]
-    body: Any
 
     def set(self, w: Floats) -> None:
         """Take the owned coefficients as the state."""
@@ -63,6 +60,14 @@ class Problem(Protocol):
     def norm(self, values: Floats) -> float:
         """Euclidean norm over all ranks."""
 
+    def predict(
+        self, correction: Floats | None, scalars: Mapping[str, float] | None = None
+    ) -> None:
+        """Take the last correction, owned part, which the next tangent may use; None: none yet."""
+
+    def raise_force_floor(self, floor: float) -> None:
+        """Measure forces by no less than this from now on, N."""
+
 
 @dataclasses.dataclass(frozen=True)
 class Settings:
@@ -84,7 +89,7 @@ class Settings:
     reuse: bool = True
 
 
-@dataclasses.dataclass
+@dataclasses.dataclass(frozen=True)
 class Outcome:
     """How a Newton solve ended.
 
@@ -272,8 +277,7 @@ class _Solve:
         self.tangents.append(len(self.history))
         if len(self.history) > PATIENCE and max(self.history[-1]) > max(self.history[-2]):
             # predicted fiber forces can cycle where fibers are very stiff
-            for discrete in problem.discrete.values():
-                discrete.predict(None)
+            problem.predict(None)
         problem.assemble_tangent()
         self.newton._assembly["tangent"] += time.perf_counter() - start
         self.newton.factor.renew()
@@ -298,15 +302,8 @@ class _Solve:
         a, q = self.border.eliminate(a, r_q)
         self.join(y, a, q)
         # SNES takes the step x − y, so the correction is −(a, q)
-        self.correct(-a, dict(zip(self.unknown, -q, strict=True)))
-
-    def correct(self, correction: Floats, scalars: dict[str, float]) -> None:
-        """Tell the discrete potentials the correction, ghosts included."""
-        if not self.newton.settings.hybrid or not self.problem.discrete:
-            return
-        full = self.problem.body.with_ghosts(correction)
-        for discrete in self.problem.discrete.values():
-            discrete.predict(full, scalars)
+        if self.newton.settings.hybrid:
+            self.problem.predict(-a, dict(zip(self.unknown, -q, strict=True)))
 
     def test(self, _snes: PETSc.SNES, iteration: int, _norms: tuple[float, ...]) -> int:
         """Force, volume and closing equations, each for itself."""
@@ -355,8 +352,7 @@ class _Solve:
         pc.setType(PETSc.PC.Type.PYTHON)
         pc.setPythonContext(self)
         if not self.newton.settings.hybrid:
-            for discrete in self.problem.discrete.values():
-                discrete.predict(None)  # the march may have extrapolated forces
+            self.problem.predict(None)  # the march may have extrapolated forces
         self.join(x, w, np.array([self.problem.scalar(name) for name in self.unknown]))
         try:
             snes.solve(None, x)
@@ -365,7 +361,7 @@ class _Solve:
                 # SNES stops at a starting guess that is not a number without asking the test
                 self.reason = INVERTED.format(self.least)
             if converged:
-                self.problem.force_floor = max(self.problem.force_floor, FADED * self.scale)
+                self.problem.raise_force_floor(FADED * self.scale)
         except (PETSc.Error, ZeroDivisionError, np.linalg.LinAlgError) as error:
             self.reason = f"the linear solve failed ({error})"
             converged = False

@@ -8,28 +8,38 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
-from pydantic import AfterValidator, Field, field_serializer, model_serializer, model_validator
+from pydantic import (
+    AfterValidator,
+    Field,
+    create_model,
+    field_serializer,
+    field_validator,
+    model_serializer,
+    model_validator,
+)
 
-from fiberbend.effects.table import Effect, EffectEntry, unwrap
+from fiberbend.case.coefficients import coefficient_fields
+from fiberbend.effects.effect import Effect, Inflation, Turns, keep_straight
+from fiberbend.effects.table import EffectEntry, unwrap
 from fiberbend.schema.quantities import (
     Angle,
-    Coefficient,
     Density,
     Length,
     Model,
     Modulus,
     Pressure,
+    Width,
 )
 from fiberbend.schema.quantities import SignedPressure as AnyPressure
+from materials.laws.table import LAWS
 
 E = TypeVar("E", bound=Effect)
 
-COEFFICIENTS = ("mu", "c10", "c01", "c1", "c2", "c3")
-"""Coefficients of the laws; `materials.laws.LAWS` says which law has which."""
-
 if TYPE_CHECKING:
     AnyEffect = Effect
+    LawName = str
 else:
+    LawName = Literal[tuple(LAWS)]
     AnyEffect = Annotated[EffectEntry, AfterValidator(unwrap)]
 
 
@@ -51,33 +61,41 @@ class Actuator(Model):
     floor: Length | None = None
     """Thickness of the floor under the chamber; of a circle the outer part of the wall's thickness
     over the lowest quarter, none unless said."""
-    sheath: Length | None = None
+    sheath: Width | None = None
     """Thickness of the sheath around everything; none unless said."""
     cap: Length = 15.0
     """Length of each of the two solid end caps."""
-    layer: Length | None = None
+    layer: Width | None = None
     """Thickness of a separate strain-limiting layer under a flat floor; none unless said."""
 
+    @field_validator("sheath", "layer")
+    @classmethod
+    def _none_if_zero(cls, value: float | None) -> float | None:
+        """What has no thickness does not exist."""
+        return value or None
 
-class Material(Model):
-    """A material by name, or a law with its coefficients."""
+
+class _Source(Model):
+    """Where a material's behaviour comes from."""
 
     name: str | None = None
     """A named material; written alone where nothing else is said, `wall: elastosil-m4601`."""
-    law: Literal["yeoh", "neo-hooke", "mooney-rivlin"] | None = None
+    law: LawName | None = None
     """Law of a material that has no name here."""
-    mu: Modulus | None = None
-    """Shear modulus; neo-hooke."""
-    c10: Coefficient | None = None
-    """Coefficient of I1 - 3; mooney-rivlin."""
-    c01: Coefficient | None = None
-    """Coefficient of I2 - 3; mooney-rivlin."""
-    c1: Modulus | None = None
-    """Coefficient of I1 - 3; yeoh."""
-    c2: Coefficient | None = None
-    """Coefficient of (I1 - 3)^2; yeoh."""
-    c3: Coefficient | None = None
-    """Coefficient of (I1 - 3)^3; yeoh."""
+
+
+_COEFFICIENTS = coefficient_fields()
+"""Keys of the laws' parameters; `materials.laws.table.LAWS` says which law has which."""
+
+if TYPE_CHECKING:
+    _Coefficients = _Source
+else:
+    _Coefficients = create_model("_Coefficients", __base__=_Source, **_COEFFICIENTS)
+
+
+class Material(_Coefficients):
+    """A material by name, or a law with its coefficients."""
+
     density: Density | None = None
     """Density; gravity needs it."""
     bulk: Modulus | None = None
@@ -85,8 +103,8 @@ class Material(Model):
 
     @property
     def coefficients(self) -> dict[str, float]:
-        """The coefficients that are given, in MPa."""
-        given = {key: getattr(self, key) for key in COEFFICIENTS}
+        """The coefficients that are given, in MPa where they have a unit."""
+        given = {key: getattr(self, key) for key in _COEFFICIENTS}
         return {key: value for key, value in given.items() if value is not None}
 
     @model_validator(mode="before")
@@ -197,6 +215,23 @@ class Case(Model):
     def find(self, kind: type[E]) -> E | None:
         """The effect of a class, or None where the case does not list it."""
         return next((effect for effect in self.effects if isinstance(effect, kind)), None)
+
+    @property
+    def inflation(self) -> Inflation | None:
+        """How the chamber is loaded, or None where it is not."""
+        found = (effect.inflation() for effect in self.effects)
+        return next((load for load in found if load is not None), None)
+
+    @property
+    def turns(self) -> Turns | None:
+        """The thread around the body, or None where there is none."""
+        found = (effect.turns() for effect in self.effects)
+        return next((turns for turns in found if turns is not None), None)
+
+    @property
+    def straight(self) -> bool:
+        """An effect keeps the actuator from bending: its force is asked for, not its angle."""
+        return keep_straight(self.effects)
 
     def resolved(self) -> dict[str, Any]:
         """The case with every default, as a mapping of plain values with units.

@@ -9,23 +9,22 @@ import dataclasses
 from typing import TYPE_CHECKING
 
 from fiberbend.case import case
-from fiberbend.effects import table
+from fiberbend.effects.effect import Requests, Site
 
 if TYPE_CHECKING:
-    from geometry.actuator import Actuator
-    from geometry.sections.size import MeshSize, Strips
-    from materials.fiber import Fiber
-    from materials.laws import Material
+    from geometry.sections.shape import ShapedActuator
+    from geometry.sections.size import MeshSize
+    from materials.material import Material
 
 _KG_PER_M3 = 1e12
 """kg/m³ in one t/mm³."""
 
 
-def dimensions(actuator: case.Actuator) -> Actuator:
+def dimensions(actuator: case.Actuator) -> ShapedActuator:
     """The dimensions as the geometry takes them."""
-    from geometry.actuator import Actuator
+    from geometry.sections.table import make_actuator
 
-    return Actuator(**dict(actuator))
+    return make_actuator(dict(actuator))
 
 
 def mesh_size(mesh: case.Mesh, half: bool) -> MeshSize:
@@ -35,34 +34,13 @@ def mesh_size(mesh: case.Mesh, half: bool) -> MeshSize:
     return MeshSize(axial=mesh.axial, section=mesh.section, element=mesh.element, half=half)
 
 
-def strips(tip: table.BlockedTipEffect | table.ContactEffect | None) -> Strips | None:
-    """The strips of roof and post as the geometry takes them; None where neither exists."""
-    from geometry.sections.size import Strips
-
-    if isinstance(tip, table.ContactEffect):
-        if tip.roof is None and tip.post is None:
-            return None
-        roof, post = tip.roof or table.Roof(), tip.post or table.Post()
-        return Strips(roof_half_width=roof.width / 2, post_length=post.length)
-    if tip is None:
-        return None
-    return Strips(roof_half_width=tip.roof_width / 2, post_length=tip.post_length)
-
-
-def tip_support(
-    given: case.Case,
-) -> table.BlockedTipEffect | table.ContactEffect | None:
-    """The effect of a case that may have a roof and a post."""
-    return given.find(table.BlockedTipEffect) or given.find(table.ContactEffect)
-
-
 def material(spec: case.Material) -> Material:
     """The material that a case names or describes.
 
     Raises:
         ValueError: an unknown name, or coefficients that the law does not allow.
     """
-    from materials.laws import Material
+    from materials.material import Material
     from materials.named import named_material
 
     if spec.name is not None:
@@ -74,19 +52,23 @@ def material(spec: case.Material) -> Material:
     return dataclasses.replace(base, density=density, bulk=bulk)
 
 
-def fiber(spec: table.Fiber) -> Fiber:
-    """The fiber that a case names or describes; a described one carries with all of its radius.
+def site(given: case.Case) -> Site:
+    """The actuator of a case as its effects see it."""
+    specs = {part: spec for part, spec in dict(given.materials).items() if spec is not None}
+    return Site(
+        actuator=dimensions(given.actuator),
+        materials={part: material(spec) for part, spec in specs.items()},
+        straight=given.straight,
+    )
 
-    Raises:
-        ValueError: an unknown name, or one without modulus and diameter.
-    """
-    from materials.fiber import FIBERS, Fiber
 
-    if spec.name is not None:
-        if spec.name not in FIBERS:
-            raise ValueError(f"fiber {spec.name!r} is unknown: expected one of {', '.join(FIBERS)}")
-        return FIBERS[spec.name]
-    if spec.modulus is None or spec.diameter is None:
-        raise ValueError("a fiber without a name needs modulus and diameter")
-    factor = 1.0 if spec.radius_factor is None else spec.radius_factor
-    return Fiber(spec.modulus, spec.diameter, factor, source="the case")
+def requests(given: case.Case) -> Requests:
+    """What a case asks of its loads."""
+    output, solver = given.output, given.solver
+    return Requests(
+        first=solver.first_step,
+        largest=solver.max_step,
+        at_pressures=tuple(output.at_pressures),
+        at_angles=tuple(output.at_angles),
+        stop_at_angle=output.stop_at_angle,
+    )

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Literal
 
 from analytic.table import read_columns
 from fiberbend.case.case import Case
-from fiberbend.effects.table import hold_straight
 
 if TYPE_CHECKING:
     from geometry.mesh.data import Floats
@@ -85,7 +84,7 @@ def read_measured(case: Case) -> Measured | None:
     file = case.output.measured
     if file is None:
         return None
-    quantity = expected_quantity(hold_straight(case.effects))
+    quantity = expected_quantity(case.straight)
     pressure, value = np.array(read_columns(Path(file), ("pressure_kPa", quantity))).T
     if quantity == "angle_deg":
         value = value * (math.pi / 180)

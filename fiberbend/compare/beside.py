@@ -10,11 +10,13 @@ import numpy as np
 
 from fiberbend.case.case import Case
 from fiberbend.case.measured import read_measured
+from fiberbend.case.section_beside import MODEL, as_section
 from fiberbend.compare.check import Check, crosscheck
 from fiberbend.compare.others import Straight
-from fiberbend.effects.table import PressureEffect, StraightEffect
-from fiberbend.models.closed_form import held
-from fiberbend.models.result import RunResult
+from fiberbend.effects.pressure import inflate
+from fiberbend.effects.straight import straight_of
+from fiberbend.models.model import ModelKind
+from fiberbend.models.result import Curve, RunResult
 
 LEAST_ANGLE = 1.0
 """Degrees that a run has to bend for a curve of the section model beside it."""
@@ -23,9 +25,10 @@ _PARTS = (0.25, 0.5, 0.75)
 
 def check_run(
     case: Case,
-    model: str,
+    model: ModelKind,
     rows: Sequence[dict[str, Any]],
     solve: Callable[[Case], RunResult] | None = None,
+    known: Curve | None = None,
 ) -> Check:
     """Put a run beside the section model, the closed forms and the measured points; no collective.
 
@@ -34,14 +37,15 @@ def check_run(
         model: its model.
         rows: its history.
         solve: solves a section on this rank alone; without it there is none beside the run.
+        known: the section's curve where it was solved already; it is solved again where the run
+            goes beyond.
     """
     measured = read_measured(case)
-    pressure = case.find(PressureEffect)
-    if pressure is None or model == "section" or solve is None:
+    if case.inflation is None or solve is None or model.name == MODEL:
         return crosscheck(case, model, rows, measured=measured)
     keys = ("angle_deg", "uniform_angle_deg")
     furthest = max((row[key] for row in rows for key in keys if row.get(key) is not None), key=abs)
-    if held(case):
+    if case.straight:
         reached = 1e-3 * max((row["pressure_kPa"] for row in rows), key=abs)
         if reached == 0:
             return crosscheck(case, model, rows, measured=measured)
@@ -51,30 +55,37 @@ def check_run(
         )
     if abs(furthest) < LEAST_ANGLE:
         return crosscheck(case, model, rows, measured=measured)
-    from fiberbend.case.section_beside import as_section, load
-    from fiberbend.models.result import Curve
+    curve = known
+    if curve is None or not curve.reaches(math.radians(furthest)):
+        curve = section_curve(case, math.radians(furthest), solve)
+    if len(curve.angle) < 2:
+        return crosscheck(case, model, rows, measured=measured, no_section=curve.reason)
+    return crosscheck(case, model, rows, curve, measured, no_section=curve.reason)
 
-    section = as_section(case, load(angle=math.radians(furthest)))
-    result = solve(section)
-    if len(result.rows) < 2:
-        return crosscheck(case, model, rows, measured=measured, no_section=result.reason)
+
+def section_curve(case: Case, angle: float, solve: Callable[[Case], RunResult]) -> Curve:
+    """P, θ and V of a case's actuator by the section model, winding smeared.
+
+    Args:
+        case: any case.
+        angle: bending angle at the end, rad.
+        solve: solves a section.
+    """
+    result = solve(as_section(case, inflate(angle=angle)))
     columns = ("pressure_kPa", "angle_deg", "chamber_mm3")
     kpa, degrees, volume = (np.array([row[name] for row in result.rows]) for name in columns)
-    curve = Curve(1e-3 * kpa, np.radians(degrees), volume, result.reason)
-    return crosscheck(case, model, rows, curve, measured, no_section=result.reason)
+    return Curve(1e-3 * kpa, np.deg2rad(degrees), volume, result.reason)
 
 
 def _straight(
     case: Case, pressure: float, solve: Callable[[Case], RunResult]
 ) -> tuple[Straight | None, str]:
     """The section held straight up to a pressure in MPa, and why it ends early."""
-    from fiberbend.case.section_beside import as_section, load
-
-    section = as_section(case, load(to=pressure))
+    section = as_section(case, inflate(to=pressure))
     output = section.output.model_copy(
         update={"at_pressures": tuple(part * pressure for part in _PARTS)}
     )
-    effects = (*section.effects, case.find(StraightEffect) or StraightEffect())
+    effects = (*section.effects, straight_of(case.effects))
     result = solve(section.model_copy(update={"effects": effects, "output": output}))
     states = [(row["pressure_kPa"], row.get("blocked_moment_Nmm")) for row in result.rows]
     known = [(0.0, 0.0), *((1e-3 * p, m) for p, m in states if m is not None and p != 0)]

@@ -17,14 +17,14 @@ from analytic.bending import Hemicircle
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.compare.others import Other
-from fiberbend.effects.table import WindingEffect
+from fiberbend.effects.effect import tip_strips
 from fiberbend.models.closed_form import (
     analytic_curves,
     floor_limits,
-    held,
     lever_arm,
 )
-from fiberbend.models.resolution import bulging, resolved
+from fiberbend.models.model import ModelKind
+from fiberbend.models.resolution import bulging
 
 Row = Mapping[str, Any]
 
@@ -66,7 +66,7 @@ class Cause:
         return dataclasses.replace(self, percent=percent, direction=direction)
 
 
-def find(case: Case, model: str, row: Row, other: Other, value: float) -> list[Cause]:
+def find(case: Case, model: ModelKind, row: Row, other: Other, value: float) -> list[Cause]:
     """What sets a run apart from another model.
 
     Args:
@@ -76,22 +76,22 @@ def find(case: Case, model: str, row: Row, other: Other, value: float) -> list[C
         other: the other model.
         value: its value there, kPa or N.
     """
-    if held(case):
+    if case.straight:
         return _of_force(case, row, value)
     curves = analytic_curves(case)
     if other.name != "section":
         found = _of_closed_form(case, model, row, curves[other.line], curves)
         return [*_ends(model, row, other), *found]
-    if model == "analytic":
+    if model.elements() is None:
         seen = {"angle_deg": row["angle_deg"], "pressure_kPa": value}
-        found = _of_closed_form(case, "section", seen, curves["zero-fit"], curves)
+        found = _of_closed_form(case, model, seen, curves["zero-fit"], curves)
         return [cause.reversed() for cause in found]
     return [*_ends(model, row, other), *_fibers(case, model, row)]
 
 
-def _ends(model: str, row: Row, other: Other) -> list[Cause]:
+def _ends(model: ModelKind, row: Row, other: Other) -> list[Cause]:
     middle, whole = row.get("uniform_angle_deg"), row["angle_deg"]
-    if model != "body" or not middle:
+    if not model.ends or not middle:
         return []
     percent = 100 * float(other.value(np.array(middle)) / other.value(np.array(whole)) - 1)
     if not math.isfinite(percent):
@@ -100,20 +100,20 @@ def _ends(model: str, row: Row, other: Other) -> list[Cause]:
     return [Cause("end caps", percent, f"{text}: {percent:+.1f} %")]
 
 
-def _fibers(case: Case, model: str, row: Row) -> list[Cause]:
-    winding, part = case.find(WindingEffect), resolved(case, model)
-    if winding is None or part == 0:
+def _fibers(case: Case, model: ModelKind, row: Row) -> list[Cause]:
+    turns, part = case.turns, model.resolved(case)
+    if turns is None or part == 0:
         return []
-    percent = part * bulging(winding.pitch, row["angle_deg"])
+    percent = part * bulging(turns.pitch, row["angle_deg"])
     text = (
-        f"rubber bulges between the turns of a pitch of {winding.pitch:g} mm, and no smeared "
+        f"rubber bulges between the turns of a pitch of {turns.pitch:g} mm, and no smeared "
         f"winding sees it: about {percent:+.1f} %"
     )
     return [Cause("discrete winding", percent, text)]
 
 
 def _of_closed_form(
-    case: Case, model: str, row: Row, closed: Hemicircle, curves: Mapping[str, Hemicircle]
+    case: Case, model: ModelKind, row: Row, closed: Hemicircle, curves: Mapping[str, Hemicircle]
 ) -> list[Cause]:
     """What sets a finite-element model apart from a section that keeps its shape."""
     own, wide = curves["zero-fit"], curves["winding"]
@@ -183,7 +183,7 @@ def _of_force(case: Case, row: Row, force: float) -> list[Cause]:
         text = f"the tip is guided, not held: the section z = L turns by {rotation:.1f}°"
         found.append(Cause("guided tip", None, text, -1))
     sheath, wall = case.materials.sheath, convert.material(case.materials.wall)
-    if sheath is not None and convert.strips(convert.tip_support(case)) is not None:
+    if sheath is not None and tip_strips(case.effects) is not None:
         ratio = convert.material(sheath).initial_shear_modulus / wall.initial_shear_modulus
         text = f"the sheath under roof and post, {ratio:.2f} times as stiff as the wall, yields"
         if ratio < _SOFT:

@@ -28,14 +28,9 @@ from fiberbend.compare.others import (
     through_rows,
 )
 from fiberbend.drawing.overlay import Line, Overlay, Points
-from fiberbend.effects.table import (
-    ContactEffect,
-    GravityEffect,
-    PressureEffect,
-    WindingEffect,
-)
-from fiberbend.models.closed_form import dimensions, held, no_analytic
-from fiberbend.models.resolution import BULGING_PITCH, bulging, resolved
+from fiberbend.models.closed_form import dimensions, no_analytic
+from fiberbend.models.model import ModelKind
+from fiberbend.models.resolution import BULGING_PITCH, bulging
 from fiberbend.models.result import Curve
 
 Row = dict[str, Any]
@@ -44,7 +39,6 @@ PAPER_PRESSURE = 11.0
 PAPER_FORCE = 10.5
 """Percent by which the paper's own models differ from its experiments at most: 10.9 in pressure,
 10.3 in force."""
-_ENDS = 2.0
 _SMEARED = 0.5
 _BULGING = 5.5
 _LEAST_ANGLE = 1.0
@@ -161,7 +155,7 @@ class Check:
 
 def crosscheck(
     case: Case,
-    model: str,
+    model: ModelKind,
     rows: Sequence[Row],
     section: Curve | None = None,
     measured: Measured | None = None,
@@ -180,17 +174,19 @@ def crosscheck(
         no_section: why the section model is not given, for the user.
     """
     nothing = Check(tuple({} for _ in rows))
-    if case.find(PressureEffect) is None:
+    if case.inflation is None:
         return nothing
-    blocked = held(case)
+    blocked = case.straight
     alone = _alone(case)
     columns = ("pressure_kPa", "tip_force_N") if blocked else ("angle_deg", "pressure_kPa")
     others = (
-        force_models(case, model, straight) if blocked else bending_models(case, model, section)
+        force_models(case, model.name, straight)
+        if blocked
+        else bending_models(case, model.name, section)
     )
     at, run = (_column(rows, name) for name in columns)
     least = 0.0 if blocked else _LEAST_ANGLE
-    if blocked and case.find(ContactEffect) is not None:
+    if blocked and any(effect.touches() for effect in case.effects):
         least = _FULL * np.abs(at).max()
     counts = np.abs(at) > least
     added: list[Row] = [{} for _ in rows]
@@ -206,7 +202,7 @@ def crosscheck(
             index, percent = worst
             where = f"{at[index]:.1f}{' kPa' if blocked else '°'}"
             limit, causes = None, []
-            if not alone and not (model == "analytic" and other.line):
+            if not alone and not (other.line and model.elements() is None):
                 limit = _limit(case, model, other, blocked)
                 causes = why.find(case, model, rows[index], other, float(values[index]))
             comparisons.append(
@@ -236,44 +232,41 @@ def crosscheck(
 
 def _alone(case: Case) -> str:
     """What acts on the run and on no model beside it; empty for nothing."""
-    if case.find(GravityEffect) is not None:
-        return "gravity acts"
-    return "obstacles act" if case.find(ContactEffect) is not None and not held(case) else ""
+    return " and ".join(text for effect in case.effects if (text := effect.alone()))
 
 
-def band(case: Case, model: str) -> float:
+def band(case: Case, model: ModelKind) -> float:
     """Percent of pressure within which a run's model agrees with the section model.
 
     The ends of a body cost up to 1.1 %, a winding of 3 mm pitch up to 5.1 %, both on the baseline;
     other pitches in proportion to `bulging`.
     """
-    if model == "analytic":
-        return PAPER_PRESSURE
-    least = _ENDS if model == "body" else _SMEARED
-    winding = case.find(WindingEffect)
-    if winding is None or resolved(case, model) == 0:
-        return least
-    scale = bulging(winding.pitch, 360.0) / bulging(BULGING_PITCH, 360.0)
-    return round(max(least, _SMEARED + _BULGING * scale), 2)
+    turns = case.turns
+    if turns is None or model.resolved(case) == 0:
+        return model.agreement
+    scale = bulging(turns.pitch, 360.0) / bulging(BULGING_PITCH, 360.0)
+    return round(max(model.agreement, _SMEARED + _BULGING * scale), 2)
 
 
-def _limit(case: Case, model: str, other: Other, blocked: bool) -> float:
-    if other.name == "section" and not (blocked and model == "body"):
+def _limit(case: Case, model: ModelKind, other: Other, blocked: bool) -> float:
+    if other.name == "section" and not (blocked and model.ends):
         return band(case, model)
     return PAPER_FORCE if blocked else PAPER_PRESSURE
 
 
-def _unresolved(case: Case, model: str, rows: Sequence[Row], others: Sequence[str]) -> list[str]:
+def _unresolved(
+    case: Case, model: ModelKind, rows: Sequence[Row], others: Sequence[str]
+) -> list[str]:
     """Agreement with a smeared winding proves nothing where a discrete one is not resolved."""
-    winding = case.find(WindingEffect)
-    if winding is None or winding.representation == "smeared" or model != "body":
+    turns = case.turns
+    if turns is None or not turns.discrete or not model.ends:
         return []
     greatest = max(abs(row["angle_deg"]) for row in rows)
-    lost = (1 - resolved(case, model)) * bulging(winding.pitch, greatest)
+    lost = (1 - model.resolved(case)) * bulging(turns.pitch, greatest)
     if "section" not in others or lost < _LEAST_LOSS:
         return []
     return [
-        f"elements of {case.mesh.axial:g} mm do not resolve a pitch of {winding.pitch:g} mm: "
+        f"elements of {case.mesh.axial:g} mm do not resolve a pitch of {turns.pitch:g} mm: "
         f"agreement with the section model proves nothing, resolved fibers need about {lost:.1f} % "
         "more pressure"
     ]

@@ -61,36 +61,34 @@ def bending_models(case: Case, model: str, section: Curve | None) -> list[Other]
 
     Args:
         case: the case.
-        model: the run's own model, which is none of the others.
+        model: name of the run's own model, which is none of the others.
         section: P(θ) of the section model, where there is one.
     """
     others = []
-    if section is not None and model != "section":
+    if section is not None:
         others.append(Other("section", "section model", _through_curve(section)))
     for line, closed in analytic_curves(case).items():
-        if not (line == "zero-fit" and model == "analytic"):
-            others.append(Other(ANALYTIC[line], _LABELS[line], _closed(closed), line))
-    return others
+        others.append(Other(ANALYTIC[line], _LABELS[line], _closed(closed), line))
+    return [other for other in others if other.name != model]
 
 
 def force_models(case: Case, model: str, straight: Straight | None) -> list[Other]:
     """F(P) of the other models of a case whose tip is blocked; see `bending_models`."""
     lever, others = lever_arm(case), []
-    if straight is not None and model != "section":
+    if straight is not None:
         others.append(Other("section", "section model (M/L_f)", _held(straight, lever)))
     curves = analytic_curves(case)
-    if curves and model != "analytic":
-        others.append(Other("analytic", "κP/L_f", _force(curves["zero-fit"], lever), "zero-fit"))
     if curves:
-        others.append(
+        others += [
+            Other("analytic", "κP/L_f", _force(curves["zero-fit"], lever), "zero-fit"),
             Other(
                 "analytic_winding",
                 "κP/L_f (area to winding)",
                 _force(curves["winding"], lever),
                 "winding",
-            )
-        )
-    return others
+            ),
+        ]
+    return [other for other in others if other.name != model]
 
 
 def through_rows(

@@ -11,8 +11,8 @@ from cyclopts import Parameter
 
 from fiberbend.control.settings import Options, read_settings
 from fiberbend.reader.arguments import CaseFile, Changes
-from fiberbend.run import launch
-from fiberbend.run.launch import say
+from fiberbend.running import launch
+from fiberbend.running.launch import say
 from fiberbend.schema.quantities import Quantity
 from fiberbend.schema.units import KINDS
 

@@ -30,8 +30,8 @@ from fiberbend.control.export import (
 from fiberbend.control.result import ControlResult, FilterFit
 from fiberbend.control.settings import Settings, refusals
 from fiberbend.models.closed_form import analytic_curves, no_analytic
-from fiberbend.run import launch
-from fiberbend.run.folder import RunFolder
+from fiberbend.running import launch
+from fiberbend.running.folder import RunFolder
 from fiberbend.schema.problems import CaseError, Problem
 
 CONTROL_FILE = "control.json"
@@ -89,10 +89,10 @@ def plant_curve(case: Case, settings: Settings) -> tuple[ActuatorCurve, str]:
     end = max(2 * math.pi, 4 / 3 * highest)
     if settings.plant == "analytic":
         return ArcCurve.of(_closed_form(case), np.linspace(0.0, end, 73)), ""
-    from fiberbend.case.section_beside import load
-    from fiberbend.control.plant_curve import section_curve
+    from fiberbend.compare.beside import section_curve
+    from fiberbend.running.runner import run_case
 
-    curve = section_curve(case, load(angle=end))
+    curve = section_curve(case, end, lambda section: run_case(section, None))
     return curve, curve.reason
 
 

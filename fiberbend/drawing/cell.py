@@ -19,18 +19,12 @@ from fiberbend.states.snapshot import (
 from fiberbend.states.stack import Stack, repeated, root_section
 from geometry.actuator import Actuator
 from geometry.mesh.data import Floats
-from geometry.winding.outline import OUTLINES
+from geometry.winding.outline import pieces
 
 _PITCHES = 5
 _VIEW = (-0.62, 0.62, -0.48)
 _PLOT = (1000, 640)
 _BAND: dict[str, Any] = {"alpha": 0.16, "linewidth": 0.0}
-_PIECES = {
-    "hemicircle": ("wall", "side", "floor"),
-    "rectangle": ("top", "side", "floor"),
-    "circle": ("upper half", "lower half"),
-}
-"""Names of the outline's pieces."""
 _WINDOW = 2.0
 """Length in mm over which a tension is averaged, about that of an element."""
 
@@ -170,8 +164,9 @@ def plot_tension(
 
 def _name_pieces(axes: Any, actuator: Actuator, half: bool) -> None:
     """Lines where the outline's pieces meet, and their names where there is room."""
-    names = _PIECES[actuator.section]
-    lengths = [piece.length for piece in OUTLINES[actuator.section](actuator)]
+    outline = pieces(actuator)
+    names = tuple(piece.name for piece in outline)
+    lengths = [piece.length for piece in outline]
     if not half:
         # the last piece goes on into its own mirror image
         names = (*names, *names[-2::-1])

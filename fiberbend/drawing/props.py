@@ -17,7 +17,7 @@ from fiberbend.drawing.tessellation import Tessellation, boundary_facets, on_mir
 from fiberbend.states.fiber_lines import fiber_lines
 from fiberbend.states.snapshot import Scenery, Snapshot
 from geometry.mesh.data import Floats, Ints
-from geometry.winding.embed import EmbeddedFibers
+from geometry.winding.segments import EmbeddedFibers
 
 _FIBER_RADIUS = 0.2
 

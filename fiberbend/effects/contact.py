@@ -1,105 +1,226 @@
-"""The obstacles of a case as the finite-element code takes them, and the pace of its march."""
+"""Rigid obstacles without friction that the outer surface may touch and leave."""
 
 from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
-from fem.effects.contact import Contact, Cylinder, Obstacle, Plane
-from fem.march.records import Rules
-from fem.solver.newton import Settings
-from fiberbend.case import convert
-from fiberbend.case.case import Case
-from fiberbend.effects import table
-from fiberbend.effects.table import ContactEffect
-from fiberbend.models.closed_form import held
+from fiberbend.effects.blocked_tip import tip_force_summary
+from fiberbend.effects.clearance import from_bar, over_plane
+from fiberbend.effects.effect import SPACE, Built, Draft, Effect, Requests, Site
+from fiberbend.effects.obstacles import Cylinder, Obstacle, Plane, Post, Roof
+from fiberbend.schema.problems import Problem
+from fiberbend.schema.quantities import Bedding
+from fiberbend.schema.units import show
 
-SURFACES = {"roof": ("roof",), "post": ("post",)}
-EVERYWHERE = ("outer", "tip")
-"""Surfaces that may touch an obstacle anywhere in space."""
+if TYPE_CHECKING:
+    from fem.effects.contact import Obstacle as Placed
+    from fem.march.records import Rules
+    from fem.solver.newton import Settings
+    from geometry.actuator import Actuator
+    from geometry.mesh.data import MeshData
+    from geometry.sections.size import Strips
 
 STIFFNESS = 100.0
 """Obstacles are so many times as stiff as what touches them."""
 ITERATIONS = 25
 SHARPER = 0.01
 """Factor on the tolerance of forces."""
-HELD_TURN = 0.05
+BLOCKED_TURN = 0.05
 """Turn in the first step of a body between roof and post, rad."""
-HELD_GROWTH = 3.0
+BLOCKED_GROWTH = 3.0
+_REACH = 0.5
+"""Part of the length by which the tip's lever grows while the body bends."""
+_ROUNDING = 1e-9
 
 
-def obstacles(case: Case) -> dict[str, Obstacle]:
-    """The rigid bodies of a case by their names, in space."""
-    contact = case.find(ContactEffect)
-    return {n: _placed(case, o) for n, o in contact.obstacles.items()} if contact else {}
+def placed_obstacles(effects: Iterable[Effect], actuator: Actuator) -> dict[str, Placed]:
+    """The rigid bodies of a case by their names, in space, beside an actuator at rest."""
+    return {
+        name: item.placed(actuator)
+        for effect in effects
+        if isinstance(effect, ContactEffect)
+        for name, item in effect.obstacles.items()
+    }
 
 
-def _placed(case: Case, item: table.Obstacle) -> Obstacle:
-    actuator = convert.dimensions(case.actuator)
-    if isinstance(item, table.Roof):
-        return Plane((0.0, actuator.outer_top + item.gap, 0.0), (0.0, -1.0, 0.0))
-    if isinstance(item, table.Post):
-        return Plane((0.0, actuator.outer_bottom - item.gap, 0.0), (0.0, 1.0, 0.0))
-    if isinstance(item, table.Plane):
-        return Plane(item.point, item.normal)
-    return Cylinder(item.center, item.radius)
+class ContactEffect(Effect):
+    """Rigid obstacles without friction that the outer surface may touch and leave."""
 
+    name = "contact"
 
-def stiffness(case: Case) -> float:
-    """Pressure per depth with which the obstacles of a case yield, MPa/mm.
+    roof: Roof | None = None
+    """A straight roof over the chamber; with a post, the paper's test of the tip force."""
+    post: Post | None = None
+    """A post under the tip."""
+    plane: Plane | None = None
+    """A plane anywhere."""
+    cylinder: Cylinder | None = None
+    """A round bar to be grasped."""
+    stiffness: Bedding | None = None
+    """Pressure per depth with which the obstacles yield; unless said a hundred times the modulus by
+    the thickness of what touches, between roof and post with the wall's modulus."""
 
-    What touches them, a layer of thickness h and Young's modulus E, yields by h/E times the
-    pressure; the obstacle by a hundredth of that. Between roof and post, where nothing else yields,
-    E is the wall's, also under a softer sheath.
-    """
-    contact = case.find(ContactEffect)
-    if contact is not None and contact.stiffness is not None:
-        return contact.stiffness
-    actuator, materials = case.actuator, case.materials
-    thickness, spec = actuator.wall, materials.wall
-    if actuator.sheath is not None:
-        thickness = actuator.sheath
-        if materials.sheath is not None and not held(case):
-            spec = materials.sheath
-    return STIFFNESS * 3 * convert.material(spec).initial_shear_modulus / thickness
+    @property
+    def obstacles(self) -> dict[str, Obstacle]:
+        """Those that the case names."""
+        all_of_them: dict[str, Obstacle | None] = {
+            "roof": self.roof,
+            "post": self.post,
+            "plane": self.plane,
+            "cylinder": self.cylinder,
+        }
+        return {name: item for name, item in all_of_them.items() if item is not None}
 
+    def needs(self) -> dict[str, str]:
+        """A body in space."""
+        return {SPACE: "obstacles need a body in space (effect straight: the blocked uniform bend)"}
 
-def effects(case: Case) -> list[Contact]:
-    """One effect for each obstacle of a case."""
-    k = stiffness(case)
-    return [
-        Contact(name, item, SURFACES.get(name, EVERYWHERE), k)
-        for name, item in obstacles(case).items()
-    ]
+    def mirror_breaker(self) -> str:
+        """A plane that leans."""
+        leans = self.plane is not None and self.plane.normal[0] != 0
+        return "a plane that leans sideways pushes to one side" if leans else ""
 
+    def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
+        """A second roof or post, nothing to touch, no room."""
+        for other, effect in draft.effects.items():
+            if effect is self or effect.strips() is None:
+                continue
+            for name in ("roof", "post"):
+                if getattr(self, name) is not None:
+                    text = f"{other} holds it already, expected one of them"
+                    yield Problem(f"{path}.{name}", text)
+        if not self.obstacles:
+            yield Problem(path, "nothing to touch, expected roof, post, plane or cylinder")
+        plane, bar = self.plane, self.cylinder
+        if plane is not None and not any(plane.normal):
+            yield Problem(f"{path}.plane.normal", "[0, 0, 0], expected a direction")
+            plane = None
+        actuator = draft.actuator
+        if actuator is None:
+            return
+        rooms = {
+            "plane": None if plane is None else over_plane(actuator, plane),
+            "cylinder": None if bar is None else from_bar(actuator, bar),
+        }
+        for name, room in rooms.items():
+            if room is not None and room < -_ROUNDING:
+                yield Problem(
+                    f"{path}.{name}",
+                    f"reaches {show(-room, 'length')} into the actuator at rest, "
+                    "expected room for it",
+                )
 
-def settings(case: Case, usual: Settings) -> Settings:
-    """More iterations where points of a surface have to find out whether they touch.
+    def keeps_straight(self) -> bool:
+        """Between roof and post."""
+        return self.roof is not None and self.post is not None
 
-    Forces of contact are small beside those in the fibers, on which the tolerance is measured.
-    """
-    if case.find(ContactEffect) is None:
-        return usual
-    return dataclasses.replace(usual, iterations=ITERATIONS, tolerance=SHARPER * usual.tolerance)
+    def strips(self) -> Strips | None:
+        """Those of roof and post, of both where there is one."""
+        from geometry.sections.size import Strips
 
+        if self.roof is None and self.post is None:
+            return None
+        roof, post = self.roof or Roof(), self.post or Post()
+        return Strips(roof_half_width=roof.width / 2, post_length=post.length)
 
-def pace(case: Case, usual: Rules) -> Rules:
-    """Rules of a march with obstacles.
+    def uncertainties(self, straight: bool) -> Iterator[str]:
+        """The obstacles' softness."""
+        if straight:
+            yield "obstacles: yield a little, which costs 0.2 % of the force (docs/contact.md)"
+        else:
+            yield "obstacles: yield a little: up to 0.3 % of their force (docs/contact.md)"
 
-    What touches is found in some six iterations however short the step is: they do not shorten it.
-    A body that is held hardly turns from the start, and its steps may grow fast. Touch bends every
-    curve: two states point better than three, and no volume is unexpected.
-    """
-    contact = case.find(ContactEffect)
-    if contact is None:
-        return usual
-    first, grow = (HELD_TURN, HELD_GROWTH) if held(case) else (usual.turn, usual.grow)
-    return dataclasses.replace(
-        usual,
-        easy=10,
-        slow=16,
-        grow=grow,
-        memory=2,
-        first_turn=min(usual.first_turn, first),
-        jump=math.inf,
-    )
+    def alone(self) -> str:
+        """The section beside a body between roof and post is kept straight."""
+        return "" if self.keeps_straight() else "obstacles act"
+
+    def steps(self) -> int:
+        """It is no load."""
+        return 0
+
+    def touches(self) -> bool:
+        """That is what it is for."""
+        return True
+
+    def largest_turn(self, length: float, cap: float) -> float:
+        """No step passes through a bar: the tip moves less than its radius."""
+        if self.cylinder is None:
+            return math.inf
+        return self.cylinder.radius / (_REACH * length + cap)
+
+    def settings(self, usual: Settings) -> Settings:
+        """More iterations where points of a surface have to find out whether they touch.
+
+        Forces of contact are small beside those in the fibers, on which the tolerance is measured.
+        """
+        return dataclasses.replace(
+            usual, iterations=ITERATIONS, tolerance=SHARPER * usual.tolerance
+        )
+
+    def rules(self, usual: Rules, straight: bool) -> Rules:
+        """The pace along obstacles.
+
+        What touches is found in some six iterations however short the step is: they do not shorten
+        it. A body that is kept straight hardly turns from the start, and its steps may grow fast.
+        Touch bends every curve: two states point better than three, and no volume is unexpected.
+        """
+        first, grow = (BLOCKED_TURN, BLOCKED_GROWTH) if straight else (usual.turn, usual.grow)
+        return dataclasses.replace(
+            usual,
+            easy=10,
+            slow=16,
+            grow=grow,
+            memory=2,
+            first_turn=min(usual.first_turn, first),
+            jump=math.inf,
+        )
+
+    def yields(self, site: Site) -> float:
+        """Pressure per depth with which the obstacles yield, MPa/mm.
+
+        What touches them, a layer of thickness h and Young's modulus E, yields by h/E times the
+        pressure; the obstacle by a hundredth of that. Between roof and post, where nothing else
+        yields, E is the wall's, also under a softer sheath.
+        """
+        if self.stiffness is not None:
+            return self.stiffness
+        sheath, material = site.actuator.sheath, site.materials["wall"]
+        thickness = site.actuator.wall if sheath is None else sheath
+        if sheath is not None and not site.straight:
+            material = site.materials.get("sheath", material)
+        return STIFFNESS * 3 * material.initial_shear_modulus / thickness
+
+    def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
+        """One penalty for each obstacle."""
+        from fem.effects.contact import Contact
+
+        stiffness = self.yields(site)
+        return Built(
+            tuple(
+                Contact(name, item.placed(site.actuator), item.surfaces, stiffness)
+                for name, item in self.obstacles.items()
+            )
+        )
+
+    def summary(self, site: Site, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+        """When each obstacle was touched and left, and the force on the body at the end."""
+        strips = self.strips()
+        tip = {}
+        if self.keeps_straight() and strips is not None:
+            tip = tip_force_summary(site, strips, rows[-1])
+        entry: dict[str, Any] = {"stiffness_MPa_per_mm": self.yields(site)}
+        for name in self.obstacles:
+            touching = [bool(row.get(f"contact_{name}_area_mm2")) for row in rows]
+            changes = [i for i in range(1, len(rows)) if touching[i] != touching[i - 1]]
+            depth = max(-row.get(f"contact_{name}_gap_mm", 0.0) for row in rows)
+            entry[name] = {
+                "touched_at_kPa": [rows[i]["pressure_kPa"] for i in changes if touching[i]],
+                "left_at_kPa": [rows[i]["pressure_kPa"] for i in changes if not touching[i]],
+                "force_y_N": rows[-1].get(f"contact_{name}_y_N"),
+                "force_z_N": rows[-1].get(f"contact_{name}_z_N"),
+                "greatest_depth_mm": max(depth, 0.0),
+            }
+        return {**tip, "contact": entry}

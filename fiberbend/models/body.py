@@ -1,127 +1,149 @@
-"""What each model reads off a converged state."""
+"""`model: body`: the whole actuator in three dimensions, caps included."""
 
 from __future__ import annotations
 
-import numpy as np
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-from analytic.path import tip
-from fem.effects.contact import Contact
-from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
-from fem.march.frames import Frames
-from fem.march.records import State
-from fem.results.measures import (
-    Resultant,
-    Tip,
-    UniformAngle,
-    balance,
+from fiberbend.case import convert
+from fiberbend.case.case import Case
+from fiberbend.effects.effect import (
+    ENDS,
+    SPACE,
+    STRIPS,
+    THREAD,
+    TURNS,
+    TWIST,
+    VOLUME,
+    tip_strips,
 )
-from fem.results.touch import Probe
-from fem.scene import Scene
-from geometry.actuator import Actuator
+from fiberbend.models.model import ENDS_BEND, MeshedModel, Reading, Size, count, found_pressure
+
+if TYPE_CHECKING:
+    from fem.effects.effect import Effect as Term
+    from fem.scene import Scene
+    from fiberbend.models.model import Make
+    from geometry.mesh.data import MeshData
+    from geometry.sections.size import MeshSize
+
+_ITERATIONS = 3.5
+"""Newton iterations in a step of free bending."""
+_TOUCHING_ITERATIONS = 6.0
+"""The same with roof and post, under which the sheath yields, and along obstacles."""
+_RESOLVED = ((0.5, 1.0), (2 / 3, 0.85), (4 / 3, 0.2))
+"""Length of the elements over the pitch, and the part of the bulging between turns they give."""
 
 
-class BodyGauge:
-    """The three-dimensional body.
+class Body(MeshedModel):
+    """Everything that can act on an actuator acts on it here."""
 
-    Args:
-        scene: the scene.
-        frames: rod frames of the body.
-    """
+    name = "body"
+    offers = frozenset({SPACE, ENDS, STRIPS, VOLUME, TWIST, THREAD, TURNS})
+    shared = True
+    resumes = True
+    takes_mesh_as_said = True
+    ends = True
+    agreement = 2.0
+    turn = math.radians(60)
+    first_turn = math.radians(20)
+    memory = 3
+    straight_start = 1.0
+    start_s = 6.0
+    compile_s = 20.0
+    pictures_s = (5.0, 2.0)
+    fields_s = 1.0
 
-    def __init__(self, scene: Scene, frames: Frames) -> None:
-        self._scene = scene
-        self._tip = Tip(scene.body)
-        self._uniform = UniformAngle(scene.body, frames)
-        self._guided = "post" in scene.supports
-        contacts = [e for e in scene.effects.values() if isinstance(e, Contact)]
-        self._probes = {contact.name: Probe(scene, contact) for contact in contacts}
-        self._keys = {contact.name: contact.key for contact in contacts}
+    def fineness(self, case: Case, half: bool) -> MeshSize:
+        """As the case says."""
+        return convert.mesh_size(case.mesh, half)
 
-    def tip(self, state: State) -> tuple[float, float]:
-        """y and z of the centroid of the tip cap's outer face, mm."""
-        position = self._tip.position()
-        return float(position[1]), float(position[2])
+    def mesh(self, case: Case, msh: Path | None = None) -> MeshData:
+        """Meshed by gmsh, with the fibers' curves."""
+        from geometry.bodies.gmsh_body import build_body
 
-    def columns(self, state: State) -> dict[str, float]:
-        """The angle without end effects."""
-        assert state.shape is not None
-        return {"uniform_angle_deg": float(np.rad2deg(self._uniform.value(state.shape)))}
+        actuator = convert.dimensions(case.actuator)
+        size = self.fineness(case, self.half(case)[0])
+        curves = [curve for effect in case.effects for curve in effect.curves(actuator)]
+        return build_body(actuator, size, tip_strips(case.effects), curves or None, msh)
 
-    def last_columns(self, state: State) -> dict[str, float]:
-        """What holds the body, and what it touches."""
-        if not self._guided and not self._probes:
-            return {}
-        found = balance(self._scene)
-        supports = found.supports
-        row: dict[str, float] = {}
-        for column, name, sign in (("tip", "post", 1.0), ("roof", "roof", -1.0)):
-            by = supports.get(self._keys.get(name, name))
-            if by is not None:
-                row[f"{column}_force_N"] = sign * float(by.force[1])
-        row["clamp_force_y_N"] = float(supports["clamp"].force[1])
-        row["clamp_moment_x_Nmm"] = float(supports["clamp"].moment[0])
-        row |= self._contacts(supports)
-        if self._guided or any(row[f"contact_{name}_area_mm2"] for name in self._probes):
-            row |= {"balance_force": found.force, "balance_moment": found.moment}
-        return row
+    def kinematics(self, case: Case) -> Make:
+        """x = X + u."""
+        from fem.kinematics.kinematics import Body as InSpace
 
-    def _contacts(self, supports: dict[str, Resultant]) -> dict[str, float]:
-        """Force of every obstacle on the body, what touches it, and how far or deep."""
-        row: dict[str, float] = {}
-        for name, probe in self._probes.items():
-            by, touch = supports[self._keys[name]], probe.read()
-            row |= {
-                f"contact_{name}_y_N": float(by.force[1]),
-                f"contact_{name}_z_N": float(by.force[2]),
-                f"contact_{name}_moment_x_Nmm": float(by.moment[0]),
-                f"contact_{name}_area_mm2": touch.area,
-                f"contact_{name}_gap_mm": touch.gap,
-            }
-        return row
+        return InSpace
 
+    def supports(self, case: Case, mesh: MeshData) -> list[Term]:
+        """The clamped root cap, and the mirror plane of half a body."""
+        from fem.effects.supports import Clamp, Symmetry
 
-class UniformGauge:
-    """Section and cell: the tip rides on a straight cap at the end of an arc.
+        return [Clamp(), *([Symmetry()] if mesh.half else [])]
 
-    Args:
-        scene: the scene.
-        actuator: dimensions.
-        straight: the curvature is held: the moment is of interest.
-    """
+    def reading(self, case: Case, scene: Scene) -> Reading:
+        """Angles by rod frames."""
+        from fem.march.frames import Frames
+        from fem.march.selfcontact import BodyRod
+        from fem.results.measures import BendingAngle
+        from fiberbend.models.gauges import BodyGauge
 
-    def __init__(self, scene: Scene, actuator: Actuator, straight: bool) -> None:
-        self._scene, self._actuator, self._straight = scene, actuator, straight
-        nodes = scene.domain.data.nodes
-        self._crown = int(np.argmax(nodes[:, 1]))
-        self._top = int(scene.body.node_dofs[self._crown, 1])
-        self._height = float(nodes[self._crown, 1])
-        self._per_length = scene.body.copies / actuator.length
+        frames = Frames(scene.body)
+        return Reading(
+            frames,
+            BendingAngle(scene.body, frames),
+            lambda: BodyGauge(scene, frames),
+            BodyRod(scene.body, frames),
+        )
 
-    def tip(self, state: State) -> tuple[float, float]:
-        """y and z of the centroid of the tip cap's outer face, mm; in the plane of bending."""
-        actuator = self._actuator
-        arc = actuator.length * state.scalars[STRETCH]
-        z, down = tip(state.measures["followed"], arc, actuator.cap, actuator.face_height)
-        return -float(down), float(z)
+    def resolved(self, case: Case) -> float:
+        """By the length of its elements."""
+        import numpy as np
 
-    def columns(self, state: State) -> dict[str, float]:
-        """Stretch of the axis at the pin and of the crown, and the twist of the whole length."""
-        scalars = state.scalars
-        height = self._height + float(state.w[self._top])
-        row = {
-            "axis_stretch": scalars[STRETCH],
-            "crown_stretch": scalars[STRETCH] + scalars[CURVATURE] * height,
-        }
-        if TWIST in scalars:
-            row["twist_deg"] = float(np.rad2deg(scalars[TWIST] * self._actuator.length))
-        return row
+        turns = case.turns
+        if turns is None or not turns.discrete:
+            return 0.0
+        sizes, parts = zip(*_RESOLVED, strict=True)
+        return float(np.interp(case.mesh.axial / turns.pitch, sizes, parts, right=0.0))
 
-    def last_columns(self, state: State) -> dict[str, float]:
-        """Moment and force that hold the body straight, and the tip force they stand for."""
-        if not self._straight:
-            return {}
-        moment = self._per_length * state.measures[f"conjugate {CURVATURE}"]
-        row = {"tip_force_N": moment / self._actuator.cap, "blocked_moment_Nmm": moment}
-        if STRETCH not in self._scene.natural:
-            row["axial_force_N"] = self._per_length * state.measures[f"conjugate {STRETCH}"]
-        return row
+    def size(self, case: Case) -> Size:
+        """Of a body from the block layout, which is that of gmsh's hexahedra."""
+        from geometry.bodies.extrude import swept_body
+        from geometry.mesh.tets import to_tetrahedra
+
+        actuator = convert.dimensions(case.actuator)
+        size = self.fineness(case, self.half(case)[0])
+        mesh, kind, pressures = swept_body(actuator, size, tip_strips(case.effects)), "hexahedra", 4
+        if case.mesh.element == "tetrahedron":
+            mesh, kind, pressures = to_tetrahedra(mesh), "tetrahedra", 0
+        layers = actuator.total_length / case.mesh.axial
+        unknowns = count(mesh, 3, pressures)
+        return Size(len(mesh.cells), kind, unknowns, found_pressure(case), layers)
+
+    def step_seconds(self, case: Case, size: Size) -> float:
+        """Tangent by elements, factor by layers and by unknowns a layer.
+
+        As nested dissection of a long body has it, fitted to sections refined once and twice and to
+        elements of 2 to 6 mm.
+        """
+        tangent = (1.1e-4 if size.kind == "tetrahedra" else 5.3e-4) * size.elements
+        factor = 1.5e-7 * size.layers * (size.unknowns / size.layers) ** 1.75
+        iteration = 0.65 * (tangent + factor) + 2.8e-6 * size.unknowns
+        touching = any(e.touches() or e.strips() is not None for e in case.effects)
+        return iteration * (_TOUCHING_ITERATIONS if touching else _ITERATIONS)
+
+    def memory_mb(self, size: Size) -> float:
+        """Mostly the factor."""
+        return 200 + 1e-3 * size.unknowns * (size.unknowns / size.layers) ** 0.3
+
+    def errors(self, case: Case) -> Iterator[str]:
+        """Mesh, effects, ends."""
+        if case.inflation is None:
+            return
+        if case.straight:
+            yield "mesh: moves the tip force by 1 to 3 % (docs/accuracy_blocked.md)"
+        else:
+            yield "mesh: finer elements move P by 0.1 to 0.3 % (docs/accuracy_free.md)"
+        for effect in case.effects:
+            yield from effect.uncertainties(case.straight)
+        if not case.straight and not any(effect.alone() for effect in case.effects):
+            yield f"ends: {ENDS_BEND}: see uniform_angle_deg"

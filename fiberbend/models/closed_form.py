@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import dataclasses
-import math
 from typing import Any
 
 from analytic.bending import Hemicircle
-from analytic.stress import Floats, Stress, wound
+from analytic.stress import Stress, wound
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.case import Material as MaterialSpec
-from fiberbend.effects.table import HoopsEffect, WindingEffect, hold_straight
-from materials.laws import energy_slopes
+from fiberbend.effects.effect import tip_strips
 
+SHAPE = "hemicircle"
+"""The section that has a closed form."""
 LIMITING = 10.0
 """Stretching stiffness of floor and layer over the wall's from which y = 0 counts as inextensible;
 the paper's combined base has 50 times the wall's, a floor of the wall's rubber 0.7 times."""
@@ -21,10 +20,10 @@ the paper's combined base has 50 times the wall's, a floor of the wall's rubber 
 
 def no_analytic(case: Case) -> str | None:
     """Why no analytical line stands for a case, or None where all do."""
-    actuator = case.actuator
-    if actuator.section != "hemicircle":
-        return f"the closed form of bending is for a hemicircle, not for a {actuator.section}"
-    if case.find(WindingEffect) is None and case.find(HoopsEffect) is None:
+    section = case.actuator.section
+    if section != SHAPE:
+        return f"the closed form of bending is for a {SHAPE}, not for a {section}"
+    if not any(effect.holds_circumference() for effect in case.effects):
         return "no winding holds the circumference, which the closed form keeps fixed"
     stiffness = _stiffness(case)
     share = (stiffness["floor"] + stiffness.get("layer", 0.0)) / stiffness["wall"]
@@ -64,12 +63,7 @@ def analytic_curves(case: Case) -> dict[str, Hemicircle]:
 
 def assumptions(case: Case) -> list[str]:
     """What of a case the closed form leaves out, one sentence each."""
-    remarks = []
-    winding = case.find(WindingEffect)
-    if winding is not None:
-        remarks.append("the winding holds the circumference rigidly; its pitch does not enter")
-        if winding.pattern != "double-helix":
-            remarks.append("the twist of a single helix is not in it")
+    remarks = [text for effect in case.effects for text in effect.assumed()]
     if floor_limits(case):
         remarks.append("the floor enters as rubber of the wall on an inextensible line at y = 0")
     specs = dict(case.materials).values()
@@ -78,14 +72,9 @@ def assumptions(case: Case) -> list[str]:
     return remarks
 
 
-def held(case: Case) -> bool:
-    """The actuator cannot bend: its tip force is asked for, not its angle."""
-    return hold_straight(case.effects)
-
-
 def lever_arm(case: Case) -> float:
     """L_f in mm: from the end of the chamber to the middle of the post, or the whole cap."""
-    strips = convert.strips(convert.tip_support(case))
+    strips = tip_strips(case.effects)
     return case.actuator.cap - (strips.post_length / 2 if strips is not None else 0.0)
 
 
@@ -98,34 +87,9 @@ def dimensions(case: Case) -> tuple[float, float, float, float]:
     return radius, floor, actuator.wall, actuator.length
 
 
-def chamber_moment(model: Hemicircle) -> float:
-    """∫ y dA of the chamber, mm³: κ of eq. (21), and dV/dθ of a section that keeps its shape."""
-    return dataclasses.replace(model, acts="chamber").kappa
-
-
-def face_height(case: Case) -> float:
-    """Height of the centroid of the tip cap's outer face: a half disk on a rectangle, mm."""
-    radius, floor, wall, _ = dimensions(case)
-    sheath = case.actuator.sheath or 0.0
-    r, bottom = radius + wall + sheath, -(case.actuator.layer or 0.0) - sheath
-    disk, box = math.pi * r**2 / 2, 2 * r * (floor - bottom)
-    centroids = floor + 4 * r / (3 * math.pi), (floor + bottom) / 2
-    return (disk * centroids[0] + box * centroids[1]) / (disk + box)
-
-
 def _stress(spec: MaterialSpec) -> Stress:
-    """Axial stress of a material whose circumference is held.
-
-    λ, 1, 1/λ give I1 = I2 = 1 + λ² + λ⁻², so that a law W(I1, I2) is the law W(I1) with the slope
-    ∂W/∂I1 + ∂W/∂I2.
-    """
-    material = convert.material(spec)
-
-    def slope(invariant: Floats) -> Floats:
-        first, second = energy_slopes(material, invariant, invariant)
-        return first + second
-
-    return wound(slope)
+    """Axial stress of a material whose circumference is held."""
+    return wound(convert.material(spec).principal)
 
 
 def floor_limits(case: Case) -> bool:

@@ -5,10 +5,12 @@ docs/crosscheck.md has the numbers behind the rules.
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Iterator
 
 from fiberbend.case.case import Case
-from fiberbend.effects.table import WindingEffect
+from fiberbend.models.choice import choose_model
+from fiberbend.models.model import ModelKind
+from fiberbend.schema.units import show
 
 BULGING_PITCH = 3.0
 """Pitch in mm for which the bulging between the fibers was measured."""
@@ -16,8 +18,6 @@ _BULGING = ((90.0, 3.5), (180.0, 4.1), (270.0, 4.7), (360.0, 5.1))
 """Angle in degrees, and percent of pressure that every fiber by itself takes beyond a smeared
 winding: the cell against the section model, baseline."""
 _BULGING_EXPONENT = 1.3
-_RESOLVED = ((0.5, 1.0), (2 / 3, 0.85), (4 / 3, 0.2))
-"""Length of a body's elements over the pitch, and the part of the bulging that they give."""
 
 
 def bulging(pitch: float, angle_deg: float) -> float:
@@ -27,17 +27,45 @@ def bulging(pitch: float, angle_deg: float) -> float:
         pitch: pitch of the double helix, mm.
         angle_deg: bending angle, degrees.
     """
+    import numpy as np
+
     angles, percent = zip(*_BULGING, strict=True)
     scale = (pitch / BULGING_PITCH) ** _BULGING_EXPONENT
     return scale * float(np.interp(abs(angle_deg), angles, percent))
 
 
-def resolved(case: Case, model: str) -> float:
-    """Part of the bulging between the fibers that a model gives: 1 resolved, 0 smeared."""
-    winding = case.find(WindingEffect)
-    if winding is None or winding.representation == "smeared" or model not in ("cell", "body"):
-        return 0.0
-    if model == "cell":
-        return 1.0
-    sizes, parts = zip(*_RESOLVED, strict=True)
-    return float(np.interp(case.mesh.axial / winding.pitch, sizes, parts, right=0.0))
+def lost_pressure(case: Case, model: ModelKind) -> Iterator[str]:
+    """What a model does not see of the rubber between the turns, in words."""
+    turns = case.turns
+    if turns is None or case.inflation is None or case.straight or not model.elements():
+        return
+    missing = 1 - model.resolved(case)
+    low, high = (missing * bulging(turns.pitch, angle) for angle in (90.0, 360.0))
+    if high >= 0.05:
+        scaled = "" if turns.pitch == BULGING_PITCH else f", scaled from {BULGING_PITCH:g} mm"
+        yield (
+            f"winding: P too low by about {low:.1f} % at 90° to {high:.1f} % at 360°: the rubber "
+            f"between turns {turns.pitch:g} mm apart bulges (docs/crosscheck.md{scaled})"
+        )
+    elif model.ends:
+        yield "winding: resolved; against a cell within 1.5 % (docs/accuracy_winding.md)"
+
+
+def winding_remark(case: Case) -> str | None:
+    """Whether the elements of a case's model resolve its winding.
+
+    Returns:
+        A sentence, or None without a discrete winding.
+    """
+    turns, model = case.turns, choose_model(case)[0].elements()
+    if turns is None or not turns.discrete or model is None:
+        return None
+    axial, most = model.fineness(case, model.half(case)[0]).axial, turns.pitch / 2
+    turn = f"a pitch of {show(turns.pitch, 'length')}"
+    if axial <= most * (1 + 1e-9):
+        return f"resolved (elements of {show(axial, 'length')}, {turn})"
+    return (
+        f"NOT resolved (elements of {show(axial, 'length')} under {turn}, needs "
+        f"{show(most, 'length')}): rubber between the turns bulges too little, the pressure for "
+        "an angle comes out too low"
+    )

@@ -50,3 +50,7 @@ class Curve:
     angle: Floats
     volume: Floats
     reason: str = ""
+
+    def reaches(self, angle: float) -> bool:
+        """Whether it rises from rest to an angle, rad."""
+        return bool(np.all(np.diff(self.angle) > 0) and 0 <= angle <= self.angle[-1])

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
 
 from fiberbend.case import convert
 from fiberbend.case.case import (
@@ -17,22 +17,21 @@ from fiberbend.case.case import (
     Solver,
 )
 from fiberbend.case.measured import what_is_wrong
-from fiberbend.effects.clearance import wrong_obstacles
-from fiberbend.effects.table import (
-    BlockedTipEffect,
-    ContactEffect,
+from fiberbend.effects.effect import (
+    Draft,
     Effect,
-    Fiber,
-    GravityEffect,
-    HoopsEffect,
-    PressureEffect,
-    WindingEffect,
-    hold_straight,
+    Inflation,
+    keep_straight,
+    mirror_breakers,
 )
-from fiberbend.models.choice import mirror_breakers
-from fiberbend.models.mesh_size import misfitting
+from fiberbend.effects.table import EFFECTS
+from fiberbend.models.choice import MODELS, choose_model
 from fiberbend.schema.problems import Problem, found, meant
 from fiberbend.schema.units import show
+from materials.laws.table import LAWS
+
+if TYPE_CHECKING:
+    from geometry.sections.size import MeshSize
 
 
 @dataclasses.dataclass
@@ -61,12 +60,23 @@ class Parts:
             dict(enumerate(case.effects)),
         )
 
-    def find(self, kind: type[Any]) -> tuple[str, Any]:
-        """Path and value of the first effect of a class; the value is None where there is none."""
-        for index, effect in self.effects.items():
-            if isinstance(effect, kind):
-                return f"effects.{index}.{effect.name}", effect
-        return "", None
+    @property
+    def inflation(self) -> Inflation | None:
+        """How the chamber is loaded, by the first effect that says so."""
+        found = (effect.inflation() for effect in self.effects.values())
+        return next((load for load in found if load is not None), None)
+
+    def draft(self) -> Draft:
+        """What effects may know when they are checked."""
+        actuator = self.actuator
+        fits = actuator is not None and not any(_section(self))
+        return Draft(
+            actuator=convert.dimensions(actuator) if actuator is not None and fits else None,
+            length=None if actuator is None else actuator.length,
+            effects={
+                f"effects.{index}.{effect.name}": effect for index, effect in self.effects.items()
+            },
+        )
 
 
 def check(parts: Parts) -> Iterator[Problem]:
@@ -77,18 +87,18 @@ def check(parts: Parts) -> Iterator[Problem]:
     """
     yield from _section(parts)
     yield from _effects(parts)
-    yield from _pressure(parts)
-    yield from _winding(parts)
+    draft = parts.draft()
+    for path, effect in draft.effects.items():
+        yield from effect.problems(path, draft)
     yield from _materials(parts)
-    yield from _gravity(parts)
-    yield from _contact(parts)
+    yield from _density(parts)
     yield from _mesh(parts)
     yield from _solver(parts)
     yield from _output(parts)
 
 
 def _section(parts: Parts) -> Iterator[Problem]:
-    from geometry.sections.profiles import misfits
+    from geometry.sections.table import misfits
 
     if parts.actuator is not None:
         for name, text in misfits(dict(parts.actuator)):
@@ -108,57 +118,6 @@ def _effects(parts: Parts) -> Iterator[Problem]:
         yield Problem("effects", "no load, expected pressure or gravity")
 
 
-def _pressure(parts: Parts) -> Iterator[Problem]:
-    path, pressure = parts.find(PressureEffect)
-    if pressure is None:
-        return
-    given = [key for key in ("to", "volume", "angle") if getattr(pressure, key) is not None]
-    if not given:
-        yield Problem(path, 'nothing to reach, expected to, such as "200 kPa", volume or angle')
-    for key in given[1:]:
-        yield Problem(f"{path}.{key}", f"{given[0]} is given too, expected one of them")
-
-
-def _winding(parts: Parts) -> Iterator[Problem]:
-    path, winding = parts.find(WindingEffect)
-    if winding is None:
-        return
-    hoops, both = parts.find(HoopsEffect)
-    if both is not None:
-        yield Problem(hoops, f"{path} holds the circumference already, expected one of them")
-    if parts.actuator is not None and winding.pitch > parts.actuator.length:
-        yield Problem(
-            f"{path}.pitch",
-            f"{_length(winding.pitch)}, expected a pitch not longer than the chamber, "
-            f"{_length(parts.actuator.length)}",
-        )
-    if winding.representation == "smeared":
-        for key in ("width", "lines"):
-            if getattr(winding, key) is not None:
-                yield Problem(f"{path}.{key}", "no effect on a smeared winding, expected no value")
-    elif winding.width == 0 and (winding.lines or 1) > 1:
-        yield Problem(f"{path}.lines", f"{winding.lines}, expected 1 line where the width is zero")
-    yield from _fiber(f"{path}.fiber", winding.fiber)
-
-
-def _fiber(path: str, fiber: Fiber) -> Iterator[Problem]:
-    own = ("modulus", "diameter", "radius_factor")
-    if fiber.name is None:
-        for key in own[:2]:
-            if getattr(fiber, key) is None:
-                yield Problem(f"{path}.{key}", f"missing, expected the {key} of an unnamed fiber")
-        return
-    from materials.fiber import FIBERS
-
-    if fiber.name not in FIBERS:
-        names = ", ".join(FIBERS)
-        wanted = f"expected {names}, or modulus and diameter{meant(fiber.name, FIBERS)}"
-        yield Problem(path, f"{found(fiber.name)}, {wanted}")
-    for key in own:
-        if getattr(fiber, key) is not None:
-            yield Problem(f"{path}.{key}", "no effect on a named fiber, expected no value")
-
-
 def _materials(parts: Parts) -> Iterator[Problem]:
     if parts.materials is None:
         return
@@ -175,7 +134,6 @@ def _materials(parts: Parts) -> Iterator[Problem]:
 
 
 def _material(path: str, material: Material) -> Iterator[Problem]:
-    from materials.laws import LAWS
     from materials.named import NAMED
 
     given = material.coefficients
@@ -190,46 +148,37 @@ def _material(path: str, material: Material) -> Iterator[Problem]:
         yield Problem(path, "neither name nor law, expected one of them")
         return
     law = LAWS[material.law]
-    missing = [key for key in law.parameters if key not in {**law.defaults, **given}]
-    for key in missing:
-        yield Problem(f"{path}.{key}", f"missing, expected a coefficient of {law.name}")
-    strange = [key for key in given if key not in law.parameters]
-    for key in strange:
-        yield Problem(f"{path}.{key}", f"no effect on {law.name}, expected no value")
-    if not missing and not strange:
+    problems = [
+        *((key, f"missing, expected a coefficient of {law.name}") for key in law.missing(given)),
+        *((key, f"no effect on {law.name}, expected no value") for key in law.unknown(given)),
+        *((key, f"no effect without {term}, expected no value") for key, term in law.idle(given)),
+        *law.refusals(given),
+    ]
+    for key, text in problems:
+        yield Problem(f"{path}.{key}", text)
+    if not problems:
         try:
             convert.material(material)
         except ValueError as error:
             yield Problem(path, str(error))
 
 
-def _gravity(parts: Parts) -> Iterator[Problem]:
-    _, gravity = parts.find(GravityEffect)
+def _density(parts: Parts) -> Iterator[Problem]:
     if parts.materials is None or parts.broken_effects:
         return
+    weighing = [effect.name for effect in parts.effects.values() if effect.weighs]
     for part in ("wall", "floor", "sheath", "layer"):
         path, material = f"materials.{part}", getattr(parts.materials, part)
         if material is None:
             continue
-        if gravity is None and material.density is not None:
-            yield Problem(f"{path}.density", "no effect without gravity, expected no value")
-        if gravity is not None and material.density is None:
+        if not weighing and material.density is not None:
+            names = " or ".join(name for name, effect in EFFECTS.items() if effect.weighs)
+            yield Problem(f"{path}.density", f"no effect without {names}, expected no value")
+        if weighing and material.density is None:
             from materials.named import NAMED
 
             if material.name not in NAMED or NAMED[material.name].density is None:
-                yield Problem(f"{path}.density", "missing, expected a density for gravity")
-
-
-def _contact(parts: Parts) -> Iterator[Problem]:
-    path, contact = parts.find(ContactEffect)
-    if contact is None:
-        return
-    other, tip = parts.find(BlockedTipEffect)
-    for name in ("roof", "post"):
-        if tip is not None and getattr(contact, name) is not None:
-            yield Problem(f"{path}.{name}", f"{other} holds it already, expected one of them")
-    actuator = parts.actuator if not any(_section(parts)) else None
-    yield from wrong_obstacles(actuator, path, contact)
+                yield Problem(f"{path}.density", f"missing, expected a density for {weighing[0]}")
 
 
 def _mesh(parts: Parts) -> Iterator[Problem]:
@@ -239,15 +188,59 @@ def _mesh(parts: Parts) -> Iterator[Problem]:
         for reason in mirror_breakers(parts.effects.values()):
             yield Problem("mesh.symmetry", f'"half", expected auto or full: {reason}')
     # elsewhere the mesh depends on the model and its defaults, and is checked with these
-    if parts.model == "body" and parts.actuator is not None and not any(_section(parts)):
+    model = MODELS.get(parts.model or "")
+    elements = None if model is None else model.elements()
+    said = elements is not None and elements.takes_mesh_as_said
+    if said and parts.actuator is not None and not any(_section(parts)):
         size = convert.mesh_size(parts.mesh, half=True)
-        path, tip = parts.find(BlockedTipEffect)
-        path, tip = (path, tip) if tip is not None else parts.find(ContactEffect)
-        yield from misfitting(parts.actuator, size, path, tip)
+        yield from misfitting(parts.actuator, size, parts.draft().effects)
+
+
+def misfits(case: Case) -> Iterator[Problem]:
+    """Why the mesh of a case's model cannot hold its dimensions; a closed form has no mesh.
+
+    Args:
+        case: a checked and completed case.
+    """
+    model = choose_model(case)[0].elements()
+    if model is not None:
+        size = model.fineness(case, half=True)
+        yield from misfitting(case.actuator, size, Parts.of(case).draft().effects)
+
+
+def misfitting(
+    actuator: Actuator, size: MeshSize, effects: Mapping[str, Effect]
+) -> Iterator[Problem]:
+    """Why a mesh cannot hold the dimensions of an actuator.
+
+    Args:
+        actuator: its dimensions.
+        size: fineness of the mesh.
+        effects: by their paths; some need strips of the surface.
+    """
+    from geometry.sections.size import check_size, too_thin
+
+    if size.axial > actuator.length:
+        yield Problem(
+            "mesh.axial",
+            f'"{show(size.axial, "length")}", expected elements not longer than the chamber, '
+            f'"{show(actuator.length, "length")}"',
+        )
+    dimensions = convert.dimensions(actuator)
+    thin = list(too_thin(dimensions, size))
+    for part, text in thin:
+        yield Problem(f"actuator.{part}", text)
+    for path, effect in effects.items():
+        strips = effect.strips()
+        if strips is not None and not thin:
+            try:
+                check_size(dimensions, size, strips)
+            except ValueError as error:
+                yield Problem(path, str(error))
 
 
 def _solver(parts: Parts) -> Iterator[Problem]:
-    _, pressure = parts.find(PressureEffect)
+    pressure = parts.inflation
     if parts.solver is None or parts.broken_effects:
         return
     given = {key: getattr(parts.solver, key) for key in ("first_step", "max_step")}
@@ -277,7 +270,7 @@ def _output(parts: Parts) -> Iterator[Problem]:
                     f'"{show(angle, "angle")}", expected an angle up to stop_at_angle, '
                     f'"{show(output.stop_at_angle, "angle")}"',
                 )
-    _, pressure = parts.find(PressureEffect)
+    pressure = parts.inflation
     if parts.broken_effects:
         return
     if pressure is not None and pressure.angle is not None:
@@ -286,7 +279,7 @@ def _output(parts: Parts) -> Iterator[Problem]:
         if pressure is None:
             wrong: str | None = "no effect without pressure, expected no value"
         else:
-            wrong = what_is_wrong(output.measured, hold_straight(parts.effects.values()))
+            wrong = what_is_wrong(output.measured, keep_straight(parts.effects.values()))
         if wrong is not None:
             yield Problem("output.measured", wrong)
     for index, value in enumerate(output.at_pressures):
@@ -316,7 +309,3 @@ def _up_to(end: float, output: Output) -> Iterator[Problem]:
                 f'"{show(angle, "angle")}", expected an angle between zero and '
                 f'"{show(end, "angle")}"',
             )
-
-
-def _length(value: float) -> str:
-    return f'"{show(value, "length")}"'

@@ -18,8 +18,7 @@ from fiberbend.case.case import (
 )
 from fiberbend.effects.table import EffectEntry, unwrap
 from fiberbend.models import choice
-from fiberbend.models.mesh_size import misfits
-from fiberbend.reader.checks import Parts, check
+from fiberbend.reader.checks import Parts, check, misfits
 from fiberbend.reader.defaults import complete
 from fiberbend.reader.yaml_file import (
     apply_setting,
@@ -113,9 +112,9 @@ def parse_case(data: Mapping[str, Any]) -> Case:
 
 def _valid_parts(data: Mapping[str, Any]) -> Parts:
     parts = Parts(model=str(data.get("model")))
-    for name, model in _SECTIONS.items():
+    for name, part in _SECTIONS.items():
         try:
-            setattr(parts, name, model.model_validate(data.get(name, {})))
+            setattr(parts, name, part.model_validate(data.get(name, {})))
         except ValidationError:
             continue
     entries: Any = data.get("effects")

@@ -94,8 +94,8 @@ def models_at(root: type[Model], location: Iterable[str | int]) -> list[type[Mod
         if isinstance(part, str):
             models = [
                 inner
-                for model in models
-                if part in keys(model)
-                for inner in _models_in(keys(model)[part].annotation)
+                for outer in models
+                if part in keys(outer)
+                for inner in _models_in(keys(outer)[part].annotation)
             ]
     return models

@@ -89,8 +89,6 @@ SignedPressure = Annotated[float, Quantity("pressure", "other than zero")]
 """MPa; negative is a vacuum."""
 Modulus = Annotated[float, Quantity("modulus")]
 """MPa, above zero."""
-Coefficient = Annotated[float, Quantity("modulus", "other than zero")]
-"""MPa; the higher coefficients of a law can be negative."""
 Angle = Annotated[float, Quantity("angle", "other than zero")]
 """rad."""
 Volume = Annotated[float, Quantity("volume")]

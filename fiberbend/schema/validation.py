@@ -42,7 +42,7 @@ def from_pydantic(error: ValidationError, root: type[Model]) -> Iterator[Problem
 def _text(line: Any, root: type[Model]) -> str:
     kind, context = line["type"], line.get("ctx", {})
     if kind == "extra_forbidden":
-        known = [key for model in models_at(root, line["loc"][:-1]) for key in keys(model)]
+        known = [key for outer in models_at(root, line["loc"][:-1]) for key in keys(outer)]
         return f"unknown key, expected one of {', '.join(known)}{meant(line['loc'][-1], known)}"
     if kind == "missing":
         return f"missing, expected {_expected(root, line['loc'])}"
@@ -61,8 +61,8 @@ def _text(line: Any, root: type[Model]) -> str:
 
 
 def _expected(root: type[Model], location: tuple[str | int, ...]) -> str:
-    for model in models_at(root, location[:-1]):
-        field = keys(model).get(str(location[-1]))
+    for outer in models_at(root, location[:-1]):
+        field = keys(outer).get(str(location[-1]))
         if field is None:
             continue
         for annotation in field.metadata:

@@ -6,6 +6,7 @@ import dataclasses
 
 import numpy as np
 
+from analytic.path import screw
 from fiberbend.states.snapshot import Snapshot
 from geometry.mesh.data import Floats
 
@@ -63,18 +64,7 @@ class Bend:
         Returns:
             Rotations (n, 3, 3) and centres (n, 3), mm.
         """
-        rate = float(np.linalg.norm(self.spin))
-        x, y, w = self.spin / rate if rate else self.spin
-        cross = np.array([[0.0, -w, y], [w, 0.0, -x], [-y, x, 0.0]])
-        square = cross @ cross
-        turn = (rate * z)[:, None, None]
-        rotation = np.eye(3) + np.sin(turn) * cross + (1 - np.cos(turn)) * square
-        # sin φ / φ and its like by sinc, which needs no limit at φ = 0
-        reach = z[:, None, None]
-        chord = reach * np.sinc(turn / np.pi)
-        rise = reach * np.sinc(turn / (2 * np.pi)) * np.sin(turn / 2)
-        centre = reach * np.eye(3) + rise * cross + (reach - chord) * square
-        return rotation, self.stretch * centre[..., 2]
+        return screw(z, self.spin, self.stretch)
 
     def place(self, position: Floats, z: Floats) -> Floats:
         """Positions in space, c(Z) + R(Z) x'.

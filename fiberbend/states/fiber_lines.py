@@ -11,7 +11,7 @@ import numpy as np
 
 from geometry.mesh.data import Floats, MeshData
 from geometry.mesh.reference import gauss, shape_functions
-from geometry.winding.embed import EmbeddedFibers
+from geometry.winding.segments import EmbeddedFibers
 
 _JOINT = 1e-6
 """Distance in mm within which segments of a curve touch."""

@@ -15,7 +15,7 @@ from geometry.mesh.data import (
     reference_nodes,
 )
 from geometry.mesh.reference import gauss, shape_functions
-from materials.laws import Material, energy_slopes
+from materials.material import Material
 
 _LEAST_STRETCH = 1e-3
 """What extrapolation may leave in a cell that is crushed."""
@@ -151,9 +151,11 @@ def deformation_gradients(mesh: MeshData, state: Snapshot, points: Floats) -> Fl
 
 
 def cauchy_stress(material: Material, f: Floats, multiplier: Floats) -> Floats:
-    """σ = p 1 + (2/J) dev(ψ1 b̄ + ψ2 (Ī1 b̄ − b̄²)), b̄ = J^(−2/3) F Fᵀ.
+    """σ = p 1 + (1/J) dev(Σ βi ni ⊗ ni) with βi = λ̄i ∂ψ/∂λ̄i.
 
-    It follows from W = ψ(Ī1, Ī2) + p (J − 1), with ψi = ∂ψ/∂Īi.
+    λ̄i² and ni are principal values and directions of b̄ = J^(−2/3) F Fᵀ. It follows from
+    W = ψ(λ̄1, λ̄2, λ̄3) + p (J − 1); where stretches are equal, so are the βi, and the directions
+    do not matter.
 
     Args:
         material: the material.
@@ -164,13 +166,10 @@ def cauchy_stress(material: Material, f: Floats, multiplier: Floats) -> Floats:
         Cauchy stress, (..., 3, 3), MPa.
     """
     jacobian = np.linalg.det(f)[..., None, None]
-    b = jacobian ** (-2 / 3) * (f @ f.swapaxes(-1, -2))
-    square = b @ b
-    i1 = np.trace(b, axis1=-2, axis2=-1)
-    i2 = (i1**2 - np.trace(square, axis1=-2, axis2=-1)) / 2
-    first, second = (slope[..., None, None] for slope in energy_slopes(material, i1, i2))
-    shape = first * b + second * (i1[..., None, None] * b - square)
-    return multiplier[..., None, None] * np.eye(3) + 2 / jacobian * _deviator(shape)
+    squares, axes = np.linalg.eigh(jacobian ** (-2 / 3) * (f @ f.swapaxes(-1, -2)))
+    principal = np.stack(material.principal(*np.moveaxis(np.sqrt(squares), -1, 0)), axis=-1)
+    shape = (axes * principal[..., None, :]) @ axes.swapaxes(-1, -2)
+    return multiplier[..., None, None] * np.eye(3) + _deviator(shape) / jacobian
 
 
 def recover(scenery: Scenery, snapshot: Snapshot, nodes: SplitNodes | None = None) -> NodalFields:

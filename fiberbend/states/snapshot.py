@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import IO
 
 from geometry.mesh.data import Floats, MeshData
-from geometry.winding.embed import EmbeddedFibers
-from materials.laws import Material
+from geometry.winding.segments import EmbeddedFibers
+from materials.material import Material
 
 Target = Path | IO[bytes]
 """A path, or a file open for writing bytes."""

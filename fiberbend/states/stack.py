@@ -14,7 +14,7 @@ from fiberbend.states.snapshot import Scenery, Snapshot
 from geometry.bodies.extrude import sweep
 from geometry.bodies.stations import slice_stations
 from geometry.mesh.data import Floats, Ints, MeshData
-from geometry.winding.embed import EmbeddedFibers
+from geometry.winding.segments import EmbeddedFibers
 
 _MIRRORED = (1.0, 1.0, -1.0)
 _TURNED = (-1.0, 1.0, -1.0)
@@ -244,7 +244,23 @@ def _copy(slab: MeshData, quads: int, tile: Ints, cell: Ints) -> Ints:
 def _segments(
     fibers: EmbeddedFibers, slab: MeshData, quads: int, number: int
 ) -> tuple[Ints, EmbeddedFibers]:
-    """Fiber segments in all copies of a slice, sorted by curve and z, and what each stands for."""
+    """Fiber segments in all copies of a slice, sorted by curve and z, and what each stands for.
+
+    Copy k of a slice 0 ≤ z ≤ ℓ (mm) has z_k = kℓ + z, or, mirrored (odd k of a half section),
+    z_k = kℓ + ℓ − z. In the mirrored cell the reference coordinate ζ becomes 1 − ζ and a tangent
+    (a, b, c) becomes (a, b, −c); taken backward, so that it runs toward growing z again, it is
+    (−a, −b, c) with its points in reverse. A right-handed helix becomes the left-handed one, and
+    line j of the m of a ribbon line m − 1 − j: curve h m + j becomes (1 − h) m + m − 1 − j.
+
+    Args:
+        fibers: of the slice.
+        slab: its mesh.
+        quads: cells of a layer.
+        number: copies.
+
+    Returns:
+        The segment of the slice that each one stands for, and the segments.
+    """
     count, extent = len(fibers.cell), float(slab.nodes[-1, 2])
     tile, segment = np.repeat(np.arange(number), count), np.tile(np.arange(count), number)
     flipped = slab.half & (tile % 2 == 1)

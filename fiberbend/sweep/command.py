@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import FrameType
 
-from fiberbend.run import launch
-from fiberbend.run.folder import RunFolder
+from fiberbend.running import launch
+from fiberbend.running.folder import RunFolder
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.sweep.points import Sweep, read_sweep
 from fiberbend.sweep.store import Store

@@ -15,8 +15,8 @@ from typing import Any
 from pydantic import ValidationError
 
 from fiberbend.case.case import Case
-from fiberbend.effects.table import PressureEffect, StraightEffect
-from fiberbend.models.choice import UNIFORM, choose_model
+from fiberbend.effects.straight import kept_straight
+from fiberbend.models.choice import choose_model
 from fiberbend.reader.reader import parse_case
 from fiberbend.reader.yaml_file import (
     Source,
@@ -270,15 +270,11 @@ def _case(base: dict[str, Any], settings: tuple[_Setting, ...], report: Report) 
 
 
 def _blocked(case: Case, report: Report) -> Case | None:
-    model, _ = choose_model(case)
-    if report.force_at is None or model not in UNIFORM or case.find(StraightEffect) is not None:
+    model = choose_model(case)[0]
+    if report.force_at is None or case.straight or not model.is_kept_straight:
         return None
-    data = case.resolved()
-    for entry in data["effects"]:
-        if PressureEffect.name in entry:
-            entry[PressureEffect.name] = {"to": show(report.force_at, "pressure")}
-    data["effects"].append({StraightEffect.name: {}})
-    data |= {"model": model, "output": {"pictures": False, "fields": False}}
+    data = kept_straight(case.resolved(), show(report.force_at, "pressure"))
+    data |= {"model": model.name, "output": {"pictures": False, "fields": False}}
     try:
         return parse_case(data)
     except CaseError as error:

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from fiberbend.case.case import Case
-from fiberbend.run.folder import (
+from fiberbend.running.folder import (
     HISTORY_FILE,
     RUN_FILE,
     RunFolder,
@@ -142,7 +142,7 @@ class Store:
 
 def _run(case: Case, folder: Path) -> dict[str, Any]:
     """Solve a case, from the last state of a killed run of the same case if it left one."""
-    from fiberbend.run.runner import run_case
+    from fiberbend.running.runner import run_case
 
     if (folder / _CHECKPOINT).exists():
         try:

@@ -17,7 +17,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from fiberbend.run import launch
+from fiberbend.running import launch
 from fiberbend.sweep.points import Point
 from fiberbend.sweep.store import MARK, Store
 
@@ -175,4 +175,4 @@ def _prepare() -> None:
     # what libraries print must not get among the lines for the user
     os.dup2(2, 1)
     launch.start_mpi()
-    import fiberbend.run.runner  # noqa: F401
+    import fiberbend.running.runner  # noqa: F401

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.actuator import Actuator
 from geometry.bodies.quads import section_mesh
 from geometry.bodies.stations import Stations, body_stations, slice_stations
 from geometry.mesh.data import Ints, MeshData
+from geometry.sections.shape import ShapedActuator
 from geometry.sections.size import MeshSize, Strips
 from geometry.sections.table import section_layout
 
@@ -94,7 +94,7 @@ def _name_planes(
             layer += stations.segments[i].divisions
 
 
-def swept_section(actuator: Actuator, size: MeshSize) -> MeshData:
+def swept_section(actuator: ShapedActuator, size: MeshSize) -> MeshData:
     """Two-dimensional mesh of an actuator's section between its caps.
 
     Raises:
@@ -103,7 +103,7 @@ def swept_section(actuator: Actuator, size: MeshSize) -> MeshData:
     return section_mesh(section_layout(actuator, size).without_fill())
 
 
-def swept_slice(actuator: Actuator, size: MeshSize, length: float, number: int) -> MeshData:
+def swept_slice(actuator: ShapedActuator, size: MeshSize, length: float, number: int) -> MeshData:
     """Hexahedra of a slice between the caps, 0 ≤ z ≤ `length` (mm), `number` layers.
 
     Raises:
@@ -112,7 +112,7 @@ def swept_slice(actuator: Actuator, size: MeshSize, length: float, number: int) 
     return sweep(swept_section(actuator, size), slice_stations(length, number))
 
 
-def swept_body(actuator: Actuator, size: MeshSize, strips: Strips | None = None) -> MeshData:
+def swept_body(actuator: ShapedActuator, size: MeshSize, strips: Strips | None = None) -> MeshData:
     """Hexahedra of the whole body, from the block map alone.
 
     Raises:

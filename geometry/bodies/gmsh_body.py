@@ -11,9 +11,9 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from geometry.actuator import Actuator
 from geometry.mesh.data import Floats, MeshData
 from geometry.mesh.errors import MeshError
+from geometry.sections.shape import ShapedActuator
 from geometry.sections.size import MeshSize, Strips, check_size
 
 _LAST_LINES = 5
@@ -21,7 +21,7 @@ _MPI_VARIABLES = ("OMPI_", "PMIX_", "PMI_", "MPI_", "HYDRA_", "MPIEXEC_")
 
 
 def build_body(
-    actuator: Actuator,
+    actuator: ShapedActuator,
     size: MeshSize,
     strips: Strips | None = None,
     winding: Sequence[Floats] | None = None,
@@ -49,7 +49,7 @@ def build_body(
     with tempfile.TemporaryDirectory(prefix="fiberbend-mesh-") as folder:
         spec, out = Path(folder) / "spec.json", Path(folder) / "mesh.npz"
         description = {
-            "actuator": dataclasses.asdict(actuator),
+            "actuator": {"section": actuator.section, **dataclasses.asdict(actuator)},
             "size": dataclasses.asdict(size),
             "strips": dataclasses.asdict(strips) if strips else None,
             "winding": [curve.tolist() for curve in winding or ()],

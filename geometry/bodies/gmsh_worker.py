@@ -16,12 +16,11 @@ from typing import Any
 import gmsh
 import numpy as np
 
-from geometry.actuator import Actuator
 from geometry.bodies.gmsh_read import read_mesh
 from geometry.bodies.stations import Stations, body_stations
 from geometry.sections.blocks import SIDES, Layout, Point
 from geometry.sections.size import MeshSize, Strips
-from geometry.sections.table import section_layout
+from geometry.sections.table import make_actuator, section_layout
 
 geo = gmsh.model.geo
 Edge = tuple[int, int]
@@ -181,7 +180,7 @@ def mesh_body(spec: dict[str, Any], out: Path) -> None:
         spec: dictionaries "actuator", "size", "strips" and lists "winding", path "msh_path".
         out: .npz file for `MeshData.load`.
     """
-    actuator, size = Actuator(**spec["actuator"]), MeshSize(**spec["size"])
+    actuator, size = make_actuator(spec["actuator"]), MeshSize(**spec["size"])
     strips = Strips(**spec["strips"]) if spec["strips"] else None
     gmsh.model.add("fiberbend")
     coarse = dataclasses.replace(size, section=1, axial=size.axial / size.section)

@@ -9,6 +9,7 @@ from geometry.mesh.data import (
     FACET_VERTICES,
     Floats,
     MeshData,
+    facet_positions,
     reference_nodes,
     vertex_positions,
 )
@@ -155,3 +156,21 @@ def area_vectors(mesh: MeshData, name: str) -> tuple[Floats, Floats]:
     normal = normals[pairs[:, 1]]
     cofactor = np.linalg.det(jacobian)[..., None, None] * np.linalg.inv(jacobian).swapaxes(2, 3)
     return x, np.einsum("nqij,nj,q->nqi", cofactor, normal, weights)
+
+
+def surface_weights(mesh: MeshData, name: str) -> Floats:
+    """Area weight of every node, ∫ φ_a dA over a named surface.
+
+    Returns:
+        Weights (n,) in mm² (mm of a section's edges), zero away from the surface.
+    """
+    points, _, _ = facet_rules(mesh.cell_type)
+    cell, facet = mesh.facets[name].T
+    positions = facet_positions(mesh.cell_type)[facet]
+    values = shape_functions(mesh.cell_type, points)[0][facet]
+    values = np.take_along_axis(values, positions[:, None], axis=2)
+    areas = np.linalg.norm(area_vectors(mesh, name)[1], axis=2)
+    weights = np.zeros(len(mesh.nodes))
+    parts = np.einsum("kq,kqa->ka", areas, values)
+    np.add.at(weights, mesh.cells[cell[:, None], positions], parts)
+    return weights

@@ -2,14 +2,14 @@
 
 Corners and sides follow the UFC quadrilateral: corners (0,0), (1,0), (0,1), (1,1); sides v = 0,
 u = 0, u = 1, v = 1. Blocks meet in whole sides, so meshes conform and names follow from the
-layout. A new section shape is a new function that returns a `Layout`.
+layout.
 """
 
 from __future__ import annotations
 
 import dataclasses
 
-Point = tuple[float, float]
+from geometry.actuator import Point
 
 SIDES = ((0, 1), (0, 2), (1, 3), (2, 3))
 """Corners at the ends of each side."""

@@ -1,4 +1,4 @@
-"""Blocks of a rectangular grid: the base of a hemicircle and the whole of a rectangle."""
+"""What flat-bottomed sections share: base of a hemicircle and whole of a rectangle, as a grid."""
 
 from __future__ import annotations
 
@@ -31,6 +31,20 @@ class Band:
     top: tuple[str, ...] = ()
 
 
+def flat_inlays(width: float, floor: float, layer: float | None) -> dict[str, float]:
+    """Areas in mm² of the regions "floor" and "layer" under a flat-bottomed chamber.
+
+    Args:
+        width: width of both in mm, over chamber and walls.
+        floor: thickness of the floor in mm.
+        layer: thickness of the layer in mm, or None.
+    """
+    areas = {"floor": width * floor}
+    if layer is not None:
+        areas["layer"] = width * layer
+    return areas
+
+
 def chamber_columns(
     right_ends: Sequence[tuple[float, int]], actuator: Actuator, size: MeshSize
 ) -> list[Band]:
@@ -57,7 +71,7 @@ def chamber_columns(
 def base_rows(actuator: Actuator, size: MeshSize) -> list[Band]:
     """Rows below a flat-bottomed chamber, from the top down."""
     rows = [Band("floor", actuator.profile.bottom, 0.0, elements_through("floor", size))]
-    if actuator.layer is not None:
+    if actuator.outline_bottom < 0:
         rows.append(Band("layer", 0.0, actuator.outline_bottom, elements_through("layer", size)))
     if actuator.sheath is not None:
         start, end = actuator.outline_bottom, actuator.outer_bottom

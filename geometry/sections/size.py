@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from geometry.actuator import Actuator
 
 MAX_ASPECT = 25.0
-_ROUNDING = 1e-9
 
 
 @dataclasses.dataclass(frozen=True)
@@ -67,10 +66,9 @@ def too_thin(actuator: Actuator, size: MeshSize) -> Iterator[tuple[str, str]]:
     Yields:
         Name of the dimension, and a message with the least value it can have with this mesh.
     """
-    for name in ("wall", "floor", "sheath", "layer"):
+    above = actuator.wall_above_floor
+    for name in actuator.region_areas():
         thickness = getattr(actuator, name)
-        if thickness is None:
-            continue
         least = size.axial * elements_through(name, size) / MAX_ASPECT
         if thickness < least:
             yield (
@@ -78,21 +76,13 @@ def too_thin(actuator: Actuator, size: MeshSize) -> Iterator[tuple[str, str]]:
                 f"{thickness:g} mm is too thin for elements {size.axial:g} mm long: "
                 f"expected at least {least:g} mm",
             )
-        elif name == "floor" and 0 < (above := wall_above_floor(actuator)) < least:
+        elif name == "floor" and 0 < above < least:
             most = f"{actuator.wall - least:g} mm or all of the wall, {actuator.wall:g} mm"
             yield (
                 name,
                 f"{thickness:g} mm leaves {above:.3g} mm of the wall, too thin for elements "
                 f"{size.axial:g} mm long: expected at most {most}",
             )
-
-
-def wall_above_floor(actuator: Actuator) -> float:
-    """Thickness in mm of the wall between a circle's chamber and its floor; else 0."""
-    if actuator.section != "circle" or actuator.floor is None:
-        return 0.0
-    above = actuator.wall - actuator.floor
-    return above if above > _ROUNDING * actuator.wall else 0.0
 
 
 def check_size(actuator: Actuator, size: MeshSize, strips: Strips | None = None) -> None:

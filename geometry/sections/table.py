@@ -1,25 +1,67 @@
-"""The section shapes as blocks; a new shape is a line in `LAYOUTS`."""
+"""The section shapes; a new one is a file beside this one and a line in `SECTIONS`."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator, Mapping
+from typing import Any
 
-from geometry.actuator import Actuator
 from geometry.sections.blocks import Layout
-from geometry.sections.circle import circle
-from geometry.sections.hemicircle import hemicircle
-from geometry.sections.rectangle import rectangle
+from geometry.sections.circle import CircleActuator
+from geometry.sections.hemicircle import HemicircleActuator
+from geometry.sections.rectangle import RectangleActuator
+from geometry.sections.shape import ShapedActuator
 from geometry.sections.size import MeshSize, Strips, check_size
 
-LAYOUTS: dict[str, Callable[[Actuator, MeshSize, Strips | None], Layout]] = {
-    "hemicircle": hemicircle,
-    "rectangle": rectangle,
-    "circle": circle,
+SECTIONS: dict[str, type[ShapedActuator]] = {
+    HemicircleActuator.section: HemicircleActuator,
+    RectangleActuator.section: RectangleActuator,
+    CircleActuator.section: CircleActuator,
 }
-"""The side x ≥ 0 of each section shape."""
+"""The actuators by the name of their section."""
 
 
-def section_layout(actuator: Actuator, size: MeshSize, strips: Strips | None = None) -> Layout:
+def _shape(given: Mapping[str, Any]) -> tuple[type[ShapedActuator], dict[str, float | None]]:
+    """The class that "section" names, and the dimensions beside it."""
+    section = given["section"]
+    if section not in SECTIONS:
+        raise ValueError(f"section {section!r} is unknown: expected one of {', '.join(SECTIONS)}")
+    return SECTIONS[section], {name: value for name, value in given.items() if name != "section"}
+
+
+def misfits(given: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """What does not go together in dimensions that are valid one by one.
+
+    Args:
+        given: "section", and the dimensions of an actuator by name; None where one is absent.
+
+    Yields:
+        Name of a dimension and what is wrong with it.
+
+    Raises:
+        ValueError: an unknown section.
+    """
+    shape, dimensions = _shape(given)
+    yield from shape.misfits(dimensions)
+
+
+def make_actuator(given: Mapping[str, Any]) -> ShapedActuator:
+    """The actuator of a section that is given by its name.
+
+    Args:
+        given: "section", and the dimensions in mm by name; None where one is absent.
+
+    Raises:
+        ValueError: an unknown section, or dimensions without meaning or that it cannot have.
+    """
+    shape, dimensions = _shape(given)
+    for name, text in shape.misfits(dimensions):
+        raise ValueError(f"{name}: {text}")
+    return shape(**{name: value for name, value in dimensions.items() if value is not None})
+
+
+def section_layout(
+    actuator: ShapedActuator, size: MeshSize, strips: Strips | None = None
+) -> Layout:
     """Lay out a section, with the blocks that fill the chamber in the caps.
 
     The point "pin" is (0, 0), on the lowest line of wall and floor, "crown" the highest point of
@@ -32,7 +74,7 @@ def section_layout(actuator: Actuator, size: MeshSize, strips: Strips | None = N
         ValueError: dimensions that this mesh cannot hold.
     """
     check_size(actuator, size, strips)
-    layout = LAYOUTS[actuator.section](actuator, size, strips)
+    layout = actuator.layout(size, strips)
     layout.name_point("pin", (0.0, 0.0))
     layout.name_point("crown", (0.0, actuator.outline_top))
     return layout if size.half else layout.mirrored()

@@ -105,15 +105,3 @@ class Winding:
         along = -hand * perimeter / turn * tangent(actuator, s)
         upward = np.full((number, 1), self.pitch / turn)
         return np.column_stack([position(actuator, s), z]), np.hstack([along, upward])
-
-
-def check_winding(actuator: Actuator, winding: Winding) -> None:
-    """Refuse a winding that makes no full turn on the body.
-
-    Raises:
-        ValueError: the pitch is longer than the chamber.
-    """
-    if winding.pitch > actuator.length:
-        raise ValueError(
-            f"pitch {winding.pitch:g} mm: expected at most the length, {actuator.length:g} mm"
-        )

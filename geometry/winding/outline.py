@@ -6,30 +6,16 @@ s = S/2, and back by the mirror image to s = S.
 
 from __future__ import annotations
 
-import dataclasses
 import math
-from collections.abc import Callable
 
 import numpy as np
 
-from geometry.actuator import Actuator
+from geometry.actuator import Actuator, Point, Side
 from geometry.mesh.data import Floats
-from geometry.sections.blocks import Point
 
 
-@dataclasses.dataclass(frozen=True)
-class Piece:
-    """A straight line or an arc of less than half a turn.
-
-    Attributes:
-        start: first end in mm.
-        end: last end in mm.
-        center: centre of the circle, or None for a straight line.
-    """
-
-    start: Point
-    end: Point
-    center: Point | None = None
+class Piece(Side):
+    """A side of the outline as a curve."""
 
     @property
     def radius(self) -> float:
@@ -76,33 +62,9 @@ class Piece:
         return s, np.linalg.norm(points - self.frame(s)[0], axis=1)
 
 
-def _hemicircle(actuator: Actuator) -> tuple[Piece, ...]:
-    r, floor, low = actuator.outline_half_width, actuator.profile.bottom, actuator.outline_bottom
-    return (
-        Piece((0.0, actuator.outline_top), (r, floor), (0.0, floor)),
-        Piece((r, floor), (r, low)),
-        Piece((r, low), (0.0, low)),
-    )
-
-
-def _rectangle(actuator: Actuator) -> tuple[Piece, ...]:
-    w, top, low = actuator.outline_half_width, actuator.outline_top, actuator.outline_bottom
-    corners = ((0.0, top), (w, top), (w, low), (0.0, low))
-    return tuple(map(Piece, corners[:-1], corners[1:]))
-
-
-def _circle(actuator: Actuator) -> tuple[Piece, ...]:
-    r = actuator.outline_half_width
-    center, side = (0.0, r), (r, r)
-    return (Piece((0.0, 2 * r), side, center), Piece(side, (0.0, 0.0), center))
-
-
-OUTLINES: dict[str, Callable[[Actuator], tuple[Piece, ...]]] = {
-    "hemicircle": _hemicircle,
-    "rectangle": _rectangle,
-    "circle": _circle,
-}
-"""Pieces of the half x ≥ 0, from the top to the bottom, of each section shape."""
+def pieces(actuator: Actuator) -> list[Piece]:
+    """The half x ≥ 0 of the outline, from the top to the bottom."""
+    return [Piece(*side) for side in actuator.outline()]
 
 
 def position(actuator: Actuator, s: Floats) -> Floats:
@@ -124,15 +86,15 @@ def tangent(actuator: Actuator, s: Floats) -> Floats:
 
 
 def _frame(actuator: Actuator, s: Floats) -> tuple[Floats, Floats]:
-    pieces = OUTLINES[actuator.section](actuator)
-    ends = np.cumsum([piece.length for piece in pieces])
+    along_half = pieces(actuator)
+    ends = np.cumsum([piece.length for piece in along_half])
     perimeter = actuator.winding_perimeter
     around = np.mod(np.asarray(s, dtype=float), perimeter)
     back = around > perimeter / 2
     half = np.where(back, perimeter - around, around)
     number = np.searchsorted(ends[:-1], half)
     xy, along = np.empty((len(half), 2)), np.empty((len(half), 2))
-    for i, piece in enumerate(pieces):
+    for i, piece in enumerate(along_half):
         here = number == i
         xy[here], along[here] = piece.frame(half[here] - (ends[i] - piece.length))
     # the way back mirrors x and runs the other way: t = (t_x, −t_y)
@@ -154,7 +116,7 @@ def arc_length(actuator: Actuator, points: Floats, negative: np.ndarray) -> Floa
     """
     flat = points.reshape(-1, 2) * np.where(points[..., :1].reshape(-1, 1) < 0, [-1.0, 1.0], 1.0)
     best, half, start = np.full(len(flat), np.inf), np.zeros(len(flat)), 0.0
-    for piece in OUTLINES[actuator.section](actuator):
+    for piece in pieces(actuator):
         s, distance = piece.project(flat)
         nearer = distance < best
         best, half = np.where(nearer, distance, best), np.where(nearer, start + s, half)

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from analytic.bending import Hemicircle
-from analytic.calibration import calibrate, read_curve
+from analytic.calibration import calibrate
 from analytic.stress import effective
 
 BASE = Hemicircle(8, 2, 2, 160)
@@ -67,29 +66,3 @@ def test_data_that_give_no_modulus_are_refused() -> None:
     sheathed = dataclasses.replace(BASE, sheath=1.0, sheath_stress=effective(0.02))
     with pytest.raises(ValueError, match="leave the sheath out"):
         calibrate(exact, ANGLES, sheathed)
-
-
-def test_curve_is_read_from_a_csv(tmp_path: Path) -> None:
-    path = tmp_path / "curve.csv"
-    path.write_text("\ufeffangle_deg, trial,pressure_kPa\n90, a, 78.2\n\n180,b,140.7\n", "utf-8")
-    pressure, angle = read_curve(path)
-    assert pressure == pytest.approx([0.0782, 0.1407])
-    assert angle == pytest.approx([math.pi / 2, math.pi])
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("", "no column pressure_kPa or angle_deg"),
-        ("pressure,angle_deg\n1,2\n", "curve.csv: no column pressure_kPa"),
-        ("pressure_kPa,angle_deg\n", "no rows"),
-        ("pressure_kPa,angle_deg\n1,2\n3,much\n", "line 3: angle_deg expected, not 'much'"),
-        ("pressure_kPa,angle_deg\n1\n", "line 2: angle_deg expected, not None"),
-        ("pressure_kPa,angle_deg\ninf,2\n", "line 2: pressure_kPa expected, not 'inf'"),
-    ],
-)
-def test_curve_that_cannot_be_read(text: str, message: str, tmp_path: Path) -> None:
-    path = tmp_path / "curve.csv"
-    path.write_text(text, encoding="utf-8")
-    with pytest.raises(ValueError, match=message):
-        read_curve(path)

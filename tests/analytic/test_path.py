@@ -1,14 +1,16 @@
-"""Tip of a constant-curvature arc."""
+"""Lines of constant curvature, and the tip of one."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
-from analytic.path import tip
+from analytic.path import arc, cross_matrix, screw, tip
 
+Array = npt.NDArray[np.float64]
 RIGHT = math.pi / 2
 
 
@@ -51,3 +53,75 @@ def test_arc_has_its_length_and_its_curvature() -> None:
 def test_meaningless_lengths_are_refused(length: float, cap: float) -> None:
     with pytest.raises(ValueError, match="zero or positive mm expected"):
         tip(1.0, length, cap)
+
+
+SPINS = {
+    "straight": (0.0, 0.0, 0.0),
+    "barely": (1e-9, 0.0, 1e-9),
+    "arc": (0.04, 0.0, 0.0),
+    "twist": (0.0, 0.0, 0.05),
+    "helix": (0.04, 0.01, -0.03),
+}
+STRETCH = 1.1
+
+
+def _integrated(spin: Array, length: float, number: int) -> tuple[Array, Array]:
+    """Frames by the classical Runge–Kutta rule from R' = R [ω×], c' = λ R e3."""
+    x, y, z = spin
+    rate = np.array([[0, -z, y, 0], [z, 0, -x, 0], [-y, x, 0, STRETCH], [0, 0, 0, 0]])
+    state, h = np.eye(4), length / number
+    for _ in range(number):
+        first = state @ rate
+        second = (state + h / 2 * first) @ rate
+        third = (state + h / 2 * second) @ rate
+        fourth = (state + h * third) @ rate
+        state = state + h / 6 * (first + 2 * second + 2 * third + fourth)
+    return state[:3, :3], state[:3, 3]
+
+
+@pytest.mark.parametrize("name", SPINS)
+def test_screw_solves_its_differential_equation(name: str) -> None:
+    spin = np.array(SPINS[name])
+    rotation, place = screw(np.array([0.0, 90.0, 160.0]), spin, STRETCH)
+    for i, length in ((1, 90.0), (2, 160.0)):
+        frame, end = _integrated(spin, length, 4000)
+        assert rotation[i] == pytest.approx(frame, abs=1e-11)
+        assert place[i] == pytest.approx(end, abs=1e-9)
+    assert rotation[0] == pytest.approx(np.eye(3), abs=0)
+    assert place[0] == pytest.approx(np.zeros(3), abs=0)
+
+
+def test_screw_without_spin_is_the_limit() -> None:
+    z = np.linspace(0, 160, 9)
+    straight, near = screw(z, np.zeros(3), 1.0), screw(z, np.array([1e-9, 0.0, 0.0]), 1.0)
+    assert straight[1] == pytest.approx(z[:, None] * [0, 0, 1], abs=0)
+    assert near[1] == pytest.approx(straight[1] - 1e-9 * z[:, None] ** 2 / 2 * [0, 1, 0], abs=1e-12)
+
+
+def test_screw_of_a_full_turn_closes() -> None:
+    rotation, place = screw(np.array([160.0]), np.array([math.radians(360) / 160, 0, 0]), STRETCH)
+    assert rotation[0] == pytest.approx(np.eye(3), abs=1e-14)
+    assert place[0] == pytest.approx(np.zeros(3), abs=1e-13)
+
+
+def test_screw_in_the_plane_is_the_arc() -> None:
+    z, k = np.linspace(0, 160, 33), 0.03
+    rotation, place = screw(z, np.array([k, 0.0, 0.0]), STRETCH)
+    end = place + rotation @ [0.0, 3.0, -2.0]
+    plane = arc(k * z, STRETCH * z, ahead=-2.0, height=3.0)
+    assert end == pytest.approx(np.column_stack([0 * z, -plane[:, 1], plane[:, 0]]), abs=1e-12)
+
+
+def test_screw_of_a_helix_keeps_its_axis() -> None:
+    # the axis is parallel to ω and passes at ω × λ e3 / |ω|² from the start
+    spin = np.array(SPINS["helix"])
+    place = screw(np.linspace(0, 300, 60), spin, STRETCH)[1]
+    square = spin @ spin
+    arms = place - np.cross(spin, [0, 0, STRETCH]) / square
+    distance = np.linalg.norm(np.cross(arms, spin), axis=1) / math.sqrt(square)
+    assert distance == pytest.approx(np.full(60, STRETCH * math.hypot(0.04, 0.01) / square))
+
+
+def test_cross_matrix_is_the_cross_product() -> None:
+    a, b = np.array([1.0, -2.0, 3.0]), np.array([0.3, 5.0, -4.0])
+    assert cross_matrix(a) @ b == pytest.approx(np.cross(a, b))

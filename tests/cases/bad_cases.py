@@ -46,8 +46,8 @@ BAD_SETTINGS = [
     # unknown names
     ("materials.wall=chewing-gum", 'materials.wall: "chewing-gum", expected '),
     (
-        "materials.wall={law: ogden, c1: 1 MPa}",
-        'materials.wall.law: "ogden", expected yeoh, neo-hooke or mooney-rivlin',
+        "materials.wall={law: hooke, c1: 1 MPa}",
+        'materials.wall.law: "hooke", expected yeoh, neo-hooke, mooney-rivlin, ogden or gent',
     ),
     ("effects.1.winding.fiber=rope", 'effects.1.winding.fiber: "rope", expected '),
     ("effects.2.friction.mu=0.3", "effects.2.friction: unknown key, expected one of pressure"),
@@ -117,6 +117,56 @@ BAD_SETTINGS = [
         "materials.wall={law: mooney-rivlin, c10: 1 MPa, c01: -2 MPa}",
         "materials.wall: initial shear modulus -2 MPa: expected more than 0",
     ),
+    (
+        "materials.wall={law: mooney-rivlin, c10: 0 MPa}",
+        "materials.wall: initial shear modulus 0 MPa: expected more than 0",
+    ),
+    (
+        "materials.wall={law: ogden, mu1: 1 MPa}",
+        "materials.wall.alpha1: missing, expected a coefficient of ogden",
+    ),
+    (
+        "materials.wall={law: ogden, mu1: 1 MPa, alpha1: 2, mu2: 1 MPa}",
+        "materials.wall.alpha2: missing, expected a coefficient of ogden",
+    ),
+    (
+        "materials.wall={law: ogden, mu1: 1 MPa, alpha1: 2, alpha3: 1}",
+        "materials.wall.alpha3: no effect without mu3, expected no value",
+    ),
+    (
+        "materials.wall={law: ogden, mu1: 1 MPa, alpha1: 0}",
+        "materials.wall.alpha1: 0, expected a number other than zero",
+    ),
+    (
+        "materials.wall={law: ogden, mu1: 1 MPa, alpha1: 40}",
+        "materials.wall.alpha1: 40, expected a number from -25 to 25",
+    ),
+    (
+        "materials.wall={law: ogden, mu1: 1 MPa, alpha1: 2 MPa}",
+        'materials.wall.alpha1: "2 MPa", expected a number',
+    ),
+    (
+        "materials.wall={law: ogden, mu1: 1, alpha1: 2}",
+        'materials.wall.mu1: 1, expected a modulus with its unit such as "0.11 MPa"',
+    ),
+    (
+        "materials.wall={law: ogden, mu1: 1 MPa, alpha1: 2, mu2: -2 MPa, alpha2: 3}",
+        "materials.wall: initial shear modulus -1 MPa: expected more than 0",
+    ),
+    (
+        "materials.wall={law: gent, mu: 1 MPa}",
+        "materials.wall.jm: missing, expected a coefficient of gent",
+    ),
+    (
+        "materials.wall={law: gent, mu: 1 MPa, jm: -3}",
+        "materials.wall.jm: -3, expected a number above zero",
+    ),
+    (
+        "materials.wall={law: gent, mu: 1 MPa, jm: 3, c2: 1 MPa}",
+        "materials.wall.c2: no effect on gent, expected no value",
+    ),
+    ("actuator.sheath=0 mm", "materials.sheath: no effect without actuator.sheath"),
+    ("actuator.layer=-1 mm", 'actuator.layer: "-1 mm", expected a length zero or above'),
     ("materials.wall={density: 1 g/cm^3}", "materials.wall: neither name nor law"),
     (
         "materials.wall={name: elastosil-m4601, density: 1 g/cm^3}",

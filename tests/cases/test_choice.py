@@ -6,18 +6,17 @@ too cheap answers another question, one too dear costs minutes.
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import pytest
 
 from fiberbend.case.case import Case
-from fiberbend.effects.table import WindingEffect
+from fiberbend.effects.winding import WindingEffect
 from fiberbend.models.choice import (
     MODELS,
-    choose_half,
     choose_model,
     objection,
-    omissions,
 )
 from fiberbend.reader.reader import parse_case, read_case
 from tests.cases.bad_cases import BLOCKED, HOOPS, SMEARED, WEIGHT
@@ -62,8 +61,9 @@ def winding(case: Case) -> WindingEffect:
 )
 def test_auto_takes_the_cheapest_that_holds_everything(settings: list[str], model: str) -> None:
     automatic = case("model=auto", *settings)
-    assert choose_model(automatic)[0] == model
-    assert all(objection(automatic, other) for other in MODELS[: MODELS.index(model)])
+    assert choose_model(automatic)[0].name == model
+    cheaper = itertools.takewhile(lambda name: name != model, MODELS)
+    assert all(objection(automatic, MODELS[name]) for name in cheaper)
     # what was chosen can be asked for by name, and is then the same case
     said = case(f"model={model}", *settings)
     assert said.model_copy(update={"model": "auto"}) == automatic
@@ -90,13 +90,19 @@ def test_one_case_file_for_all_models(model: str, kind: str) -> None:
 
 def test_a_ribbon_means_a_discrete_winding() -> None:
     assert winding(case("model=auto", "effects.1.winding.lines=3")).lines == 3
-    assert choose_model(case("model=auto", "effects.1.winding.width=0 mm"))[0] == "cell"
+    ribbon = case("model=auto", "effects.1.winding.width=0 mm")
+    assert choose_model(ribbon)[0].name == "cell"
 
 
 def test_what_a_closed_form_leaves_out_is_said_but_not_refused() -> None:
-    paths = [path for path, _ in omissions(case("model=analytic", BLOCKED, BULK), "analytic")]
+    closed = MODELS["analytic"]
+    paths = [path for path, _ in closed.leaves_out(case("model=analytic", BLOCKED, BULK))]
     assert paths == ["effects.1.winding", "effects.2.blocked-tip", "materials.wall.bulk"]
-    assert list(omissions(case("model=auto", HOOPS), "analytic")) == []
+    assert list(closed.leaves_out(case("model=auto", HOOPS))) == []
+
+
+def choose_half(case: Case) -> tuple[bool, str]:
+    return choose_model(case)[0].half(case)
 
 
 def test_half_or_full() -> None:

@@ -16,8 +16,8 @@ import pytest
 from fiberbend import __version__
 from fiberbend.cli import app, main
 from fiberbend.reader.reader import read_case
-from fiberbend.run import launch
-from fiberbend.run.folder import RunFolder
+from fiberbend.running import launch
+from fiberbend.running.folder import RunFolder
 from fiberbend.sweep.points import read_sweep
 from tests.cases import bad_cases
 
@@ -32,9 +32,9 @@ def stub_run(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     """Put a `run_case` in place of the real one."""
 
     def install(run_case: Callable[..., Any]) -> None:
-        module = types.ModuleType("fiberbend.run.runner")
+        module = types.ModuleType("fiberbend.running.runner")
         module.run_case = run_case  # type: ignore[attr-defined]
-        monkeypatch.setitem(sys.modules, "fiberbend.run.runner", module)
+        monkeypatch.setitem(sys.modules, "fiberbend.running.runner", module)
 
     return install
 
@@ -275,7 +275,7 @@ for path in {files!r}:
 from mpi4py import MPI
 from fiberbend.schema.problems import CaseError
 from fiberbend.reader.reader import read_case
-from fiberbend.run.folder import RunFolder
+from fiberbend.running.folder import RunFolder
 from tests.cases import bad_cases
 
 case, comm, out = read_case({case!r}), MPI.COMM_WORLD, Path({out!r})
@@ -320,7 +320,7 @@ def test_every_wrong_input_on_two_ranks(mpirun: Callable[..., Any], tmp_path: Pa
 
 LATE = """
 import sys, time
-from fiberbend.run import launch
+from fiberbend.running import launch
 from fiberbend.cli import entry
 
 if launch.rank() == 0:
@@ -350,7 +350,7 @@ def test_rank_0_speaks_though_it_is_last(
 
 CRASH = """
 import sys, types
-from fiberbend.run import launch
+from fiberbend.running import launch
 from fiberbend.cli import main
 
 def run_case(*arguments, **options):
@@ -359,9 +359,9 @@ def run_case(*arguments, **options):
         raise RuntimeError("out of luck")
     MPI.COMM_WORLD.Barrier()
 
-module = types.ModuleType("fiberbend.run.runner")
+module = types.ModuleType("fiberbend.running.runner")
 module.run_case = run_case
-sys.modules["fiberbend.run.runner"] = module
+sys.modules["fiberbend.running.runner"] = module
 sys.exit(main(["run", {case!r}, "--out", "run", "--quiet"]))
 """
 
@@ -400,7 +400,7 @@ def test_resume_reads_the_same_case_only(
 def test_starting_mpi_leaves_the_environment_as_it_was() -> None:
     # settings for a process that is alone would cut off the ranks of an mpirun launched from it
     code = (
-        "import os; from fiberbend.run import launch; before = dict(os.environ); "
+        "import os; from fiberbend.running import launch; before = dict(os.environ); "
         "launch.start_mpi(); from mpi4py import MPI; "
         "assert MPI.COMM_WORLD.size == 1 and dict(os.environ) == before"
     )

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from fiberbend.case.case import Case
+from fiberbend.models.choice import meshed
 from fiberbend.plan.estimate import cost_of, expected_angle
 from fiberbend.plan.plan import WIDTH, Plan, make_plan
-from fiberbend.plan.size import size_of
 from fiberbend.reader.reader import read_case
 from tests.cases.bad_cases import BLOCKED, HOOPS, SMEARED
 
@@ -129,8 +129,8 @@ def test_finer_meshes_and_whole_bodies_take_longer_and_more_memory() -> None:
     costs = []
     for changes in settings:
         changed = case(*changes)
-        half = changed.mesh.symmetry == "auto"
-        costs.append(cost_of(changed, "body", size_of(changed, "body", half)))
+        body = meshed(changed)
+        costs.append(cost_of(changed, body, body.size(changed)))
     assert [c.step_s for c in costs] == sorted(c.step_s for c in costs)
     assert [c.memory_mb for c in costs] == sorted(c.memory_mb for c in costs)
 

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from fiberbend.reader.reader import read_case
-from fiberbend.run.folder import (
+from fiberbend.running.folder import (
     HISTORY_COLUMNS,
     RUN_KEYS,
     RunFolder,
     read_history,
 )
-from fiberbend.run.progress import Progress
+from fiberbend.running.progress import Progress
 from fiberbend.schema.problems import CaseError
 
 CASE = read_case(Path(__file__).resolve().parents[2] / "cases" / "free_bending.yaml")

@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 from fiberbend.case import convert
-from fiberbend.case.case import COEFFICIENTS, Case, Material
+from fiberbend.case.case import Case, Material
 from fiberbend.effects.table import (
     EFFECTS,
     GravityEffect,
@@ -27,7 +27,7 @@ from fiberbend.reader.reader import (
     read_case,
 )
 from fiberbend.schema.problems import CaseError
-from materials.laws import LAWS
+from materials.laws.table import LAWS
 from tests.cases import bad_cases
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -98,6 +98,8 @@ def test_defaults_appear_in_the_resolved_case(data: dict[str, Any]) -> None:
         ["effects.1.winding.pitch=0.1 in", "solver.max_step=5 psi"],
         ["materials.wall={law: yeoh, c1: 0.11 MPa, c2: -20 Pa, bulk: 200 MPa}"],
         ["materials.wall={name: elastosil-m4601, bulk: 200 MPa}"],
+        ["materials.wall={law: gent, mu: 0.3 MPa, jm: 50}"],
+        ["materials.wall={law: ogden, mu1: 0.3 MPa, alpha1: 1.3, mu2: -1 kPa, alpha2: -2.5}"],
         ["actuator.layer=0.1 mm", "materials.layer={law: neo-hooke, mu: 1 GPa}"],
         ["actuator.sheath=", "materials.sheath="],
         ["effects.2.gravity.direction=-x", "materials.floor={law: neo-hooke, mu: 1 MPa, "
@@ -224,11 +226,44 @@ def test_a_case_is_frozen_and_comes_in_three_forms(data: dict[str, Any]) -> None
         case.actuator.radius = 9.0  # type: ignore[misc]
 
 
-def test_schema_and_materials_know_the_same_laws() -> None:
+def test_schema_has_a_key_for_every_parameter_of_a_law() -> None:
     annotation = Material.model_fields["law"].annotation
     (literal,) = (part for part in typing.get_args(annotation) if part is not type(None))
     assert set(typing.get_args(literal)) == set(LAWS)
-    assert {name for law in LAWS.values() for name in law.parameters} == set(COEFFICIENTS)
+    described = {name: field.description or "" for name, field in Material.model_fields.items()}
+    for law in LAWS.values():
+        for parameter in law.parameters:
+            assert parameter.meaning in described[parameter.name]
+            assert law.name in described[parameter.name]
+
+
+@pytest.mark.parametrize(
+    ("zero", "plain"),
+    [
+        (
+            ["materials.wall={law: yeoh, c1: 0.11 MPa, c2: 0 MPa, c3: 0 kPa}"],
+            ["materials.wall={law: yeoh, c1: 0.11 MPa}"],
+        ),
+        (
+            ["materials.wall={law: ogden, mu1: 1 MPa, alpha1: 2, mu2: 0 MPa, alpha2: 3}"],
+            ["materials.wall={law: ogden, mu1: 1 MPa, alpha1: 2}"],
+        ),
+        (
+            ["actuator.sheath=0 mm", "actuator.layer=0 mm", "materials.sheath="],
+            ["actuator.sheath=", "materials.sheath="],
+        ),
+    ],
+    ids=["yeoh", "ogden", "sheath"],
+)
+def test_zero_is_the_same_as_left_out(zero: list[str], plain: list[str]) -> None:
+    with_zero, without = read_case(BASELINE, zero), read_case(BASELINE, plain)
+    assert with_zero.actuator == without.actuator
+    rubbers = [convert.material(case.materials.wall) for case in (with_zero, without)]
+    law = LAWS[rubbers[0].law]
+    (one, used), (other, alike) = ((r.values, law.used([r.values])) for r in rubbers)
+    assert used == alike
+    assert [one[name] for name in used] == [other[name] for name in used]
+    assert parse_case(with_zero.resolved()) == with_zero
 
 
 def test_bridge_takes_what_the_case_says() -> None:
@@ -243,9 +278,9 @@ def test_bridge_takes_what_the_case_says() -> None:
     assert (wall.law, wall.parameters["c1"], wall.bulk) == ("yeoh", 0.11, 200.0)
     winding = case.find(WindingEffect)
     assert winding is not None
-    assert convert.fiber(winding.fiber).stiffness == pytest.approx(3000 * math.pi * 0.1**2)
+    assert winding.fiber.thread().stiffness == pytest.approx(3000 * math.pi * 0.1**2)
     assert convert.dimensions(case.actuator).total_length == 190.0
-    own = Material(law="neo-hooke", mu="1 MPa", density="1.1 g/cm^3")  # type: ignore[arg-type]
+    own = Material.model_validate({"law": "neo-hooke", "mu": "1 MPa", "density": "1.1 g/cm^3"})
     assert convert.material(own).density == pytest.approx(1100.0)
 
 

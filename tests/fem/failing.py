@@ -10,6 +10,7 @@ import numpy as np
 from mpi4py import MPI
 
 from fem.kinematics.domain import Domain
+from fem.march.frames import Frames
 from fem.march.march import Ramp, Rules
 from fem.march.selfcontact import BodyRod, clearance
 from fem.results.diagnosis import Diagnosis
@@ -20,9 +21,10 @@ from geometry.sections.size import MeshSize
 from tests.fem.parts import SHORT, Bender, Floats, bender
 
 
-def short(comm: MPI.Comm) -> Bender:
+def short(comm: MPI.Comm, rules: Rules | None = None) -> Bender:
     """The short actuator with caps and a sheath."""
-    return bender(domain=Domain(swept_body(SHORT, MeshSize(axial=6, section=1, half=True)), comm))
+    mesh = swept_body(SHORT, MeshSize(axial=6, section=1, half=True))
+    return bender(rules, domain=Domain(mesh, comm))
 
 
 def turn_inside_out(body: Bender, cell: int) -> None:
@@ -60,14 +62,11 @@ def stop_newton(body: Bender, after: int) -> None:
 
 def found(comm: MPI.Comm) -> dict[str, str | float]:
     """The reason of a failure, where an element is inverted, and the clearance of a bent state."""
-    body = short(comm)
-    body.march.rules = Rules(cutbacks=1)
+    body = short(comm, Rules(cutbacks=1))
     stop_newton(body, 1)
     report = body.run([Ramp("pressure", 0.02, largest=0.005)])
-    frames = body.march.equilibrium.predictor.frames
-    assert frames is not None
     state = body.states[-1]
-    gap = clearance(BodyRod(body.scene.body, frames).pose(state, state, 1.0))
+    gap = clearance(BodyRod(body.scene.body, Frames(body.scene.body)).pose(state, state, 1.0))
     turn_inside_out(body, cap_sheath(body))
     inverted = Diagnosis(body.scene).inverted()
     return {"reason": report.reason, "inverted": inverted, "clearance": gap}

@@ -19,6 +19,7 @@ from fem.effects.winding import SmearedWinding
 from fem.effects.winding import Winding as Discrete
 from fem.kinematics.domain import Domain
 from fem.march.frames import Frames
+from fem.march.hooks import Hook, Steered
 from fem.march.march import (
     March,
     Ramp,
@@ -32,19 +33,21 @@ from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome, Settings
 from geometry.actuator import Actuator
 from geometry.bodies.extrude import swept_body
-from geometry.bodies.solids import tube_sector
 from geometry.mesh.data import MeshData
 from geometry.mesh.tets import to_tetrahedra
+from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize
-from geometry.winding.embed import embed, smear
+from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
+from geometry.winding.smear import smear
+from tests.exact.solids import tube_sector
 
 Floats = npt.NDArray[np.float64]
 CELLS = ("hexahedron", "tetrahedron")
 
-STUB = Actuator(radius=8, length=8, wall=2, floor=2, sheath=None, cap=4)
+STUB = HemicircleActuator(radius=8, length=8, wall=2, floor=2, cap=4)
 """Shortest actuator with every surface."""
-SHORT = Actuator(radius=8, length=24, wall=2, floor=2, sheath=1, cap=5)
+SHORT = HemicircleActuator(radius=8, length=24, wall=2, floor=2, sheath=1, cap=5)
 """Cheapest actuator that bends."""
 PITCH = 3.0
 EA = 881.0
@@ -72,6 +75,11 @@ def law(name: str, regions: Sequence[str], scale: float = 1.0) -> Elastic:
         "neo-hooke": {"mu": 0.22 * scale},
         "mooney-rivlin": {"c10": 0.09 * scale, "c01": 0.03 * scale},
         "yeoh": {"c1": 0.11 * scale, "c2": 0.02 * scale, "c3": 0.003 * scale},
+        "gent": {"mu": 0.22 * scale, "jm": 30.0},
+        "ogden": {
+            **{"mu1": 0.2 * scale, "alpha1": 1.3, "mu2": 0.01 * scale, "alpha2": 5.0},
+            **{"mu3": 0.03 * scale, "alpha3": -2.0},
+        },
     }
     return Elastic(name, dict.fromkeys(regions, parameters[name]))
 
@@ -94,8 +102,7 @@ def perturb(scene: Scene, amplitude: float, seed: int) -> Floats:
     for name in scene.body.scalars:
         scene.set_scalar(name, 0.3 + rng.random())
     scene.set(amplitude * rng.uniform(-1, 1, scene.body.owned))
-    for discrete in scene.discrete.values():
-        discrete.predict(None)
+    scene.predict(None)
     return scene.w.copy()
 
 
@@ -147,10 +154,6 @@ class Bender:
 
     def run(self, ramps: Sequence[Ramp]) -> Report:
         """March from where it is."""
-        if not self.march.states:
-            self.march.start()
-            self.states.append(self.march.states[-1])
-            self.energies.append(sum(stored(self.scene).values()))
         return self.march.run(ramps)
 
 
@@ -159,11 +162,31 @@ def stored(scene: Scene) -> dict[str, float]:
     return {key: e for key, e in scene.energies().items() if key != "ChamberPressure"}
 
 
+class Keeper(Hook):
+    """Keeps what a march tells, the energies at rest first."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self.states: list[State] = []
+        self.energies = [sum(stored(scene).values())]
+        self.warnings: list[str] = []
+
+    def after_step(self, march: Steered, state: State, outcome: Outcome) -> None:
+        """Keep the state and its energy."""
+        self.states.append(state)
+        self.energies.append(sum(stored(self._scene).values()))
+
+    def after_cutback(self, march: Steered, reason: str) -> None:
+        """Keep what failed."""
+        self.warnings.append(reason)
+
+
 def bender(
     rules: Rules | None = None,
     settings: Settings | None = None,
     wrap: Callable[[Newton], Newton] = lambda newton: newton,
     domain: Domain | None = None,
+    hooks: Sequence[Hook] = (),
 ) -> Bender:
     """A fresh short actuator at rest; `wrap` may put something in front of Newton."""
     domain = domain or short_domain()
@@ -171,17 +194,20 @@ def bender(
     newton = wrap(Newton(scene, domain.comm, settings or Settings()))
     frames = Frames(scene.body)
     angle = BendingAngle(scene.body, frames)
-    states: list[State] = []
-    energies: list[float] = []
-    warnings: list[str] = []
-
-    def on_step(state: State, _outcome: Outcome) -> None:
-        states.append(state)
-        energies.append(sum(stored(scene).values()))
-
-    march = March(scene, newton, frames, angle, rules or Rules(), on_step, warnings.append)
-    march.causes = Diagnosis(scene)
-    return Bender(scene, newton, angle, Tip(scene.body), march, states, energies, warnings)
+    keeper = Keeper(scene)
+    march = March(
+        scene,
+        newton,
+        rules or Rules(),
+        frames=frames,
+        control=angle,
+        causes=Diagnosis(scene),
+        hooks=[keeper, *hooks],
+    )
+    tip = Tip(scene.body)
+    states = keeper.states
+    states.append(march.rest)
+    return Bender(scene, newton, angle, tip, march, states, keeper.energies, keeper.warnings)
 
 
 def gravity(regions: Sequence[str]) -> Gravity:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -15,13 +16,14 @@ from fem.effects.gravity import Gravity
 from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Clamp
 from fem.kinematics.domain import Domain
+from fem.march.hooks import AfterStep, Hook
 from fem.march.march import March
 from fem.march.records import Ramp, Rules, State
 from fem.results.measures import balance
 from fem.results.touch import Probe
 from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome, Settings
-from geometry.bodies.solids import box
+from tests.exact.solids import box
 from tests.fem.parts import Floats, stub
 
 LENGTH, SIDE = 100.0, 5.0
@@ -42,7 +44,7 @@ class Beam:
     contact: Contact
 
 
-def beam(gap: float) -> Beam:
+def beam(gap: float, hooks: Sequence[Hook] = ()) -> Beam:
     """A beam of neo-Hookean rubber, clamped at z = 0, that sinks onto a table."""
     domain = Domain(box((SIDE, SIDE, LENGTH), (1, 1, 24)), MPI.COMM_SELF)
     table = Contact("table", Plane((0.0, -gap, 0.0), (0.0, 2.0, 0.0)), ("front",), STIFFNESS)
@@ -56,7 +58,7 @@ def beam(gap: float) -> Beam:
     scene = Scene(domain, effects)
     newton = Newton(scene, domain.comm, Settings(iterations=25))
     rules = Rules(memory=2, jump=np.inf)
-    march = March(scene, newton, None, None, rules, lambda _s, _o: None, lambda _: None)
+    march = March(scene, newton, rules, hooks=hooks)
     return Beam(scene, march, table)
 
 
@@ -84,18 +86,16 @@ def test_propped_cantilever() -> None:
 def test_touch_and_lift_off_leave_no_trace() -> None:
     # elastic and without friction: at every weight the beam comes back to where it was, and leaves
     # the table where it met it, at half the weight
-    body = beam(gap=SAG / 2)
-    body.march.start()
     stops = (0.25, 0.4, 0.6, 0.8)
     met: dict[float, list[tuple[Floats, float]]] = {stop: [] for stop in stops}
-    probe = Probe(body.scene, body.contact)
 
     def keep(state: State, _: Outcome) -> None:
         weight = round(state.scalars["gravity"], 9)
         if weight in met:
             met[weight].append((state.w, probe.read().gap))
 
-    body.march.on_step = keep
+    body = beam(SAG / 2, [AfterStep(keep)])
+    probe = Probe(body.scene, body.contact)
     ramps = [Ramp("gravity", end, first=0.25, stops=stops) for end in (0.8, 0.25)]
     report = body.march.run(ramps)
     assert report.status == "converged", report.reason

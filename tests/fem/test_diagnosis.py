@@ -21,9 +21,7 @@ FAILED = Outcome(False, 11, 11, "no convergence in 11 iterations", [], 1.0)
 @pytest.fixture(scope="module")
 def body() -> Bender:
     """The short actuator at rest, for tests that set a state."""
-    actuator = short(MPI.COMM_SELF)
-    actuator.march.start()
-    return actuator
+    return short(MPI.COMM_SELF)
 
 
 def explain(body: Bender, critical: list[Critical] | None = None) -> str:
@@ -54,7 +52,7 @@ def test_walls_that_meet_are_told(body: Bender) -> None:
     scene = body.scene
     nodes = scene.domain.data.nodes[scene.body.owned_nodes]
     moved = np.zeros_like(nodes)
-    moved[:, 1] = -0.95 * np.clip(nodes[:, 1] - SHORT.floor, 0, None)  # type: ignore[operator]
+    moved[:, 1] = -0.95 * np.clip(nodes[:, 1] - SHORT.floor, 0, None)
     scene.body.set_displacement(moved)
     scene.set(scene.w.copy())
     scene.set_scalar("pressure", -0.05)

@@ -12,10 +12,12 @@ from scipy.spatial.transform import Rotation
 from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.contact import Contact, Cylinder, Obstacle, Plane
 from fem.effects.effect import Effect
+from fem.effects.elastic import Elastic
 from fem.effects.incompressible import Incompressible
 from fem.kinematics.domain import Domain
 from fem.scene import Scene
 from geometry.checks import region_volumes
+from materials.laws.table import LAWS
 from tests.fem.parts import CELLS, Floats, gravity, law, perturb, smeared, stub, winding
 
 REGIONS = ("wall", "floor")
@@ -28,10 +30,13 @@ def obstacle(shape: Obstacle) -> Contact:
     return Contact("it", shape, ("outer", "tip"), 30.0)
 
 
+def rubber(name: str, _: Domain) -> list[Effect]:
+    """Every region of one law."""
+    return [law(name, REGIONS)]
+
+
 EFFECTS: dict[str, Callable[[Domain], list[Effect]]] = {
-    "neo-hooke": lambda _: [law("neo-hooke", REGIONS)],
-    "mooney-rivlin": lambda _: [law("mooney-rivlin", REGIONS)],
-    "yeoh": lambda _: [law("yeoh", REGIONS)],
+    **{name: functools.partial(rubber, name) for name in LAWS},
     "incompressible": lambda _: [Incompressible()],
     "perturbed": lambda _: [Incompressible({"wall": 40.0, "floor": 11.0})],
     "pressure": lambda _: [ChamberPressure()],
@@ -187,3 +192,101 @@ def test_slack_fibers_carry_nothing() -> None:
         assert (potential.energy() > 0) == carries
         e = scene.discrete["Winding"].strain  # type: ignore[attr-defined]
         assert e == pytest.approx(factor, abs=1e-12)
+
+
+STATES = {
+    "rest": (1.0, 1.0, 1.0),
+    "uniaxial": (0.8, 0.8, 1.5625),
+    "equibiaxial": (1.3, 1.3, 0.6),
+    "volumetric": (1.1, 1.1, 1.1),
+}
+"""Stretches along x, y and z, equal ones among them."""
+
+
+@pytest.mark.parametrize("state", STATES)
+@pytest.mark.parametrize("name", LAWS)
+def test_derivatives_where_stretches_are_equal(name: str, state: str) -> None:
+    # there the stretches themselves have no derivatives, the energies have
+    scene = _scene(name, "hexahedron")
+    w = np.zeros(scene.body.owned)
+    w[scene.body.node_dofs] = scene.domain.data.nodes * (np.array(STATES[state]) - 1)
+    v, h = _direction(scene, 11), _step(name)
+    r = _residual(scene, w)
+    slope = float(_differences(lambda at: _potential(scene, at), w, v, h))
+    work = float(np.linalg.norm(v)) * max(float(np.linalg.norm(r)), 1e-3)
+    assert r @ v == pytest.approx(slope, abs=1e-8 * work)
+    slopes = _differences(lambda at: _residual(scene, at), w, v, h)
+    product = _times_tangent(scene, w, v)
+    assert np.abs(product - slopes).max() <= 1e-7 * np.abs(slopes).max()
+
+
+def _homogeneous(name: str, parameters: dict[str, float], stretch: Floats) -> tuple[float, Floats]:
+    """Energy, and forces, of the stub under stretches along x, y and z."""
+    scene = Scene(stub("hexahedron"), [Elastic(name, dict.fromkeys(REGIONS, parameters))])
+    w = np.zeros(scene.body.owned)
+    w[scene.body.node_dofs] = scene.domain.data.nodes * (stretch - 1)
+    return _potential(scene, w), _residual(scene, w)
+
+
+@pytest.mark.parametrize("stretch", [(1.0, 1.0, 1.0), (0.8, 0.8, 1.5625), (1.4, 0.9, 0.7)])
+def test_ogden_is_the_classical_laws_to_round_off(stretch: tuple[float, float, float]) -> None:
+    # the spectral path against the path of the invariants, α = 2 and (2, −2)
+    for law_, classical, ogden in (
+        ("neo-hooke", {"mu": 0.3}, {"mu1": 0.3, "alpha1": 2.0}),
+        (
+            "mooney-rivlin",
+            {"c10": 0.1, "c01": 0.04},
+            {"mu1": 0.2, "alpha1": 2.0, "mu2": 0.08, "alpha2": -2.0},
+        ),
+    ):
+        energy, forces = _homogeneous(law_, classical, np.array(stretch))
+        same, alike = _homogeneous("ogden", ogden, np.array(stretch))
+        assert same == pytest.approx(energy, rel=1e-12, abs=1e-11)
+        assert np.abs(alike - forces).max() <= 1e-12 * max(np.abs(forces).max(), 1.0)
+
+
+def test_no_forces_beyond_the_limiting_stretch() -> None:
+    # I1 − 3 = 2²  + 2/2 − 3 = 2 beyond jm = 1.9: nothing that Newton could take for a force
+    beyond = np.array([2**-0.5, 2**-0.5, 2.0])
+    energy, forces = _homogeneous("gent", {"mu": 0.3, "jm": 1.9}, beyond)
+    assert np.isnan(energy)
+    assert np.isnan(forces).any()
+    energy, forces = _homogeneous("gent", {"mu": 0.3, "jm": 2.1}, beyond)
+    assert np.isfinite(energy)
+    assert np.isfinite(forces).all()
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_a_law_acts_in_its_own_regions_alone(name: str) -> None:
+    # and changes nothing in those of another law, however far these are stretched
+    domain, other = stub("hexahedron"), law("neo-hooke", ["floor"])
+    both = [law(name, ["wall"]), other] if name != "neo-hooke" else [law(name, REGIONS)]
+    scene = Scene(domain, both)
+    w = perturb(scene, AMPLITUDE, 13)
+    energies = scene.energies()
+    alone = Scene(domain, [law(name, ["wall"])])
+    assert sum(energies.values()) == pytest.approx(
+        _potential(alone, w) + _potential(Scene(domain, [other]), w), rel=1e-12
+    )
+    w[scene.body.node_dofs] = domain.data.nodes * (np.array([4.0, 0.5, 0.5]) - 1)
+    assert np.isfinite(_residual(Scene(domain, [law(name, [])]), w)).all()
+
+
+def test_one_ogden_region_of_more_terms_than_another() -> None:
+    # a term that a region lacks is zero there; one that all lack does not exist
+    short, long = {"mu1": 0.3, "alpha1": 1.5}, {"mu1": 0.2, "alpha1": 2.5, "mu2": 0.1, "alpha2": -1}
+    mixed = Elastic("ogden", {"wall": dict(short), "floor": dict(long)})
+    apart = [
+        Elastic("ogden", {"wall": dict(short)}).law.used([mixed.regions["wall"]]),
+        mixed.law.used(mixed.regions.values()),
+    ]
+    assert apart == [["mu1", "alpha1"], ["mu1", "alpha1", "mu2", "alpha2"]]
+    domain = stub("hexahedron")
+    w = perturb(Scene(domain, [mixed]), AMPLITUDE, 12)
+    whole = _potential(Scene(domain, [mixed]), w)
+    parts = 0.0
+    for region, row in (("wall", short), ("floor", long)):
+        absent = {"wall": "floor", "floor": "wall"}[region]
+        rows = {region: dict(row), absent: {"mu1": 1e-30, "alpha1": 1.0}}
+        parts += _potential(Scene(domain, [Elastic("ogden", rows)]), w)
+    assert whole == pytest.approx(parts, rel=1e-12)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
+from fem.march.hooks import Hook, Steered
 from fem.march.march import Ramp, Rules, State
 from fem.solver.newton import Closure, Newton, Outcome
 from tests.fem.parts import Bender, Floats, bender
@@ -104,13 +105,13 @@ class _Flaky:
 
 def test_a_failed_increment_is_rolled_back_exactly() -> None:
     seen: list[tuple[Floats, float, State]] = []
-    body = bender(wrap=_Flaky)  # type: ignore[arg-type]
 
-    def warn(_line: str) -> None:
-        scene = body.scene
-        seen.append((scene.w.copy(), scene.scalar("pressure"), body.march.states[-1]))
+    class Look(Hook):
+        def after_cutback(self, march: Steered, reason: str) -> None:
+            scene = body.scene
+            seen.append((scene.w.copy(), scene.scalar("pressure"), march.position.states[-1]))
 
-    body.march.warn = warn
+    body = bender(wrap=_Flaky, hooks=[Look()])  # type: ignore[arg-type]
     report = body.run([Ramp("pressure", 0.01, largest=0.002)])
     assert report.status == "converged", report.reason
     assert report.cutbacks == len(seen) == 1

@@ -17,8 +17,7 @@ PRESSURE = 0.004
 def _solve(hybrid: bool, pressure: float = PRESSURE) -> tuple[Bender, Outcome]:
     body = bender(settings=Settings(tolerance=1e-9, iterations=25, hybrid=hybrid, reuse=False))
     body.scene.set_scalar("pressure", pressure)
-    for discrete in body.scene.discrete.values():
-        discrete.predict(None)
+    body.scene.predict(None)
     outcome = body.newton.solve(body.scene.w.copy())
     assert outcome.converged, outcome.reason
     return body, outcome

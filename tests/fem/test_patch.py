@@ -12,9 +12,9 @@ from fem.effects.incompressible import Incompressible
 from fem.kinematics.domain import Domain
 from fem.scene import Scene
 from fem.solver.newton import Newton, Settings
-from geometry.bodies.solids import box
 from geometry.mesh.data import MeshData
 from geometry.mesh.tets import to_tetrahedra
+from tests.exact.solids import box
 from tests.fem.parts import CELLS, law
 
 

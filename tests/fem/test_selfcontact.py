@@ -21,14 +21,14 @@ from fem.march.selfcontact import (
     first_contact,
 )
 from fem.scene import Scene
-from geometry.actuator import Actuator
 from geometry.bodies.extrude import swept_body, swept_section
+from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize
 from tests.fem.parts import set_positions
 
 Floats = npt.NDArray[np.float64]
 
-ACTUATOR = Actuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
+ACTUATOR = HemicircleActuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
 
 
 def meeting(length: float, cap: float, bottom: float) -> float:

@@ -25,8 +25,9 @@ from fem.kinematics.uniform import (
 from fem.scene import Scene
 from geometry.bodies.extrude import swept_section, swept_slice
 from geometry.sections.size import MeshSize
-from geometry.winding.embed import embed, smear
+from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
+from geometry.winding.smear import smear
 from tests.fem.parts import EA, SHORT, Floats, law, perturb
 
 PITCH = 3.0

@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
-from geometry.actuator import Actuator
+from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize, Strips, check_size
 
-BASELINE = Actuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
+BASELINE = HemicircleActuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
 
 
 def test_baseline_closed_forms() -> None:
@@ -27,7 +27,9 @@ def test_baseline_closed_forms() -> None:
 
 def test_regions_add_up_to_the_outline() -> None:
     # catches an overlap or a gap between regions, whatever the dimensions
-    actuator = Actuator(radius=7, length=90, wall=1.5, floor=3, sheath=0.8, cap=11, layer=0.4)
+    actuator = HemicircleActuator(
+        radius=7, length=90, wall=1.5, floor=3, sheath=0.8, cap=11, layer=0.4
+    )
     outer = actuator.outer_half_width
     base = 2 * outer * (actuator.profile.bottom - actuator.outer_bottom)
     solid = (math.pi * outer**2 / 2 + base) * actuator.total_length

@@ -7,16 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.actuator import Actuator
 from geometry.bodies.extrude import swept_body
 from geometry.bodies.gmsh_body import build_body
 from geometry.checks import check, region_volumes, surface_area
 from geometry.mesh.data import MeshData
 from geometry.mesh.errors import MeshError
+from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize, Strips
 from geometry.winding.helix import Winding
 
-SHORT = Actuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
+SHORT = HemicircleActuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
 STRIPS = Strips(2.0, 2.0)
 
 

@@ -7,18 +7,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.actuator import Actuator
 from geometry.bodies.extrude import swept_body, swept_section, swept_slice
 from geometry.checks import chamber_gap, chamber_volume, surface_area
 from geometry.mesh.data import MeshData
 from geometry.mesh.reference import jacobians
 from geometry.mesh.tets import to_tetrahedra
+from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize
-from geometry.winding.embed import EmbeddedFibers, embed, smear
+from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
 from geometry.winding.outline import arc_length, tangent
+from geometry.winding.segments import EmbeddedFibers
+from geometry.winding.smear import smear
 
-BODY = Actuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
+BODY = HemicircleActuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
 DOUBLE = Winding("double-helix", 3, 0.38)
 
 

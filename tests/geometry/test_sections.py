@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
 
-from analytic.sections import EqualArea, Shape
-from geometry.actuator import SECTIONS, Actuator
+from fiberbend.case import case
 from geometry.bodies.extrude import swept_body, swept_section, swept_slice
 from geometry.bodies.gmsh_body import build_body
 from geometry.checks import (
@@ -24,33 +23,28 @@ from geometry.checks import (
 from geometry.mesh.data import MeshData
 from geometry.mesh.reference import area_vectors, cell_rule, jacobians
 from geometry.mesh.tets import to_tetrahedra
+from geometry.sections.circle import CircleActuator
+from geometry.sections.hemicircle import HemicircleActuator
+from geometry.sections.rectangle import RectangleActuator
+from geometry.sections.shape import ShapedActuator
 from geometry.sections.size import MeshSize, Strips, check_size
-from geometry.sections.table import LAYOUTS
-from geometry.winding.embed import embed, smear
+from geometry.sections.table import SECTIONS, make_actuator
+from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
 from geometry.winding.outline import (
-    OUTLINES,
     arc_length,
     position,
     tangent,
 )
+from geometry.winding.smear import smear
+from tests.exact.equal_area import EqualArea, Shape
 
-HEMICIRCLE = Actuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
-RECTANGLE = Actuator(
-    section="rectangle",
-    radius=None,
-    width=15,
-    height=7,
-    length=40,
-    wall=2,
-    floor=3,
-    sheath=1,
-    cap=8,
-)
-TUBE = Actuator(section="circle", radius=6, length=40, wall=2, floor=None, sheath=None, cap=8)
+HEMICIRCLE = HemicircleActuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
+RECTANGLE = RectangleActuator(width=15, height=7, length=40, wall=2, floor=3, sheath=1, cap=8)
+TUBE = CircleActuator(radius=6, length=40, wall=2, cap=8)
 CIRCLE = dataclasses.replace(TUBE, floor=2.0, sheath=1.0)
 INLAY = dataclasses.replace(TUBE, floor=0.8, sheath=1.0)
-BODIES = {
+BODIES: dict[str, ShapedActuator] = {
     "hemicircle": HEMICIRCLE,
     "rectangle": RECTANGLE,
     "tall rectangle": dataclasses.replace(
@@ -65,9 +59,19 @@ DOUBLE = Winding("double-helix", 3, 0.38)
 every_body = pytest.mark.parametrize("body", BODIES.values(), ids=BODIES)
 
 
-def test_every_shape_has_all_its_parts() -> None:
+def test_the_case_offers_every_shape() -> None:
+    offered = get_args(case.Actuator.model_fields["section"].annotation)
+    assert set(offered) == set(SECTIONS)
+    dimensions = {field.name for shape in SECTIONS.values() for field in dataclasses.fields(shape)}
+    assert set(case.Actuator.model_fields) == {"section", *dimensions}
+
+
+def test_a_shape_without_a_part_cannot_be_made() -> None:
     # a shape without an outline would fail only once it is wound
-    assert set(SECTIONS) == set(LAYOUTS) == set(OUTLINES)
+    parts = {name: getattr(CircleActuator, name) for name in ("closed_forms", "layout")}
+    triangle = type("TriangleActuator", (ShapedActuator,), {"section": "triangle", **parts})
+    with pytest.raises(TypeError, match="abstract method outline"):
+        triangle(length=40, wall=2, cap=8)
 
 
 def test_rectangle_closed_forms() -> None:
@@ -106,8 +110,8 @@ def test_torque_of_the_pressure_is_the_papers(shape: Shape) -> None:
         "rectangle": {"width": 10 * equal.aspect, "height": 10 / equal.aspect, "floor": 2.5},
         "circle": {"radius": full, "floor": None},
     }
-    given = {"radius": None, **shapes[shape]}
-    actuator = Actuator(section=shape, length=160, wall=2.5, sheath=None, cap=15, **given)
+    common = {"section": shape, "length": 160, "wall": 2.5, "sheath": None, "cap": 15}
+    actuator = make_actuator(common | shapes[shape])
     assert actuator.chamber_area == pytest.approx(100)
     assert actuator.chamber_moment == pytest.approx(equal.torque(shape))
 
@@ -117,7 +121,7 @@ def test_torque_of_the_pressure_is_the_papers(shape: Shape) -> None:
 @pytest.mark.parametrize("section", [1, 2])
 @pytest.mark.parametrize("strips", [None, Strips(2.0, 2.0)])
 def test_body_is_the_actuator(
-    body: Actuator, half: bool, section: int, strips: Strips | None
+    body: ShapedActuator, half: bool, section: int, strips: Strips | None
 ) -> None:
     # volumes, chamber, winding, closedness and Jacobians at once, for every layout variant
     mesh = swept_body(body, MeshSize(axial=4, section=section, half=half), strips)
@@ -136,7 +140,7 @@ def test_straight_sections_have_no_geometry_error() -> None:
 
 
 @every_body
-def test_named_facets_have_the_areas_of_their_surfaces(body: Actuator) -> None:
+def test_named_facets_have_the_areas_of_their_surfaces(body: ShapedActuator) -> None:
     # a facet too many, too few or double would shift a boundary condition silently
     mesh = swept_body(body, MeshSize(axial=4, section=2, half=False), Strips(2.0, 3.0))
     solid = sum(body.region_areas().values())
@@ -148,6 +152,11 @@ def test_named_facets_have_the_areas_of_their_surfaces(body: Actuator) -> None:
         "rectangle": 4 * body.profile.half_width + 2 * (body.profile.top - body.profile.bottom),
         "circle": 2 * math.pi * body.profile.half_width,
     }[body.section]
+    outside = {
+        "hemicircle": (math.pi + 2) * outer + 2 * (body.profile.bottom - body.outer_bottom),
+        "rectangle": 4 * outer + 2 * (body.outer_top - body.outer_bottom),
+        "circle": 2 * math.pi * outer,
+    }[body.section]
     expected = {
         "clamp": face,
         "tip": face,
@@ -155,7 +164,7 @@ def test_named_facets_have_the_areas_of_their_surfaces(body: Actuator) -> None:
         "section_tip": solid,
         "chamber": around * body.length + 2 * body.chamber_area,
         "winding": body.winding_perimeter * body.length,
-        "outer": body.profile.outer_perimeter * body.total_length,
+        "outer": outside * body.total_length,
         "roof": (flat if body.section == "rectangle" else line) * body.length,
         "post": (line if body.section == "circle" else 2 * outer) * 3.0,
     }
@@ -164,7 +173,7 @@ def test_named_facets_have_the_areas_of_their_surfaces(body: Actuator) -> None:
 
 
 @every_body
-def test_half_is_half_of_full(body: Actuator) -> None:
+def test_half_is_half_of_full(body: ShapedActuator) -> None:
     # the solver compares half and full bodies to 1e-6: the meshes must be mirror images
     half = swept_body(body, MeshSize(axial=8), Strips(2.0, 2.0))
     full = swept_body(body, MeshSize(axial=8, half=False), Strips(2.0, 2.0))
@@ -180,7 +189,7 @@ def test_half_is_half_of_full(body: Actuator) -> None:
 
 
 @every_body
-def test_heights_of_centroids_are_those_of_the_mesh(body: Actuator) -> None:
+def test_heights_of_centroids_are_those_of_the_mesh(body: ShapedActuator) -> None:
     # the tip is reported at the face's centroid, and κ is the torque of the pressure
     mesh = swept_body(body, MeshSize(axial=8, section=2))
     x, normal = area_vectors(mesh, "tip")
@@ -197,7 +206,7 @@ def test_the_floor_of_a_circle_lies_within_45_degrees() -> None:
         mesh = swept_section(body, MeshSize(section=2, half=False))
         cells = np.flatnonzero(mesh.cell_region == mesh.regions["floor"])
         x = jacobians(mesh, cells, cell_rule(mesh.cell_type)[0])[0].reshape(-1, 2) - [0, 8]
-        assert np.hypot(*x.T).min() > 8 - (body.floor or 0)
+        assert np.hypot(*x.T).min() > 8 - (body.floor or 0.0)
         angle = np.abs(np.arctan2(x[:, 0], -x[:, 1]))
         assert angle.max() < math.pi / 4 + 1e-3
     assert set(swept_section(TUBE, MeshSize()).regions) == {"wall"}
@@ -213,7 +222,7 @@ def test_a_tube_is_concentric() -> None:
 
 @every_body
 @pytest.mark.parametrize("half", [True, False])
-def test_section_slice_and_body_belong_together(body: Actuator, half: bool) -> None:
+def test_section_slice_and_body_belong_together(body: ShapedActuator, half: bool) -> None:
     # the models are compared with each other: same areas, same names, same pin
     size = MeshSize(axial=4, half=half)
     section, thin = swept_section(body, size), swept_slice(body, size, 1.5, 2)
@@ -232,7 +241,7 @@ def test_section_slice_and_body_belong_together(body: Actuator, half: bool) -> N
 
 
 @every_body
-def test_outline_runs_around_once(body: Actuator) -> None:
+def test_outline_runs_around_once(body: ShapedActuator) -> None:
     perimeter = body.winding_perimeter
     s = np.linspace(0.013, perimeter - 0.013, 4001)
     xy = position(body, s)
@@ -253,7 +262,7 @@ def test_outline_runs_around_once(body: Actuator) -> None:
 
 @every_body
 @pytest.mark.parametrize("pattern", ["double-helix", "single-helix-right", "single-helix-left"])
-def test_windings_have_their_length(body: Actuator, pattern: str) -> None:
+def test_windings_have_their_length(body: ShapedActuator, pattern: str) -> None:
     # exact: L/p √(S² + p²) a helix, embedded or smeared, on any full mesh
     winding = Winding(pattern, 7, 0.38)
     hexes = swept_body(body, MeshSize(axial=4, section=2, half=False))
@@ -271,7 +280,7 @@ def test_windings_have_their_length(body: Actuator, pattern: str) -> None:
 
 
 @every_body
-def test_smeared_windings_follow_the_helix(body: Actuator) -> None:
+def test_smeared_windings_follow_the_helix(body: ShapedActuator) -> None:
     # right-handed: −s while z grows, on the section and on the body
     around, up = body.winding_perimeter, DOUBLE.pitch
     for mesh in (
@@ -291,7 +300,7 @@ def test_smeared_windings_follow_the_helix(body: Actuator) -> None:
 
 
 @every_body
-def test_half_a_pitch_holds_one_pass(body: Actuator) -> None:
+def test_half_a_pitch_holds_one_pass(body: ShapedActuator) -> None:
     # the cell model: one pass of one fiber from the top to the bottom
     mesh = swept_slice(body, MeshSize(section=2), 1.5, 2)
     fibers = embed(mesh, body, Winding("double-helix", 3, 0.0))
@@ -300,7 +309,7 @@ def test_half_a_pitch_holds_one_pass(body: Actuator) -> None:
 
 
 @pytest.mark.parametrize("body", [RECTANGLE, CIRCLE, INLAY], ids=["rectangle", "circle", "inlay"])
-def test_gmsh_makes_the_same_mesh(body: Actuator) -> None:
+def test_gmsh_makes_the_same_mesh(body: ShapedActuator) -> None:
     # two independent ways to the same mesh: node places and names must agree
     size, strips = MeshSize(axial=4), Strips(2.0, 2.0)
     ours, theirs = swept_body(body, size, strips), build_body(body, size, strips)
@@ -313,7 +322,7 @@ def test_gmsh_makes_the_same_mesh(body: Actuator) -> None:
 
 
 @pytest.mark.parametrize("body", [RECTANGLE, CIRCLE], ids=["rectangle", "circle"])
-def test_gmsh_tetrahedra_are_the_actuator(body: Actuator) -> None:
+def test_gmsh_tetrahedra_are_the_actuator(body: ShapedActuator) -> None:
     size = MeshSize(axial=3, element="tetrahedron")
     check(build_body(body, size, Strips(2.0, 2.0)), body, DOUBLE)
 
@@ -328,15 +337,22 @@ def test_gmsh_tetrahedra_are_the_actuator(body: Actuator) -> None:
         (HEMICIRCLE, {"floor": None}, "floor: missing, expected the floor of a hemicircle"),
         (HEMICIRCLE, {"width": 3.0}, "width: no effect on a hemicircle, expected no value"),
         (TUBE, {"layer": 0.5}, "layer: no effect on a circle, expected no value"),
+        (TUBE, {"breadth": 0.5}, "breadth: no effect on a circle, expected no value"),
         (TUBE, {"floor": 2.1}, "floor: 2.1 mm, expected at most the wall, 2 mm"),
         (TUBE, {"section": "square"}, "section 'square' is unknown: expected one of hemicircle"),
     ],
 )
 def test_dimensions_that_do_not_belong_together_are_refused(
-    body: Actuator, change: dict[str, Any], line: str
+    body: ShapedActuator, change: dict[str, Any], line: str
 ) -> None:
+    given = {"section": body.section, **dataclasses.asdict(body), **change}
     with pytest.raises(ValueError, match=f"^{line}"):
-        dataclasses.replace(body, **change)
+        make_actuator(given)
+
+
+def test_a_floor_thicker_than_its_ring_is_refused_however_the_actuator_is_made() -> None:
+    with pytest.raises(ValueError, match=r"floor: 2\.1 mm, expected at most the wall, 2 mm"):
+        dataclasses.replace(CIRCLE, floor=2.1)
 
 
 def test_meshes_that_cannot_hold_a_section_are_refused() -> None:

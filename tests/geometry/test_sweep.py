@@ -7,19 +7,19 @@ import math
 import numpy as np
 import pytest
 
-from geometry.actuator import Actuator
 from geometry.bodies.extrude import swept_body, swept_section, swept_slice
 from geometry.checks import chamber_gap, check, determinants, region_volumes, surface_area
 from geometry.mesh.data import MeshData
 from geometry.mesh.errors import MeshError
 from geometry.mesh.tets import to_tetrahedra
+from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize, Strips
 
-BASELINE = Actuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
+BASELINE = HemicircleActuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
 SHAPES = [
     BASELINE,
-    Actuator(radius=6, length=100, wall=1, floor=3, sheath=None, cap=10),
-    Actuator(radius=12, length=80, wall=3, floor=2, sheath=1.5, cap=15, layer=0.3),
+    HemicircleActuator(radius=6, length=100, wall=1, floor=3, cap=10),
+    HemicircleActuator(radius=12, length=80, wall=3, floor=2, sheath=1.5, cap=15, layer=0.3),
 ]
 
 
@@ -28,7 +28,7 @@ SHAPES = [
 @pytest.mark.parametrize("section", [1, 2])
 @pytest.mark.parametrize("strips", [None, Strips(2.0, 2.0)])
 def test_body_is_the_actuator(
-    actuator: Actuator, half: bool, section: int, strips: Strips | None
+    actuator: HemicircleActuator, half: bool, section: int, strips: Strips | None
 ) -> None:
     # volumes, chamber, closedness and Jacobians at once, for every layout variant
     mesh = swept_body(actuator, MeshSize(axial=4, section=section, half=half), strips)
@@ -124,7 +124,7 @@ def test_inner_facets_are_listed_from_the_lower_cell() -> None:
 def test_a_wrong_mesh_is_reported() -> None:
     # the check must bite: a mesh of another actuator, and one with an inverted cell
     mesh = swept_body(BASELINE, MeshSize(axial=8))
-    other = Actuator(radius=8, length=160, wall=2.01, floor=2, sheath=1, cap=15)
+    other = HemicircleActuator(radius=8, length=160, wall=2.01, floor=2, sheath=1, cap=15)
     with pytest.raises(MeshError, match="volume wall"):
         check(mesh, other)
     cells = mesh.cells.copy()

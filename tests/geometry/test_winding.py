@@ -8,17 +8,19 @@ import math
 import numpy as np
 import pytest
 
-from geometry.actuator import Actuator
 from geometry.bodies.extrude import swept_body, swept_slice
 from geometry.mesh.data import MeshData
 from geometry.mesh.reference import jacobians
 from geometry.mesh.tets import to_tetrahedra
+from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize
-from geometry.winding.embed import EmbeddedFibers, embed, smear
-from geometry.winding.helix import Winding, check_winding
+from geometry.winding.embed import embed
+from geometry.winding.helix import Winding
 from geometry.winding.outline import arc_length, position
+from geometry.winding.segments import EmbeddedFibers
+from geometry.winding.smear import smear
 
-BODY = Actuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
+BODY = HemicircleActuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
 DOUBLE = Winding("double-helix", 3, 0.38)
 SINGLES = [Winding("single-helix-right", 3, 0.38), Winding("single-helix-left", 7, 0.0)]
 
@@ -150,5 +152,3 @@ def test_windings_without_meaning_are_refused() -> None:
             dataclasses.replace(DOUBLE, **bad)
     with pytest.raises(ValueError, match="pattern 'triple'"):
         Winding("triple", 3, 0.38)
-    with pytest.raises(ValueError, match="at most the length"):
-        check_winding(BODY, Winding("double-helix", 41, 0.38))

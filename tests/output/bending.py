@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from fiberbend.states.snapshot import Scenery, Snapshot
-from geometry.actuator import Actuator
 from geometry.bodies.extrude import swept_body
 from geometry.mesh.data import Floats
+from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
-from materials.laws import Material
+from materials.material import Material
 
-BASELINE = Actuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
-SHORT = Actuator(radius=8, length=24, wall=2, floor=2, sheath=1, cap=4)
+BASELINE = HemicircleActuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
+SHORT = HemicircleActuator(radius=8, length=24, wall=2, floor=2, sheath=1, cap=4)
 MATERIALS = {
     "wall": Material("yeoh", {"c1": 0.11, "c2": 0.02}),
     "floor": Material("yeoh", {"c1": 7.9}),
@@ -23,7 +23,7 @@ MATERIALS = {
 
 
 def scenery(
-    actuator: Actuator = SHORT,
+    actuator: HemicircleActuator = SHORT,
     axial: float = 4.0,
     half: bool = True,
     element: str = "hexahedron",

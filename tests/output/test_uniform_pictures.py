@@ -7,18 +7,18 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 from analytic.path import tip
+from fiberbend.case.case import Case
 from fiberbend.drawing.cell import Slices, plot_tension, tension_along
 from fiberbend.drawing.crosscut import Crosscut
 from fiberbend.drawing.section import Sections
 from fiberbend.reader.reader import parse_case
-from fiberbend.run.folder import RunFolder
-from fiberbend.run.uniform_report import draw_states
+from fiberbend.running.folder import RunFolder
+from fiberbend.running.uniform_report import draw_states
 from fiberbend.states.bend import Bend
 from fiberbend.states.recovery import cauchy_stress, recover
 from fiberbend.states.snapshot import Scenery
@@ -26,12 +26,15 @@ from fiberbend.states.stack import repeated, split_alike, swept
 from geometry.bodies.extrude import swept_section
 from geometry.checks import region_volumes
 from geometry.mesh.data import Floats, MeshData
+from geometry.sections.circle import CircleActuator
 from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
-from materials.laws import Material, uniaxial_stress
+from materials.material import Material
+from tests.materials.rubber import uniaxial_stress
 from tests.output.bending import MATERIALS, SHORT
 from tests.output.test_pictures import is_drawn
 from tests.output.uniform import DOUBLE, PITCH, cell, section, state, warp, wave
+from tests.run.conftest import SMALL, small
 
 BOTH = pytest.mark.parametrize("make", [section, cell], ids=["section", "cell"])
 
@@ -203,38 +206,17 @@ def test_turned_half_completes_a_twisted_section() -> None:
 # --- pictures --------------------------------------------------------------------------------
 
 
-def case_of(model: str) -> Any:
+def case_of(model: str) -> Case:
+    smeared = "smeared" if model == "section" else "discrete"
+    winding = SMALL["effects"][1]["winding"] | {"as": smeared}
     return parse_case(
-        {
-            "title": "Short",
-            "actuator": {
-                "section": "hemicircle",
-                "radius": "8 mm",
-                "length": "24 mm",
-                "wall": "2 mm",
-                "floor": "2 mm",
-                "sheath": "1 mm",
-                "cap": "4 mm",
-            },
-            "materials": {
-                "wall": "elastosil-m4601",
-                "floor": "combined-base",
-                "sheath": "ecoflex-0030",
-            },
-            "effects": [
-                {"pressure": {"to": "10 kPa"}},
-                {
-                    "winding": {
-                        "pattern": "double-helix",
-                        "pitch": "3 mm",
-                        "fiber": "kevlar",
-                        "as": "smeared" if model == "section" else "discrete",
-                    }
-                },
-            ],
-            "model": model,
-            "output": {"fields": True, "pictures": True},
-        }
+        small(
+            actuator=SMALL["actuator"] | {"cap": "4 mm"},
+            effects=[{"pressure": {"to": "10 kPa"}}, {"winding": winding}],
+            model=model,
+            mesh={},
+            output={"fields": True, "pictures": True},
+        )
     )
 
 
@@ -293,7 +275,7 @@ def test_floor_bulge_is_read_between_middle_and_edge() -> None:
 
     # the edge of the winding lies at x = a + t = 10
     assert Crosscut(scene).bulge(state(scene, move=sag)) == pytest.approx(0.7)
-    round_one = dataclasses.replace(SHORT, section="circle", floor=None, sheath=None)
+    round_one = CircleActuator(radius=8, length=24, wall=2, cap=4)
     mesh = swept_section(round_one, MeshSize(axial=PITCH))
     tube = Scenery(mesh, MATERIALS, None, smeared=False, title="", uniform=True)
     still = dataclasses.replace(
@@ -342,7 +324,8 @@ def test_tension_is_that_of_the_whole_fiber(half: bool, tmp_path: Path) -> None:
 def test_nothing_is_imported_for_a_run_without_pictures() -> None:
     # pyvista and matplotlib take longer to import than a section takes to solve
     code = (
-        "import sys, fiberbend.runner, fiberbend.report, fiberbend.uniform_report\n"
+        "import sys, fiberbend.running.runner, fiberbend.running.report\n"
+        "import fiberbend.running.uniform_report\n"
         "print([name for name in ('pyvista', 'matplotlib', 'vtkmodules') if name in sys.modules])"
     )
     done = subprocess.run(

@@ -10,8 +10,9 @@ from fiberbend.states.snapshot import Scenery, Snapshot
 from geometry.bodies.extrude import swept_section, swept_slice
 from geometry.mesh.data import Floats
 from geometry.sections.size import MeshSize
-from geometry.winding.embed import embed, smear
+from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
+from geometry.winding.smear import smear
 from tests.output.bending import MATERIALS, SHORT
 
 PITCH = 3.0

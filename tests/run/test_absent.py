@@ -9,6 +9,8 @@ import pytest
 from fem.kinematics.domain import Domain
 from fem.scene import Scene
 from fiberbend.case import convert
+from fiberbend.effects.effect import tip_strips
+from fiberbend.models.choice import meshed
 from fiberbend.models.parts import build
 from fiberbend.reader.reader import as_case
 from geometry.bodies.extrude import swept_body
@@ -38,11 +40,10 @@ CLASSES = {
 def mesh() -> MeshData:
     """A coarse body that has every surface an effect may ask for."""
     case = as_case(small(effects=[{"pressure": {"to": "1 kPa"}}, {"blocked-tip": {}}]))
-    tip = case.effects[1]
     return swept_body(
         convert.dimensions(case.actuator),
         convert.mesh_size(case.mesh, True),
-        convert.strips(tip),  # type: ignore[arg-type]
+        tip_strips(case.effects),
     )
 
 
@@ -50,7 +51,7 @@ def scene(mesh: MeshData, names: list[str], leave_out: str = "") -> Scene:
     """The scene of a case with these effects, without one class of them."""
     materials = DENSE if "gravity" in names else small()["materials"]
     case = as_case(small(effects=[{n: EFFECTS[n]} for n in names], materials=materials, output={}))
-    effects = build(case, mesh, "body").effects
+    effects = build(case, mesh, meshed(case)).effects
     return Scene(Domain(mesh), [e for e in effects if type(e).__name__ != leave_out])
 
 

@@ -12,7 +12,7 @@ PROGRAM = """
 import ufl
 from mpi4py import MPI
 from fem import compat
-from geometry.shapes import box
+from geometry.bodies.solids import box
 mesh = box((1.0, 1.0, 1.0), (1, 1, 1))
 m = compat.create_mesh(MPI.COMM_WORLD, mesh.cell_type, mesh.nodes, mesh.cells)
 x = ufl.SpatialCoordinate(m)

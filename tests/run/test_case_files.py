@@ -11,8 +11,8 @@ import pytest
 
 from fiberbend.cli import main
 from fiberbend.reader.reader import read_case
-from fiberbend.run.folder import read_history
-from fiberbend.run.runner import run_case
+from fiberbend.running.folder import read_history
+from fiberbend.running.runner import run_case
 
 ROOT = Path(__file__).resolve().parents[2]
 HOOPS = ["--set", "effects.1={hoops: {}}"]

@@ -10,14 +10,15 @@ import numpy.typing as npt
 import pytest
 from mpi4py import MPI
 
+from fem.march.hooks import AfterStep
 from fem.march.records import Ramp, State
 from fem.solver.newton import Outcome
 from fiberbend import run
-from fiberbend.models.kinds import make_mesh
+from fiberbend.models.choice import meshed
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import as_case
-from fiberbend.run.assembly import assemble
-from fiberbend.run.folder import read_history
+from fiberbend.running.assembly import assemble
+from fiberbend.running.folder import read_history
 from fiberbend.schema.problems import CaseError
 from tests.conftest import MpiRun
 from tests.run.conftest import small, write_case
@@ -156,14 +157,8 @@ def test_a_march_sees_a_touch_coming(table: RunResult) -> None:
 
 def test_without_obstacles_a_march_is_left_alone() -> None:
     case = as_case(small(effects=[{"pressure": {"to": "60 kPa"}}, WINDING]))
-    seen: list[State] = []
-
-    def keep(state: State, _: Outcome) -> None:
-        seen.append(state)
-
-    built = assemble(case, "body", make_mesh(case, "body"), MPI.COMM_SELF, keep, lambda _: None)
-    assert built.march.on_step is keep
-    assert built.march.predictor.frames is built.reading.frames
+    built = assemble(case, meshed(case).mesh(case), MPI.COMM_SELF)
+    assert built.march.hooks == ()
 
 
 @pytest.mark.parametrize("contact", [GAPS, TABLE], ids=["gaps", "table"])
@@ -183,11 +178,11 @@ def test_touch_and_lift_off(contact: dict[str, Any]) -> None:
         force = body.copies * float(built.scene.force(f"Contact[{name}]")[up].sum())
         met.append((round(state.scalars["pressure"], 9), force, state.w))
 
-    mesh = make_mesh(case, "body")
-    built = assemble(case, "body", mesh, MPI.COMM_SELF, keep, lambda _: None)
+    mesh = meshed(case).mesh(case)
+    built = assemble(case, mesh, MPI.COMM_SELF)
     stops = (0.01, 0.02, 0.03, 0.04)
     built.ramps[:] = [Ramp("pressure", end, stops=stops) for end in (0.06, 0.0)]
-    report = built.march.run(built.ramps)
+    report = built.march.run(built.ramps, [AfterStep(keep)])
     assert report.status == "converged", report.reason
     assert report.cutbacks == 0
     turned = next(i for i, (pressure, _, _) in enumerate(met) if pressure == 0.06)

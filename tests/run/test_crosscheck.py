@@ -29,10 +29,11 @@ from fiberbend.compare.check import (
     crosscheck,
 )
 from fiberbend.compare.others import Straight
+from fiberbend.models.choice import MODELS
 from fiberbend.models.closed_form import analytic_curves
 from fiberbend.models.result import Curve, RunResult
 from fiberbend.reader.reader import parse_case
-from fiberbend.run.runner import run_case
+from fiberbend.running.runner import run_case
 
 ROOT = Path(__file__).resolve().parents[2]
 ANGLES = (0.0, 20.0, 60.0, 90.0, 180.0, 270.0, 360.0)
@@ -41,6 +42,8 @@ SECTION_KPA = np.array([0.0, 45.1, 89.2, 134.3, 181.5])
 SECTION = Curve(1e-3 * SECTION_KPA, np.radians([0, 90, 180, 270, 360]), np.zeros(5))
 CHAMBER = math.pi * 32 * 160
 KAPPA_WINDING = 2 / 3 * 10**3 + math.pi / 2 * 10**2 * 2 + 10 * 2**2
+
+BODY = MODELS["body"]
 
 
 def case_of(name: str = "free_bending_smeared", **sections: Any) -> Case:
@@ -87,7 +90,7 @@ def likely(check: Check, name: str) -> list[str]:
 
 def test_columns_are_the_other_models_at_the_rows_angles() -> None:
     case, rows = case_of(), [*rows_of(), row_at(380.0, 195.0)]
-    check = crosscheck(case, "body", rows, SECTION)
+    check = crosscheck(case, BODY, rows, SECTION)
     beside = check.beside(rows)
     assert list(beside[3])[-4:] == [
         "section_kPa",
@@ -109,7 +112,9 @@ def test_columns_are_the_other_models_at_the_rows_angles() -> None:
 
 def test_a_model_is_not_beside_itself() -> None:
     names = {
-        model: [c.name for c in crosscheck(case_of(), model, rows_of(), SECTION).comparisons]
+        model: [
+            c.name for c in crosscheck(case_of(), MODELS[model], rows_of(), SECTION).comparisons
+        ]
         for model in ("analytic", "section", "cell", "body")
     }
     lines = ["analytic", "analytic_winding", "analytic_paper"]
@@ -122,25 +127,25 @@ def test_greatest_difference_and_where() -> None:
     rows = rows_of()
     rows[4]["pressure_kPa"] *= 1.013
     rows[5]["pressure_kPa"] *= 0.99
-    section = compared(crosscheck(case_of(), "body", rows, SECTION), "section")
+    section = compared(crosscheck(case_of(), BODY, rows, SECTION), "section")
     assert section.percent == pytest.approx(1.3)
     assert (section.at, section.band, section.beyond) == ("180.0°", 2.0, False)
     assert section.line() == "run against section model: +1.3 % at 180.0°, within 2 %"
     # at rest, and close to it, a ratio of round-off says nothing
     rows[0] |= {"pressure_kPa": 1e-9, "angle_deg": 1e-6}
-    assert compared(crosscheck(case_of(), "body", rows, SECTION), "section").at == "180.0°"
+    assert compared(crosscheck(case_of(), BODY, rows, SECTION), "section").at == "180.0°"
 
 
 def test_bands() -> None:
     # docs/accuracy_free.md: ends 1.1 %; independent cell: pitch 3 mm 5.1 %, 1.5 mm 1.8 %
-    assert band(case_of(), "body") == 2.0
-    assert band(case_of(), "cell") == 0.5
-    assert band(discrete(), "body") == 6.0
-    assert band(discrete(), "cell") == 6.0
-    assert 1.8 < band(discrete("1.5 mm", "0.75 mm"), "cell") < 3
-    assert band(discrete(axial="6 mm"), "body") == 2.0
+    assert band(case_of(), BODY) == 2.0
+    assert band(case_of(), MODELS["cell"]) == 0.5
+    assert band(discrete(), BODY) == 6.0
+    assert band(discrete(), MODELS["cell"]) == 6.0
+    assert 1.8 < band(discrete("1.5 mm", "0.75 mm"), MODELS["cell"]) < 3
+    assert band(discrete(axial="6 mm"), BODY) == 2.0
     # Table of the paper's abstract: 10.9 % in pressure
-    assert band(case_of(), "analytic") == 11.0
+    assert band(case_of(), MODELS["analytic"]) == 11.0
 
 
 # --- causes -----------------------------------------------------------------------------------
@@ -148,14 +153,14 @@ def test_bands() -> None:
 
 def test_end_caps_are_seen_by_the_middle_of_the_body() -> None:
     # a short actuator: the ends let it bend 5 % further than its middle
-    check = crosscheck(case_of(), "body", rows_of(middle=0.95), SECTION)
+    check = crosscheck(case_of(), BODY, rows_of(middle=0.95), SECTION)
     section = compared(check, "section")
     assert section.beyond
     assert section.percent == pytest.approx(-5, abs=0.5)
     assert likely(check, "section") == ["end caps"]
     assert "beside its middle half" in section.likely[0].text
     # the middle bends as far as the whole: not the ends
-    check = crosscheck(case_of(), "body", rows_of(factor=0.95), SECTION)
+    check = crosscheck(case_of(), BODY, rows_of(factor=0.95), SECTION)
     assert compared(check, "section").beyond
     assert likely(check, "section") == []
     assert compared(check, "section").entry()["likely"] == ["unexplained"]
@@ -165,50 +170,50 @@ def test_end_caps_are_seen_by_the_middle_of_the_body() -> None:
 def test_discrete_winding_explains_more_pressure_and_not_less() -> None:
     coarse = discrete("6 mm", "3 mm")
     # 3.5 to 5.1 % at 3 mm, times 2 to the power 1.3
-    stiffer = crosscheck(coarse, "cell", rows_of(1.16), SECTION)
+    stiffer = crosscheck(coarse, MODELS["cell"], rows_of(1.16), SECTION)
     assert compared(stiffer, "section").beyond
     assert likely(stiffer, "section") == ["discrete winding"]
-    softer = crosscheck(coarse, "cell", rows_of(0.8), SECTION)
+    softer = crosscheck(coarse, MODELS["cell"], rows_of(0.8), SECTION)
     assert likely(softer, "section") == []
-    smeared = crosscheck(case_of(), "cell", rows_of(1.16), SECTION)
+    smeared = crosscheck(case_of(), MODELS["cell"], rows_of(1.16), SECTION)
     assert likely(smeared, "section") == []
 
 
 def test_agreement_of_an_unresolved_winding_is_no_proof() -> None:
     # docs/accuracy_winding.md: elements of 4 mm give a fifth of what a pitch of 3 mm costs
-    check = crosscheck(discrete(axial="4 mm"), "body", rows_of(), SECTION)
+    check = crosscheck(discrete(axial="4 mm"), BODY, rows_of(), SECTION)
     assert not compared(check, "section").beyond
     (remark,) = check.remarks
     assert "elements of 4 mm do not resolve a pitch of 3 mm" in remark
     assert "about 4.1 %" in remark
     assert remark in check.lines()
     for case, model in ((discrete(), "body"), (case_of(), "body"), (discrete(), "cell")):
-        assert crosscheck(case, model, rows_of(), SECTION).remarks == ()
+        assert crosscheck(case, MODELS[model], rows_of(), SECTION).remarks == ()
 
 
 def test_acting_area_has_the_two_areas_and_the_one_between() -> None:
-    check = crosscheck(case_of(), "section", rows_of())
+    check = crosscheck(case_of(), MODELS["section"], rows_of())
     analytic = compared(check, "analytic")
     assert analytic.beyond
     assert analytic.percent < -20
     assert likely(check, "analytic") == ["acting area"]
     assert "between 542 mm³ of the chamber and 1021 mm³" in analytic.likely[0].text
     # the run needs more pressure than the closed form: the area cannot be the reason
-    above = crosscheck(case_of(), "section", rows_of(1.6))
+    above = crosscheck(case_of(), MODELS["section"], rows_of(1.6))
     assert compared(above, "analytic").percent > 11
     assert likely(above, "analytic") == ["floor stiffness"]
     # so much less pressure that no area inside the winding explains it
-    below = crosscheck(case_of(), "section", rows_of(0.3))
+    below = crosscheck(case_of(), MODELS["section"], rows_of(0.3))
     assert likely(below, "analytic") == []
 
 
 def test_effective_modulus_is_named_for_the_papers_line_only() -> None:
-    check = crosscheck(case_of(), "section", rows_of())
+    check = crosscheck(case_of(), MODELS["section"], rows_of())
     assert likely(check, "analytic_paper") == ["effective modulus", "acting area"]
     # rubber as stiff as the paper's μ̄, no sheath: the same line, the same reasons
     stiff = {"wall": {"law": "neo-hooke", "mu": "0.314 MPa"}, "sheath": None}
     same = case_of(materials=stiff, actuator={"sheath": None})
-    check = crosscheck(same, "section", rows_of())
+    check = crosscheck(same, MODELS["section"], rows_of())
     assert likely(check, "analytic_paper") == likely(check, "analytic") == ["acting area"]
 
 
@@ -218,7 +223,7 @@ def test_floor_bulging_is_seen_by_the_chambers_volume(excess: float, named: bool
     for row in rows:
         outline = CHAMBER + KAPPA_WINDING * math.radians(row["angle_deg"])
         row["chamber_mm3"] = (1 + excess) * outline
-    check = crosscheck(case_of(), "section", rows)
+    check = crosscheck(case_of(), MODELS["section"], rows)
     assert ("floor bulging" in likely(check, "analytic")) == named
 
 
@@ -226,7 +231,7 @@ def test_closed_form_beside_the_section_model_has_the_reverse_causes() -> None:
     case = case_of()
     closed = analytic_curves(case)["zero-fit"]
     rows = [row_at(a, 1e3 * float(closed.pressure(math.radians(a)))) for a in ANGLES]
-    check = crosscheck(case, "analytic", rows, SECTION)
+    check = crosscheck(case, MODELS["analytic"], rows, SECTION)
     section = compared(check, "section")
     # 60.0 against 45.1 kPa at 90°, more below
     assert 30 < section.percent < 45
@@ -240,7 +245,7 @@ def test_gravity_and_cases_without_pressure_are_not_judged() -> None:
         effects=[{"gravity": {"direction": "-y"}}, {"pressure": {"to": "200 kPa"}}],
         materials={"floor": {"name": "combined-base", "density": "1.2 g/cm^3"}},
     )
-    check = crosscheck(heavy, "body", rows_of(1.5), SECTION)
+    check = crosscheck(heavy, BODY, rows_of(1.5), SECTION)
     assert compared(check, "section").percent == pytest.approx(50)
     assert not any(c.beyond for c in check.comparisons)
     assert "gravity acts in this run alone" in check.remarks[0]
@@ -249,18 +254,18 @@ def test_gravity_and_cases_without_pressure_are_not_judged() -> None:
         materials={"floor": {"name": "combined-base", "density": "1.2 g/cm^3"}},
         output={"at_angles": []},
     )
-    assert crosscheck(alone, "body", rows_of()).comparisons == ()
+    assert crosscheck(alone, BODY, rows_of()).comparisons == ()
 
 
 def test_missing_models_are_said() -> None:
     free = case_of(effects=[{"pressure": {"to": "200 kPa"}}])
-    check = crosscheck(free, "body", rows_of(), no_section="it does not converge")
+    check = crosscheck(free, BODY, rows_of(), no_section="it does not converge")
     assert check.comparisons == ()
     assert check.entry()["missing"]["section"] == "it does not converge"
     assert "no winding" in check.entry()["missing"]["analytic"]
     assert any("no section model to compare with" in line for line in check.lines())
     box = {"section": "rectangle", "radius": None, "width": "16 mm", "height": "8 mm"}
-    check = crosscheck(case_of(actuator=box), "body", rows_of(), SECTION)
+    check = crosscheck(case_of(actuator=box), BODY, rows_of(), SECTION)
     assert [c.name for c in check.comparisons] == ["section"]
     assert "for a hemicircle, not for a rectangle" in check.entry()["missing"]["analytic"]
 
@@ -277,7 +282,7 @@ def test_force_of_a_blocked_tip() -> None:
     # independent section model: 94 N mm at 100 kPa held straight
     straight = Straight(np.array([0, 0.1, 0.2]), np.array([0, 94.0, 188.0]))
     # docs/accuracy_blocked.md: 3.6 N, and z = L turns by 8.9°
-    check = crosscheck(case_of("blocked_tip"), "body", blocked_rows(3.6, 8.9), straight=straight)
+    check = crosscheck(case_of("blocked_tip"), BODY, blocked_rows(3.6, 8.9), straight=straight)
     last = check.columns[-1]
     assert last["section_tip_force_N"] == pytest.approx(94 / 14)
     assert last["analytic_tip_force_N"] == pytest.approx(54.24 / 14, abs=5e-4)
@@ -286,7 +291,7 @@ def test_force_of_a_blocked_tip() -> None:
     assert likely(check, "section") == ["guided tip", "soft sheath"]
     assert not compared(check, "analytic").beyond
     # held as the section is: nothing to explain
-    same = crosscheck(case_of("blocked_tip"), "body", blocked_rows(94 / 14, 0.0), straight=straight)
+    same = crosscheck(case_of("blocked_tip"), BODY, blocked_rows(94 / 14, 0.0), straight=straight)
     assert not compared(same, "section").beyond
     assert likely(same, "analytic") == ["acting area"]
 
@@ -294,7 +299,7 @@ def test_force_of_a_blocked_tip() -> None:
 def test_soft_sheath_is_named_only_where_it_is_soft() -> None:
     straight = Straight(np.array([0, 0.1]), np.array([0, 94.0]))
     firm = case_of("blocked_tip", materials={"sheath": "elastosil-m4601"})
-    check = crosscheck(firm, "body", blocked_rows(3.5, 0.5), straight=straight)
+    check = crosscheck(firm, BODY, blocked_rows(3.5, 0.5), straight=straight)
     assert compared(check, "section").beyond
     assert likely(check, "section") == []
 
@@ -307,7 +312,7 @@ def test_measured_angles_and_their_modulus() -> None:
     angles = np.radians(np.arange(20, 361, 20))
     exact = Hemicircle(8, 2, 2, 160, stress=effective(0.264)).pressure(angles)
     measured = Measured("angle_deg", exact + random.normal(0, 0.002, 18), angles, "trial.csv")
-    check = crosscheck(case, "body", rows_of(), SECTION, measured)
+    check = crosscheck(case, BODY, rows_of(), SECTION, measured)
     fit = check.entry()["calibration"]
     # synthetic data with noise: inside three standard errors, and the error is of the right size
     assert abs(fit["modulus_MPa"] - 0.264) < 3 * fit["standard_error_MPa"]
@@ -322,7 +327,7 @@ def test_measured_angles_and_their_modulus() -> None:
 def test_measured_points_on_the_run_and_beyond_it() -> None:
     angles = np.radians([90.0, 180.0, 400.0])
     measured = Measured("angle_deg", np.array([45.1, 89.2, 200.0]) / 1e3, angles, "trial.csv")
-    check = crosscheck(case_of(), "body", rows_of(), SECTION, measured)
+    check = crosscheck(case_of(), BODY, rows_of(), SECTION, measured)
     assert compared(check, "measured").percent == pytest.approx(0, abs=1e-9)
     assert "1 of 3 measured points lie beyond the run" in check.remarks
 
@@ -330,7 +335,7 @@ def test_measured_points_on_the_run_and_beyond_it() -> None:
 def test_data_that_give_no_modulus_do_not_stop_the_run() -> None:
     angles = np.radians([90.0, 180.0])
     measured = Measured("angle_deg", np.array([45.1, 89.2]) / 1e3, angles, "trial.csv")
-    check = crosscheck(case_of(), "body", rows_of(), SECTION, measured)
+    check = crosscheck(case_of(), BODY, rows_of(), SECTION, measured)
     assert check.entry()["calibration"] == {
         "reason": "too few data: 2 points with an angle, 3 needed"
     }
@@ -339,7 +344,7 @@ def test_data_that_give_no_modulus_do_not_stop_the_run() -> None:
 
 def test_measured_forces() -> None:
     measured = Measured("tip_force_N", np.array([0.05, 0.1]), np.array([2.0, 4.0]), "force.csv")
-    check = crosscheck(case_of("blocked_tip"), "body", blocked_rows(3.6, 8.9), None, measured)
+    check = crosscheck(case_of("blocked_tip"), BODY, blocked_rows(3.6, 8.9), None, measured)
     assert compared(check, "measured").percent == pytest.approx(-10)
     assert not compared(check, "measured").beyond
     assert check.calibration is None
@@ -351,7 +356,7 @@ def test_measured_forces() -> None:
 def test_entry_is_plain_json() -> None:
     rows = [*rows_of(), row_at(400.0, 200.0)]
     measured = Measured("angle_deg", np.array([0.05]), np.array([9.0]), "trial.csv")
-    check = crosscheck(case_of(), "body", rows, SECTION, measured)
+    check = crosscheck(case_of(), BODY, rows, SECTION, measured)
     json.dumps(check.entry(), allow_nan=False)
     json.dumps(check.columns, allow_nan=False)
 
@@ -367,19 +372,19 @@ def test_section_is_asked_for_what_the_run_covers() -> None:
         rows = [row_at(a, p, chamber_mm3=1.0) for a, p in ((0, 0), (180, 90), (360, 180))]
         return RunResult("converged", "", rows, {}, None)
 
-    check = check_run(discrete(), "body", rows_of(), solve)
+    check = check_run(discrete(), BODY, rows_of(), solve)
     assert check.columns[-1]["section_kPa"] == pytest.approx(180)
     (section,) = asked
     assert section.model == "section"
     assert section.resolved()["effects"][0] == {"pressure": {"angle": "360 deg"}}
     # a middle that bends further than the whole is covered too: it shows what the ends do
     further = [*rows_of(), row_at(360.0, 181.5, uniform_angle_deg=366.0)]
-    check_run(discrete(), "body", further, solve)
+    check_run(discrete(), BODY, further, solve)
     assert asked.pop().resolved()["effects"][0] == {"pressure": {"angle": "366 deg"}}
     # a run of the section model itself, and one that never moved, ask for nothing
-    check_run(case_of(), "section", rows_of(), solve)
-    check_run(case_of(), "body", rows_of()[:1], solve)
-    check_run(case_of(), "body", rows_of())
+    check_run(case_of(), MODELS["section"], rows_of(), solve)
+    check_run(case_of(), BODY, rows_of()[:1], solve)
+    check_run(case_of(), BODY, rows_of())
     assert len(asked) == 1
 
 
@@ -388,7 +393,7 @@ def test_section_model_between_its_own_steps() -> None:
         return run_case(case, None)
 
     rows = [row_at(a, 1.0) for a in (0.0, 90.0, 180.0, 270.0, 360.0)]
-    check = check_run(case_of(), "body", rows, solve)
+    check = check_run(case_of(), BODY, rows, solve)
     found = [row["section_kPa"] for row in check.columns[1:]]
     # independent section model, given to 0.1 kPa
     assert found == pytest.approx([45.1, 89.2, 134.3, 181.5], rel=2e-3)

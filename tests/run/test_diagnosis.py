@@ -9,7 +9,7 @@ import pytest
 from fem.march.records import Critical, Report
 from fiberbend import run
 from fiberbend.models.result import RunResult
-from fiberbend.run import messages
+from fiberbend.running import messages
 from tests.run.conftest import small
 
 QUIET = {"pictures": False, "fields": False}

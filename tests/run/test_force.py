@@ -10,10 +10,10 @@ from mpi4py import MPI
 
 from fem.results.measures import UniformAngle
 from fiberbend import run
-from fiberbend.models.kinds import make_mesh
+from fiberbend.models.choice import meshed
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import as_case
-from fiberbend.run.assembly import assemble
+from fiberbend.running.assembly import assemble
 from tests.run.conftest import small
 
 WINDING = {
@@ -104,8 +104,8 @@ def test_the_body_between_carries_the_moment_of_a_section() -> None:
     case["actuator"] |= {"length": "80 mm", "cap": "15 mm"}
     case |= {"mesh": {"axial": "8 mm"}, "output": {"fields": False, "pictures": False}}
     checked = as_case(case)
-    mesh = make_mesh(checked, "body")
-    built = assemble(checked, "body", mesh, MPI.COMM_SELF, lambda _s, _o: None, lambda _: None)
+    mesh = meshed(checked).mesh(checked)
+    built = assemble(checked, mesh, MPI.COMM_SELF)
     report = built.march.run(built.ramps)
     assert (report.status, report.cutbacks) == ("converged", 0)
     scene, body = built.scene, built.scene.body

@@ -7,7 +7,7 @@ import pytest
 
 from bench.hard_cases import find
 from fiberbend import run
-from fiberbend.run.history import departures, work_of
+from fiberbend.running.history import departures, work_of
 
 VOLUME = np.linspace(1.0, 4.0, 13)
 # P = √V − 1 stores 2/3 (V^1.5 − 1) − (V − 1)

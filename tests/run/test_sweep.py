@@ -49,7 +49,7 @@ NAMES = [f"radius-{r}mm_wall-{w}mm" for r in (7, 8) for w in (1.5, 2, 2.5)]
 LAST = NAMES[-1]
 
 SOLVER = '''
-"""Stands for fiberbend.run.runner. FAKE holds what happens at which point, "name=what …"."""
+"""Stands for fiberbend.running.runner. FAKE holds what happens at which point, "name=what …"."""
 import os, signal, sys, time, types
 from pathlib import Path
 
@@ -57,7 +57,7 @@ ACTS = dict(item.split("=", 1) for item in os.environ["FAKE"].split() if "=" in 
 
 def run_case(case, out, overwrite=False, progress=None, resume=False):
     from fiberbend.models.result import RunResult
-    from fiberbend.run.folder import RunFolder
+    from fiberbend.running.folder import RunFolder
     folder = RunFolder.resume(out, case) if resume else RunFolder.create(out, case, overwrite)
     with open(os.environ["FAKE_LOG"], "a") as log:
         mpi = "mpi4py.MPI" in sys.modules
@@ -82,9 +82,9 @@ def run_case(case, out, overwrite=False, progress=None, resume=False):
     folder.write_run(**run)
     return RunResult(status, reason, rows, run, out)
 
-module = types.ModuleType("fiberbend.run.runner")
+module = types.ModuleType("fiberbend.running.runner")
 module.run_case = run_case
-sys.modules["fiberbend.run.runner"] = module
+sys.modules["fiberbend.running.runner"] = module
 '''
 
 
@@ -213,12 +213,12 @@ def test_the_first_point_is_alone(lab: Lab) -> None:
 def test_workers_that_cannot_begin_end_the_sweep(lab: Lab) -> None:
     """The points are not run, nothing hangs, and what is wrong is told."""
     (lab.site / "sitecustomize.py").write_text(
-        "import sys; sys.modules['fiberbend.run.runner'] = None", encoding="utf-8"
+        "import sys; sys.modules['fiberbend.running.runner'] = None", encoding="utf-8"
     )
     code, out, err = lab.run("-j", "2")
     assert code == 2
     assert "6 points: 6 not run" in out
-    assert "fiberbend.run.runner" in err
+    assert "fiberbend.running.runner" in err
 
 
 def test_killed_altogether_it_resumes_with_what_was_not_finished(lab: Lab) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from fem.march.guide import Guide
 from fiberbend import run
-from fiberbend.run import runner
+from fiberbend.running import runner
 from tests.run.conftest import small
 
 LONG: dict[str, Any] = {

@@ -8,7 +8,6 @@ import math
 import numpy as np
 from mpi4py import MPI
 
-from analytic.exact import Tube, wound_tube
 from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.elastic import Elastic
 from fem.effects.incompressible import Incompressible
@@ -17,9 +16,10 @@ from fem.effects.winding import Winding
 from fem.kinematics.domain import Domain
 from fem.scene import Scene
 from fem.solver.newton import Newton, Settings
+from tests.exact.solutions import Tube, wound_tube
 from tests.verify.hoops import double_helix, half_tube
 from tests.verify.ladder import YEOH, balanced_pressure, end_load, start_from
-from tests.verify.problems import ORIGIN, SLOPE
+from tests.verify.problems import LAW, ORIGIN
 
 INNER, OUTER, STRETCH = 8.0, 10.0, 1.1
 STIFFNESS = 881.0
@@ -34,7 +34,7 @@ TEXT = (
     "pressure is that of hoops, the limit of zero pitch. Rubber bulges between "
     "the fibers, so the error is of the first order in the pitch."
 )
-EXACT = wound_tube(SLOPE, INNER, OUTER, STRETCH)
+EXACT = wound_tube(LAW, INNER, OUTER, STRETCH)
 FINENESS = (2, 3, 4, 6)
 
 
@@ -59,7 +59,7 @@ def _start(pitch: float) -> Tube:
     angle = math.atan(pitch / (2 * math.pi * OUTER))
     around = math.sqrt(1 - (STRETCH * math.sin(angle)) ** 2) / math.cos(angle)
     inner = math.sqrt((OUTER * around) ** 2 - (OUTER**2 - INNER**2) / STRETCH)
-    return Tube(SLOPE, INNER, OUTER, inner, STRETCH, EXACT.outside)
+    return Tube(LAW, INNER, OUTER, inner, STRETCH, EXACT.outside)
 
 
 def solve(k: int) -> Pitch:

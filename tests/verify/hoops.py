@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from geometry.bodies.solids import prism
 from geometry.mesh.data import (
     FACET_VERTICES,
     Floats,
@@ -22,7 +21,8 @@ from geometry.mesh.reference import (
     jacobians,
 )
 from geometry.sections.blocks import Layout
-from geometry.winding.embed import EmbeddedFibers
+from geometry.winding.segments import EmbeddedFibers
+from tests.exact.solids import prism
 
 
 def half_tube(

@@ -134,8 +134,7 @@ def start_from(scene: Scene, exact: Exact) -> None:
     p.interpolate(lambda X: exact.multiplier(np.ascontiguousarray(X.T)))
     body.w.x.array[np.asarray(parent)] = p.x.array
     scene.set(scene.w.copy())
-    for discrete in scene.discrete.values():
-        discrete.predict(None)
+    scene.predict(None)
 
 
 def errors(scene: Scene, exact: Exact) -> tuple[float, float]:

@@ -7,7 +7,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from analytic.exact import Flexure, Torsion, Tube, closed_tube, wound_tube, yeoh_slope
 from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.effect import Effect
 from fem.effects.supports import Symmetry
@@ -15,8 +14,10 @@ from fem.effects.winding import SmearedWinding
 from fem.kinematics.domain import Domain
 from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome
-from geometry.bodies.solids import box, cylinder, tube_sector
 from geometry.mesh.data import MeshData
+from materials.material import Material
+from tests.exact.solids import box, cylinder, tube_sector
+from tests.exact.solutions import Flexure, Torsion, Tube, closed_tube, wound_tube
 from tests.verify.hoops import hoops
 from tests.verify.ladder import (
     YEOH,
@@ -27,7 +28,7 @@ from tests.verify.ladder import (
     volume_at_rest,
 )
 
-SLOPE = yeoh_slope(YEOH["c1"], YEOH["c2"])
+LAW = Material("yeoh", YEOH).principal
 ORIGIN = np.zeros(3)
 HOOPS = 1e6
 """EA of hoops that all but cannot stretch, N; they move p by 2e-6."""
@@ -43,7 +44,7 @@ class TubeLadder(Ladder):
     )
     levels: ClassVar = {"hexahedron": (1, 2, 4), "tetrahedron": (1, 2, 4)}
     reference: ClassVar = {"p [MPa]": (0.02710791, 3e-6)}
-    exact = Tube(SLOPE, 8.0, 10.0, 10.0)
+    exact = Tube(LAW, 8.0, 10.0, 10.0)
     length = 2.0
 
     def mesh(self, n: int) -> MeshData:
@@ -81,7 +82,7 @@ class ClosedTubeLadder(TubeLadder):
         "force, here over the thrust p π a², must vanish."
     )
     reference: ClassVar = {"p [MPa]": (0.01347609, 2e-6), "1 + force / thrust": (1.0, 1e-6)}
-    exact = closed_tube(SLOPE, 8.0, 10.0, 8.8)
+    exact = closed_tube(LAW, 8.0, 10.0, 8.8)
 
     def find(self, scene: Scene, newton: Newton) -> tuple[Outcome, dict[str, float]]:
         """Pressure and what is left of the axial force."""
@@ -100,7 +101,7 @@ class WoundTubeLadder(TubeLadder):
         "length, on the outer surface; the pressure is found at which the axial force vanishes."
     )
     reference: ClassVar = {"p [MPa]": (0.12667995, 5e-6)}
-    exact = wound_tube(SLOPE, 8.0, 10.0, 1.5, HOOPS)
+    exact = wound_tube(LAW, 8.0, 10.0, 1.5, HOOPS)
 
     def effects(self, domain: Domain) -> list[Effect]:
         """Hoops in addition."""
@@ -127,7 +128,7 @@ class FlexureLadder(Ladder):
     )
     levels: ClassVar = {"hexahedron": (2, 4, 8), "tetrahedron": (2, 4, 8)}
     reference: ClassVar = {"M [N]": (0.05847868, 2e-4)}
-    exact = Flexure(SLOPE, 2.0, 10.0)
+    exact = Flexure(LAW, 2.0, 10.0)
     width = 1.0
 
     def mesh(self, n: int) -> MeshData:
@@ -159,7 +160,7 @@ class TorsionLadder(Ladder):
     )
     levels: ClassVar = {"hexahedron": (1, 2, 4), "tetrahedron": (1, 2, 4)}
     reference: ClassVar = {"M [N mm]": (183.259571, 1e-4), "N [N]": (-4.581489, 4e-3)}
-    exact = Torsion(SLOPE, 10.0, 0.05)
+    exact = Torsion(LAW, 10.0, 0.05)
 
     def mesh(self, n: int) -> MeshData:
         """2 n elements along the radius, n along the length."""

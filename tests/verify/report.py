@@ -23,8 +23,8 @@ LIMITS_TEXT = (
 HEAD = """# Verification
 
 Exact solutions of incompressible elasticity against the finite elements. `make verify` solves all
-of them, checks the rates and writes this page; the solutions are in `analytic/exact.py`, whose own
-tests differentiate the fields and find them in equilibrium.
+of them, checks the rates and writes this page; the solutions are in `tests/exact/solutions.py`,
+whose own tests differentiate the fields and find them in equilibrium.
 
 The rubber is Yeoh's with C1 = 0.11 and C2 = 0.02 MPa; mm, N, MPa. Errors are relative, in the L2
 norm over the body at rest; h is halved from row to row unless a pitch is given. Quadratic

@@ -21,12 +21,13 @@ from fem.kinematics.uniform import (
     TWIST,
     Section,
 )
+from fem.march.hooks import AfterStep
 from fem.march.march import March
 from fem.march.records import Ramp, Rules, State
 from fem.scene import Scene
 from fem.solver.newton import Newton, Settings
-from geometry.actuator import Actuator
 from geometry.bodies.extrude import swept_section
+from geometry.sections.shape import ShapedActuator
 from geometry.sections.size import MeshSize
 
 Floats = npt.NDArray[np.float64]
@@ -73,7 +74,7 @@ class Held(Effect):
         return self.values
 
 
-def domain(actuator: Actuator, refinement: int) -> Domain:
+def domain(actuator: ShapedActuator, refinement: int) -> Domain:
     """Half a section."""
     return Domain(swept_section(actuator, MeshSize(section=refinement, half=True)), MPI.COMM_SELF)
 
@@ -84,7 +85,7 @@ def rubber(laws: dict[str, Law], bulk: float | None = None) -> list[Effect]:
 
 
 def section(
-    where: Domain, actuator: Actuator, effects: Sequence[Effect], twisted: bool = False
+    where: Domain, actuator: ShapedActuator, effects: Sequence[Effect], twisted: bool = False
 ) -> Scene:
     """A scene of uniform bending on half a section, with its mirror plane or axis."""
     support: Effect = TwofoldAxis() if twisted else Symmetry()
@@ -105,11 +106,9 @@ def march(scene: Scene, ramp: Ramp, followed: str = STRETCH, turn: float = 0.05)
     runner = March(
         scene,
         Newton(scene, MPI.COMM_SELF, Settings()),
-        None,
-        Value(scene, followed),
         Rules(turn=turn, first_turn=turn),
-        lambda state, _: states.append(state),
-        lambda _: None,
+        control=Value(scene, followed),
+        hooks=[AfterStep(lambda state, _: states.append(state))],
     )
     report = runner.run([ramp])
     assert report.status == "converged", report.reason

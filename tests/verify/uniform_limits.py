@@ -9,7 +9,6 @@ import math
 import numpy as np
 from mpi4py import MPI
 
-from analytic.exact import Torsion, closed_tube, yeoh_slope
 from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.supports import HeldStraight
 from fem.effects.winding import SmearedWinding
@@ -17,9 +16,12 @@ from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
 from fem.march.records import Ramp
 from fem.scene import Scene
 from fem.solver.newton import Newton, Settings
-from geometry.actuator import Actuator
-from geometry.winding.embed import smear
+from geometry.sections.circle import CircleActuator
+from geometry.sections.hemicircle import HemicircleActuator
 from geometry.winding.helix import PATTERNS, Winding
+from geometry.winding.smear import smear
+from materials.material import Material
+from tests.exact.solutions import Torsion, closed_tube
 from tests.verify.helix_tube import HelixTube
 from tests.verify.ladder import YEOH
 from tests.verify.uniform import (
@@ -34,15 +36,15 @@ from tests.verify.uniform import (
     section,
 )
 
-BASELINE = Actuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
+BASELINE = HemicircleActuator(radius=8, length=160, wall=2, floor=2, sheath=1, cap=15)
 LAWS: dict[str, Law] = {"wall": YEOH, "floor": {"c1": 7.9}, "sheath": {"c1": 0.012662}}
 """The paper's materials, for the baseline."""
-BARE = Actuator(radius=8, length=160, wall=2, floor=2, sheath=None, cap=15)
+BARE = HemicircleActuator(radius=8, length=160, wall=2, floor=2, cap=15)
 SOFT: dict[str, Law] = {name: {"c1": 0.11} for name in ("wall", "floor")}
 """One material all over, for the bare section."""
-TUBE = Actuator(section="circle", radius=8, length=160, wall=2, floor=None, sheath=None, cap=15)
+TUBE = CircleActuator(radius=8, length=160, wall=2, cap=15)
 INNER, OUTER = 8.0, 10.0
-SLOPE = yeoh_slope(YEOH["c1"], YEOH["c2"])
+LAW = Material("yeoh", YEOH).principal
 EA = 881.0
 """Of a fiber, N: Kevlar of half the radius of 0.38 mm diameter."""
 FINE_PITCH = 0.5
@@ -166,7 +168,7 @@ def wound_tube(n: int) -> list[Check]:
 
 def free_tube(n: int) -> list[Check]:
     """The tube without winding, its ends closed and free, at a/A = 1.1."""
-    exact = closed_tube(SLOPE, INNER, OUTER, 1.1 * INNER)
+    exact = closed_tube(LAW, INNER, OUTER, 1.1 * INNER)
     scene = section(
         domain(TUBE, n), TUBE, [*rubber({"wall": YEOH}), ChamberPressure(), HeldStraight()]
     )
@@ -217,7 +219,7 @@ def torsion(n: int) -> list[Check]:
     All three rates are held at those of the pin's helix; what holds them is M by ψ and N by λz.
     """
     psi, radius = 0.05, OUTER
-    whole, core = Torsion(SLOPE, OUTER, psi), Torsion(SLOPE, INNER, psi)
+    whole, core = Torsion(LAW, OUTER, psi), Torsion(LAW, INNER, psi)
     pressure = -float(whole.radial_stress(np.array(INNER)))
     points, weights = np.polynomial.legendre.leggauss(20)
     R = (OUTER + INNER) / 2 + (OUTER - INNER) / 2 * points

@@ -1,0 +1,27 @@
+"""Where a march stands."""
+
+from __future__ import annotations
+
+import dataclasses
+
+from fem.march.records import Report, State
+
+
+@dataclasses.dataclass
+class Position:
+    """All that a march needs to go on from here; saved and loaded as one thing.
+
+    Attributes:
+        states: the last converged states, oldest first, from which the next one is extrapolated.
+        increment: of the driven quantity, to try next; None at the start of a ramp.
+        ramp: number of the ramp under way.
+        path_following: the ramp under way has turned from the value of its scalar to the
+            conjugate (volume control), which grows also where the value falls.
+        report: what happened so far.
+    """
+
+    states: list[State]
+    increment: float | None = None
+    ramp: int = 0
+    path_following: bool = False
+    report: Report = dataclasses.field(default_factory=Report)

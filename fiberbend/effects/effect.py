@@ -1,0 +1,299 @@
+"""What every effect of a case answers for itself. An answer that it does not give refuses."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from fiberbend.schema.problems import Problem
+from fiberbend.schema.quantities import Model
+
+if TYPE_CHECKING:
+    from fem.effects.effect import Effect as Term
+    from fem.march.records import Ramp, Rules
+    from fem.solver.newton import Settings
+    from geometry.actuator import Actuator
+    from geometry.mesh.data import Floats, MeshData
+    from geometry.sections.size import Strips
+    from geometry.winding.segments import EmbeddedFibers
+    from materials.material import Material
+
+ARC = "arc"
+"""A model bends uniformly all along, so that it can be kept straight all along."""
+SPACE = "space"
+"""A model is a whole body in space, with everything that can act on one."""
+ENDS = "ends"
+"""A model knows what a support of the tip does."""
+STRIPS = "strips"
+"""Roof and post are surfaces of the model, sheath and cap under them yield."""
+VOLUME = "volume"
+"""A model can be driven by the volume of its chamber."""
+TWIST = "twist"
+"""A model can twist."""
+THREAD = "thread"
+"""A winding has its pitch and its thread stretches."""
+TURNS = "turns"
+"""Every turn of a winding lies where it is wound."""
+HOOPS = "hoops"
+"""A circumference can be held rigidly."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Inflation:
+    """How the chamber is loaded: one of the three is given.
+
+    Attributes:
+        to: pressure at the end, MPa.
+        volume: chamber volume at the end, mm³.
+        angle: bending angle at the end, rad.
+    """
+
+    to: float | None = None
+    volume: float | None = None
+    angle: float | None = None
+
+
+@dataclasses.dataclass(frozen=True)
+class Turns:
+    """Thread wound around the body.
+
+    Attributes:
+        pitch: length along the axis of one turn, mm.
+        discrete: every turn by itself, not spread over its surface.
+        twists: the pattern has a hand, so that the body may twist.
+        stiffness: axial stiffness EA of the thread, N.
+    """
+
+    pitch: float
+    discrete: bool
+    twists: bool
+    stiffness: float
+
+
+@dataclasses.dataclass(frozen=True)
+class Draft:
+    """What is valid of a case that is being checked.
+
+    Attributes:
+        actuator: its dimensions, where they go together, else None.
+        length: of the chamber, mm, where it is valid, else None.
+        effects: by their paths.
+    """
+
+    actuator: Actuator | None
+    length: float | None
+    effects: Mapping[str, Effect]
+
+
+@dataclasses.dataclass(frozen=True)
+class Site:
+    """The actuator of a case as its effects see it.
+
+    Attributes:
+        actuator: dimensions.
+        materials: of each of its parts.
+        straight: an effect keeps the actuator from bending.
+    """
+
+    actuator: Actuator
+    materials: Mapping[str, Material]
+    straight: bool
+
+
+@dataclasses.dataclass(frozen=True)
+class Requests:
+    """What a case asks of a load's way to its end.
+
+    Attributes:
+        first: first step, MPa, or None.
+        largest: greatest step, MPa, or None.
+        at_pressures: pressures to be hit, MPa.
+        at_angles: bending angles to be hit, rad.
+        stop_at_angle: where the load ends early, rad, or None.
+    """
+
+    first: float | None
+    largest: float | None
+    at_pressures: tuple[float, ...]
+    at_angles: tuple[float, ...]
+    stop_at_angle: float | None
+
+
+@dataclasses.dataclass(frozen=True)
+class Built:
+    """An effect as the finite-element code takes it.
+
+    Attributes:
+        terms: summands of the potential, constraints.
+        ramps: loads of the whole actuator, in order.
+        fibers: thread on the mesh, if the effect has any.
+        smeared: that thread is spread over its surface.
+    """
+
+    terms: tuple[Term, ...]
+    ramps: tuple[Ramp, ...] = ()
+    fibers: EmbeddedFibers | None = None
+    smeared: bool = False
+
+
+class Effect(Model):
+    """One effect of a case: its settings, and all that the program must know of it.
+
+    A phase of the program asks these questions of every effect and knows none by name. Whoever
+    adds an effect answers those that concern it; the answers given here are for an effect of which
+    nothing is known: only a body in space can have it, without symmetry, without a cheaper model
+    beside it.
+    """
+
+    name: ClassVar[str]
+    """The key under which a case lists it."""
+    load: ClassVar[bool] = False
+    """True where the march has something to ramp."""
+    weighs: ClassVar[bool] = False
+    """True where it needs the density of every material."""
+
+    # --- which model holds it ------------------------------------------------------------------
+
+    def needs(self) -> dict[str, str]:
+        """What a model must offer to hold this effect, and why one that does not cannot."""
+        return {SPACE: f"only a body in space is known to hold {self.name}"}
+
+    def wants(self) -> dict[str, str]:
+        """What a model must offer to hold it in full, and what one that does not leaves out."""
+        return {}
+
+    def mirror_breaker(self) -> str:
+        """Why x = 0 is no mirror plane of it; empty where it is one."""
+        return f"{self.name} is not known to be mirror-symmetric"
+
+    # --- its settings --------------------------------------------------------------------------
+
+    def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
+        """What is wrong with it, other parts of the case known.
+
+        Args:
+            path: of this effect.
+            draft: what else of the case is valid.
+        """
+        yield from ()
+
+    def completed(self, offers: frozenset[str] | None) -> Self:
+        """The effect with its defaults.
+
+        Args:
+            offers: what the model of the case offers; None where the model is still to be chosen.
+        """
+        return self
+
+    # --- what it is to the rest of the program ---------------------------------------------------
+
+    def inflation(self) -> Inflation | None:
+        """How it loads the chamber; None where it does not."""
+        return None
+
+    def turns(self) -> Turns | None:
+        """The thread that it winds around the body; None where it winds none."""
+        return None
+
+    def holds_circumference(self) -> bool:
+        """Whether it keeps the circumference of the section, as the closed form expects."""
+        return False
+
+    def assumed(self) -> Iterator[str]:
+        """What the closed form takes for granted of it, one sentence each."""
+        yield from ()
+
+    def keeps_straight(self) -> bool:
+        """Whether it keeps the actuator from bending: the force is asked for, not the angle."""
+        return False
+
+    def strips(self) -> Strips | None:
+        """Strips of the surface that a mesh must show for it."""
+        return None
+
+    def held_scalars(self) -> tuple[str, ...]:
+        """Global unknowns of uniform bending that it holds."""
+        return ()
+
+    def uncertainties(self, straight: bool) -> Iterator[str]:
+        """What it adds to the error of a body, a line with its source each.
+
+        Args:
+            straight: some effect keeps the actuator from bending.
+        """
+        yield from ()
+
+    def curves(self, actuator: Actuator) -> list[Floats]:
+        """Polylines in space, (n, 3), mm, that are to be seen in the mesh file."""
+        return []
+
+    def steers(self) -> bool:
+        """Whether a body with it bends, between its ends, as the section solved beside it."""
+        return False
+
+    def beside(self) -> Effect | None:
+        """What stands for it in the section that is solved beside a case; None: left out."""
+        return None
+
+    def not_beside(self) -> str:
+        """Why no section can be solved beside a case with it; empty where one can."""
+        return ""
+
+    def alone(self) -> str:
+        """What acts on the run and on no model beside it, in words; empty where nothing does."""
+        return f"{self.name} acts"
+
+    # --- how a march goes about it ---------------------------------------------------------------
+
+    def steps(self) -> int | None:
+        """Load steps that it takes beside those of the chamber's load; None: cannot be foreseen."""
+        return None
+
+    def touches(self) -> bool:
+        """Whether surfaces come to touch something on the way: the march then stops there."""
+        return False
+
+    def largest_turn(self, length: float, cap: float) -> float:
+        """Greatest change of the angle in a step, rad, of a chamber and caps so long, mm."""
+        return math.inf
+
+    def settings(self, usual: Settings) -> Settings:
+        """Settings of Newton's method with it."""
+        return usual
+
+    def rules(self, usual: Rules, straight: bool) -> Rules:
+        """Rules of the march with it; `straight`: some effect keeps the actuator straight."""
+        return usual
+
+    def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
+        """The effect on a mesh.
+
+        Raises:
+            NotImplementedError: the effect does not say how.
+        """
+        raise NotImplementedError(f"effect {self.name} does not say how it is built")
+
+    def summary(self, site: Site, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+        """Entries of run.json on a body with it, from the rows of its history; may be empty."""
+        return {}
+
+
+def keep_straight(effects: Iterable[Effect]) -> bool:
+    """Whether effects keep the actuator from bending: its force is asked for, not its angle."""
+    return any(effect.keeps_straight() for effect in effects)
+
+
+def mirror_breakers(effects: Iterable[Effect]) -> Iterator[str]:
+    """Why x = 0 is no mirror plane, one reason for each effect that breaks the symmetry."""
+    for effect in effects:
+        reason = effect.mirror_breaker()
+        if reason:
+            yield reason
+
+
+def tip_strips(effects: Iterable[Effect]) -> Strips | None:
+    """The strips of roof and post, of the first effect that has any."""
+    found = (effect.strips() for effect in effects)
+    return next((strips for strips in found if strips is not None), None)

@@ -1,0 +1,58 @@
+"""Weight of the body."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from fiberbend.effects.effect import SPACE, Built, Effect, Requests, Site
+from fiberbend.schema.quantities import Acceleration
+
+if TYPE_CHECKING:
+    from geometry.mesh.data import MeshData
+
+
+class GravityEffect(Effect):
+    """Weight of the body; every material needs a density."""
+
+    name = "gravity"
+    load = True
+    weighs = True
+
+    direction: Literal["-y", "+y", "+x", "-x", "+z", "-z"]
+    """Where the weight points; -y is from the crown to the floor, +z from the root to the tip."""
+    acceleration: Acceleration = 9810.0
+    """Standard gravity unless said."""
+
+    def needs(self) -> dict[str, str]:
+        """A body in space."""
+        return {SPACE: "weight bends no uniform arc"}
+
+    def mirror_breaker(self) -> str:
+        """A pull along x."""
+        return "gravity along x pulls to one side" if self.direction.endswith("x") else ""
+
+    def steers(self) -> bool:
+        """It bends a body little beside the pressure."""
+        return True
+
+    def alone(self) -> str:
+        """No section has weight."""
+        return "gravity acts"
+
+    def steps(self) -> int:
+        """It is put on in one."""
+        return 1
+
+    def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
+        """Weight of every region, put on in one step."""
+        from fem.effects.gravity import Gravity
+        from fem.march.records import Ramp
+
+        sign = 1.0 if self.direction[0] == "+" else -1.0
+        density = {
+            region: material.mass_density
+            for region, material in site.materials.items()
+            if region in mesh.regions and material.mass_density is not None
+        }
+        x, y, z = (self.acceleration * sign * (axis == self.direction[1]) for axis in "xyz")
+        return Built((Gravity(density, (x, y, z)),), (Ramp(Gravity.scalar, 1.0, first=1.0),))

@@ -1,0 +1,47 @@
+"""Hoops that cannot stretch: the ideal winding of closed forms."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from fiberbend.effects.effect import HOOPS, Draft, Effect
+from fiberbend.schema.problems import Problem
+
+
+class HoopsEffect(Effect):
+    """Hoops that cannot stretch, without pitch or thread: the ideal winding of closed forms."""
+
+    name = "hoops"
+
+    def needs(self) -> dict[str, str]:
+        """A circumference that can be held."""
+        return {
+            HOOPS: "hoops that cannot stretch are in closed forms only (winding: a real thread)"
+        }
+
+    def mirror_breaker(self) -> str:
+        """None: hoops are symmetric."""
+        return ""
+
+    def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
+        """One winding is enough."""
+        for other, effect in draft.effects.items():
+            if effect is not self and effect.holds_circumference():
+                text = f"{other} holds the circumference already, expected one of them"
+                yield Problem(path, text)
+
+    def holds_circumference(self) -> bool:
+        """That is all they do."""
+        return True
+
+    def not_beside(self) -> str:
+        """A section has no constraint for them."""
+        return "the section model beside it needs a winding with pitch and fiber"
+
+    def alone(self) -> str:
+        """Closed forms have them too."""
+        return ""
+
+    def steps(self) -> int:
+        """They are no load."""
+        return 0

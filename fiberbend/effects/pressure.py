@@ -1,0 +1,90 @@
+"""Pressure in the chamber: by its value, by the volume or by the bend that it holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from fiberbend.effects.effect import VOLUME, Built, Draft, Effect, Inflation, Requests, Site
+from fiberbend.schema.problems import Problem
+from fiberbend.schema.quantities import Angle, SignedPressure, Volume
+
+if TYPE_CHECKING:
+    from geometry.mesh.data import MeshData
+
+
+class PressureEffect(Effect):
+    """Pressure in the closed chamber: by its value, by the volume or by the bend that it holds."""
+
+    name = "pressure"
+    load = True
+
+    to: SignedPressure | None = None
+    """Chamber pressure at the end; negative is a vacuum."""
+    volume: Volume | None = None
+    """Chamber volume at the end; the pressure is found."""
+    angle: Angle | None = None
+    """Bending angle at the end; the pressure is found. Never meets a pressure limit."""
+
+    def needs(self) -> dict[str, str]:
+        """A volume that is given."""
+        if self.volume is None:
+            return {}
+        return {VOLUME: "the closed form bends by pressure or angle, not by volume"}
+
+    def mirror_breaker(self) -> str:
+        """None: it acts on both sides alike."""
+        return ""
+
+    def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
+        """One of the three is given."""
+        given = [key for key in ("to", "volume", "angle") if getattr(self, key) is not None]
+        if not given:
+            yield Problem(path, 'nothing to reach, expected to, such as "200 kPa", volume or angle')
+        for key in given[1:]:
+            yield Problem(f"{path}.{key}", f"{given[0]} is given too, expected one of them")
+
+    def inflation(self) -> Inflation:
+        """As the case says."""
+        return Inflation(self.to, self.volume, self.angle)
+
+    def steers(self) -> bool:
+        """The section is solved under it."""
+        return True
+
+    def alone(self) -> str:
+        """The section is solved under it."""
+        return ""
+
+    def steps(self) -> int:
+        """None beside those of the chamber's load."""
+        return 0
+
+    def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
+        """−P V with the load's way to its end."""
+        from fem.effects.chamber_pressure import ChamberPressure
+        from fem.march.records import Ramp
+
+        drive, target = "value", self.to
+        if self.volume is not None:
+            drive, target = "conjugate", self.volume
+        elif self.angle is not None:
+            drive, target = "followed", self.angle
+        assert target is not None
+        by_value = drive == "value"
+        ramp = Ramp(
+            ChamberPressure.scalar,
+            target=target,
+            drive=drive,
+            first=requests.first if by_value else None,
+            largest=requests.largest if by_value else None,
+            stops=requests.at_pressures if by_value else (),
+            at=requests.at_angles,
+            until=requests.stop_at_angle,
+        )
+        return Built((ChamberPressure(),), (ramp,))
+
+
+def inflate(*, to: float | None = None, angle: float | None = None) -> PressureEffect:
+    """A pressure by its value in MPa or by the bending angle in rad that it holds."""
+    return PressureEffect.model_construct(to=to, angle=angle)

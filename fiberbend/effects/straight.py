@@ -1,0 +1,70 @@
+"""The body kept straight: the blocked state of uniform bending."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Literal
+
+from fiberbend.effects.effect import ARC, Built, Effect, Requests, Site
+
+if TYPE_CHECKING:
+    from geometry.mesh.data import MeshData
+
+
+class StraightEffect(Effect):
+    """The body held straight, zero curvature: the blocked state of uniform bending."""
+
+    name = "straight"
+
+    stretch: Literal["free", "held"] = "free"
+    """Whether the axis may stretch, or is held in length as well."""
+
+    def needs(self) -> dict[str, str]:
+        """A uniform bend."""
+        return {ARC: "only a uniform bend is held straight all along (effect blocked-tip)"}
+
+    def mirror_breaker(self) -> str:
+        """None: straight is symmetric."""
+        return ""
+
+    def keeps_straight(self) -> bool:
+        """That is all it does."""
+        return True
+
+    def held_scalars(self) -> tuple[str, ...]:
+        """Curvature, and stretch where that is held."""
+        return ("curvature",) if self.stretch == "free" else ("curvature", "stretch")
+
+    def alone(self) -> str:
+        """The section beside a case that is kept straight is kept straight too."""
+        return ""
+
+    def steps(self) -> int:
+        """It is no load."""
+        return 0
+
+    def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
+        """No curvature, and no stretch where that is held."""
+        from fem.effects.supports import HeldStraight
+
+        return Built((HeldStraight(self.stretch == "held"),))
+
+
+def straight_of(effects: Iterable[Effect]) -> Effect:
+    """The effect that keeps a section straight beside a case: the case's own, if it has one."""
+    own = (effect for effect in effects if isinstance(effect, StraightEffect))
+    return next(own, StraightEffect())
+
+
+def kept_straight(data: dict[str, Any], pressure: str) -> dict[str, Any]:
+    """A case as plain values, kept straight up to a pressure.
+
+    Args:
+        data: the case as a mapping, with a pressure.
+        pressure: with its unit.
+    """
+    from fiberbend.effects.pressure import PressureEffect
+
+    name = PressureEffect.name
+    effects = [{name: {"to": pressure}} if name in entry else entry for entry in data["effects"]]
+    return data | {"effects": [*effects, {StraightEffect.name: {}}]}

@@ -1,0 +1,67 @@
+"""`model: analytic`: the closed form of Polygerinos et al. 2015, with the case's own rubber."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from fiberbend.case.case import Case
+from fiberbend.effects.effect import ARC, ENDS, HOOPS
+from fiberbend.models.model import ModelKind, Objection
+from fiberbend.models.uniform import not_uniform
+
+
+class Analytic(ModelKind):
+    """Uniform bending of a section that keeps its shape."""
+
+    name = "analytic"
+    offers = frozenset({ARC, ENDS, HOOPS})
+    agreement = 11.0
+    start_s = 1.5
+    pictures_s = (1.0, 0.0)
+
+    def limits(self, case: Case) -> Iterator[Objection]:
+        """No uniform bend, no fields, no closed form."""
+        yield from not_uniform(case)
+        if case.output.fields and "fields" in case.output.model_fields_set:
+            yield "output.fields", "closed forms have no fields"
+        # loads numpy: asked last
+        from fiberbend.models.closed_form import SHAPE, no_analytic
+
+        section = case.actuator.section
+        if section != SHAPE:
+            yield "actuator.section", f"the closed form is for a {SHAPE}, not a {section}"
+            return
+        reason = no_analytic(case)
+        if reason:
+            wound = any(effect.holds_circumference() for effect in case.effects)
+            yield "materials.floor" if wound else "effects", reason
+
+    def leaves_out(self, case: Case) -> Iterator[Objection]:
+        """Details of effects, and compressibility."""
+        yield from super().leaves_out(case)
+        for part, material in dict(case.materials).items():
+            if material is not None and material.bulk is not None:
+                text = "in closed forms every material is incompressible"
+                yield f"materials.{part}.bulk", text
+
+    def completed(self, case: Case) -> Case:
+        """A closed form has no fields to write."""
+        if "fields" in case.output.model_fields_set:
+            return case
+        output = case.output.model_copy(update={"fields": False})
+        return case.model_copy(update={"output": output})
+
+    def unused(self, case: Case) -> dict[str, set[str]]:
+        """Mesh and solver."""
+        return {"mesh": case.mesh.model_fields_set, "solver": case.solver.model_fields_set}
+
+    def errors(self, case: Case) -> Iterator[str]:
+        """Against the section model, and the paper's against its experiments."""
+        if case.straight:
+            yield "κP/L_f: 42 % below the section held straight on the baseline (54 to 94 N mm)"
+            return
+        yield (
+            "closed form: pressure for an angle 33 % (90°) to 13 % (360°) above the section model "
+            "on the baseline (docs/crosscheck.md)"
+        )
+        yield "fitted to an experiment: up to 11 % in pressure (Polygerinos et al. 2015)"

@@ -1,0 +1,110 @@
+"""`model: cell`: uniform bending of a slice that repeats, with every turn of the winding in it."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fiberbend.case import convert
+from fiberbend.case.case import Case
+from fiberbend.effects.effect import ARC, THREAD, TURNS, TWIST, VOLUME
+from fiberbend.models.model import Size, completed_mesh, count
+from fiberbend.models.uniform import UniformModel, twists
+
+if TYPE_CHECKING:
+    from fem.effects.effect import Effect as Term
+    from fiberbend.models.model import Make
+    from geometry.mesh.data import MeshData
+    from geometry.sections.size import MeshSize
+
+_ITERATIONS = 3.3
+"""Newton iterations in a step."""
+_ERRORS = ((8, 0.2), (4, 0.4), (0, 1.9))
+"""Layers a half pitch, and percent of the pressure for an angle up to 360°
+(docs/accuracy_uniform.md)."""
+
+
+class Cell(UniformModel):
+    """Half a pitch between mirror planes, or a whole pitch with tied ends."""
+
+    name = "cell"
+    offers = frozenset({ARC, VOLUME, TWIST, THREAD, TURNS})
+    turn = math.radians(45)
+    first_turn = math.radians(10)
+    memory = 4
+    start_s = 1.8
+    compile_s = 20.0
+    pictures_s = (5.0, 1.0)
+    fields_s = 0.5
+
+    def completed(self, case: Case) -> Case:
+        """Four layers in half a pitch: layers count most."""
+        turns = case.turns
+        if turns is None:
+            return case
+        return case.model_copy(update={"mesh": completed_mesh(case.mesh, axial=turns.pitch / 8)})
+
+    def slice(self, case: Case, half: bool) -> tuple[float, int]:
+        """Length in mm of the slice that repeats, and its number of layers.
+
+        Half a pitch between mirror planes, a whole one without; without a winding any length does.
+        """
+        from geometry.sections.size import divisions
+
+        turns = case.turns
+        pitch = turns.pitch if turns is not None else 2 * case.mesh.axial
+        extent = pitch / 2 if half else pitch
+        return extent, divisions(extent, case.mesh.axial)
+
+    def fineness(self, case: Case, half: bool) -> MeshSize:
+        """Elements along the axis are never longer than the slice."""
+        extent, layers = self.slice(case, half)
+        return dataclasses.replace(convert.mesh_size(case.mesh, half), axial=extent / layers)
+
+    def mesh(self, case: Case, msh: Path | None = None) -> MeshData:
+        """Hexahedra from the block layout."""
+        from geometry.bodies.extrude import swept_slice
+
+        half, _ = self.half(case)
+        actuator, size = convert.dimensions(case.actuator), self.fineness(case, half)
+        return swept_slice(actuator, size, *self.slice(case, half))
+
+    def kinematics(self, case: Case) -> Make:
+        """Three components of the displacement."""
+        from fem.kinematics.uniform import Cell as Bending
+
+        return functools.partial(Bending, length=case.actuator.length, twisted=twists(case))
+
+    def supports(self, case: Case, mesh: MeshData) -> list[Term]:
+        """Three mirror planes; a whole pitch has none."""
+        from fem.effects.supports import Symmetry
+
+        if not mesh.half:
+            return []
+        return [Symmetry(), Symmetry("section_root", 2), Symmetry("section_tip", 2)]
+
+    def resolved(self, case: Case) -> float:
+        """All of it, where every turn lies by itself."""
+        turns = case.turns
+        return 1.0 if turns is not None and turns.discrete else 0.0
+
+    def size(self, case: Case) -> Size:
+        """Of the mesh itself."""
+        mesh, layers = self.mesh(case), self.slice(case, self.half(case)[0])[1]
+        unknowns = count(mesh, 3, 4)
+        return Size(len(mesh.cells), "hexahedra", unknowns, self.scalars(case), layers)
+
+    def step_seconds(self, case: Case, size: Size) -> float:
+        """By unknowns."""
+        return _ITERATIONS * 0.069 * (size.unknowns / 3285) ** 1.15
+
+    def mesh_error(self, case: Case) -> float:
+        """By layers a half pitch."""
+        if case.turns is None:
+            return _ERRORS[-1][1]
+        half, _ = self.half(case)
+        layers = self.slice(case, half)[1] / (1 if half else 2)
+        return next(error for least, error in _ERRORS if layers >= least)

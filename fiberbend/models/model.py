@@ -1,0 +1,257 @@
+"""What every model answers for itself: what it holds, what it makes of a case, what it costs."""
+
+from __future__ import annotations
+
+import dataclasses
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+
+from fiberbend.case.case import Case, Mesh
+from fiberbend.effects.effect import mirror_breakers
+
+if TYPE_CHECKING:
+    from fem.effects.effect import Effect as Term
+    from fem.kinematics.domain import Domain
+    from fem.kinematics.kinematics import Kinematics
+    from fem.march.frames import Frames
+    from fem.march.records import State
+    from fem.march.selfcontact import Rod
+    from fem.scene import Scene
+    from fem.solver.closures import Functional
+    from geometry.mesh.data import MeshData
+    from geometry.sections.size import MeshSize
+
+    Make = Callable[[Domain, Iterable[str]], Kinematics]
+
+MACHINE = "two 2 GHz Xeon cores"
+"""Where seconds and memory of all models were measured: Debian 12, dolfinx 0.5, MUMPS with METIS,
+one BLAS thread a rank. Good to a factor of two."""
+ENDS_BEND = "the whole body bends 0.6 to 1.4 % further than its middle (docs/accuracy_free.md)"
+
+Objection = tuple[str, str]
+"""A path within a case, and what a model has against it."""
+
+
+class Gauge(Protocol):
+    """What a model reads off a state beside pressure, angle and energies."""
+
+    def tip(self, state: State) -> tuple[float, float]:
+        """y and z of the centroid of the tip cap's outer face, mm."""
+
+    def columns(self, state: State) -> dict[str, float]:
+        """Further columns, behind the chamber's volume."""
+
+    def last_columns(self, state: State) -> dict[str, float]:
+        """Columns at the end of the row; only at equilibria under load."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Reading:
+    """What is read off the states of a scene.
+
+    Attributes:
+        frames: rod frames of a body; None where the kinematics turns by itself.
+        followed: the bending angle.
+        gauge: makes the columns of the history; call it when the scene is at rest.
+        rod: the states as rods with caps, to see whether the body passes through itself.
+    """
+
+    frames: Frames | None
+    followed: Functional
+    gauge: Callable[[], Gauge]
+    rod: Rod
+
+
+@dataclasses.dataclass(frozen=True)
+class Size:
+    """How large a problem is.
+
+    Attributes:
+        elements: number of elements.
+        kind: what they are.
+        unknowns: displacements and pressures, before any are held.
+        scalars: global unknowns beside them.
+        layers: elements along the axis.
+    """
+
+    elements: int
+    kind: str
+    unknowns: int
+    scalars: tuple[str, ...]
+    layers: float
+
+
+class ModelKind(ABC):
+    """A model of an actuator, from the cheapest closed form to the whole body."""
+
+    name: ClassVar[str]
+    """What a case calls it."""
+    offers: ClassVar[frozenset[str]]
+    """What effects may ask for, see `fiberbend.effects.effect`."""
+    ends: ClassVar[bool] = False
+    """It knows the caps and what they do to the bend near them."""
+    is_kept_straight: ClassVar[bool] = False
+    """Kept straight, it gives a tip force that bending freely it does not."""
+    agreement: ClassVar[float]
+    """Percent of the pressure for an angle within which it agrees with the section model, apart
+    from what rubber does between the turns of a winding."""
+    start_s: ClassVar[float]
+    """Seconds to import, to mesh, to load compiled kernels, and for what steers it."""
+    pictures_s: ClassVar[tuple[float, float]]
+    """Seconds to draw: in all, and for each state that is asked for."""
+    fields_s: ClassVar[float] = 0.0
+    """Seconds to write the fields of a state."""
+
+    def elements(self) -> MeshedModel | None:
+        """The model where it is one of finite elements; None for a closed form."""
+        return None
+
+    # --- what it holds -------------------------------------------------------------------------
+
+    def refuses(self, case: Case) -> Iterator[Objection]:
+        """What of a case it cannot hold: paths within the case and reasons."""
+        for index, effect in enumerate(case.effects):
+            reasons = (why for what, why in effect.needs().items() if what not in self.offers)
+            for reason in reasons:
+                yield f"effects.{index}.{effect.name}", reason
+                break
+        yield from self.limits(case)
+
+    def limits(self, case: Case) -> Iterator[Objection]:
+        """What it cannot hold beside effects."""
+        yield from ()
+
+    def leaves_out(self, case: Case) -> Iterator[Objection]:
+        """What it leaves out of what it can hold: no reason to refuse, but not to choose it."""
+        for index, effect in enumerate(case.effects):
+            if not self.offers.issuperset(effect.needs()):
+                continue
+            for what, text in effect.wants().items():
+                if what not in self.offers:
+                    yield f"effects.{index}.{effect.name}", text
+
+    # --- what it makes of a case ---------------------------------------------------------------
+
+    def completed(self, case: Case) -> Case:
+        """The case with the defaults that depend on the model."""
+        return case
+
+    def half(self, case: Case) -> tuple[bool, str]:
+        """Whether half the section, x ≥ 0, stands for the whole, and the reason."""
+        if case.mesh.symmetry != "auto":
+            return case.mesh.symmetry == "half", "as the case says"
+        breakers = list(mirror_breakers(case.effects))
+        if breakers:
+            return False, "; ".join(breakers)
+        return True, "section, winding and loads are mirror-symmetric about x = 0"
+
+    def unused(self, case: Case) -> dict[str, set[str]]:
+        """Settings that the case gives and the model has no use for, by part of the case."""
+        return {}
+
+    def resolved(self, case: Case) -> float:
+        """Part of the bulging between the turns of a winding that it gives: 1 all, 0 nothing."""
+        return 0.0
+
+    def errors(self, case: Case) -> Iterator[str]:
+        """How far its answer is expected to be off, a line with its source each."""
+        yield from ()
+
+
+class MeshedModel(ModelKind):
+    """A model of finite elements."""
+
+    shared: ClassVar[bool] = False
+    """All ranks solve it together; else one rank does."""
+    resumes: ClassVar[bool] = False
+    """Its runs leave a checkpoint after every step."""
+    takes_mesh_as_said: ClassVar[bool] = False
+    """Its elements are those that `mesh` names, whatever else the case says."""
+    turn: ClassVar[float]
+    """Greatest change of the angle in a step, rad: fine curves where steps are cheap."""
+    first_turn: ClassVar[float]
+    """The same for the first step."""
+    memory: ClassVar[int]
+    """States from which a step is extrapolated: more where steps are short."""
+    straight_start: ClassVar[float]
+    """Share of the load in the first step of an actuator that is kept straight."""
+    compile_s: ClassVar[float]
+    """Seconds to compile a scene that is not in the cache."""
+
+    def elements(self) -> MeshedModel:
+        """The model itself."""
+        return self
+
+    @abstractmethod
+    def fineness(self, case: Case, half: bool) -> MeshSize:
+        """Fineness of its mesh, of x ≥ 0 only or of all."""
+
+    @abstractmethod
+    def mesh(self, case: Case, msh: Path | None = None) -> MeshData:
+        """Its mesh; a body leaves the file of gmsh at `msh`.
+
+        Raises:
+            MeshError: gmsh failed.
+        """
+
+    @abstractmethod
+    def kinematics(self, case: Case) -> Make:
+        """Its kinematics, to be made from a domain and the names of the fields."""
+
+    @abstractmethod
+    def supports(self, case: Case, mesh: MeshData) -> list[Term]:
+        """What holds it by its nature: the clamp of a body, planes and axes of symmetry."""
+
+    @abstractmethod
+    def reading(self, case: Case, scene: Scene) -> Reading:
+        """What is read off the states of its scene."""
+
+    @abstractmethod
+    def size(self, case: Case) -> Size:
+        """How large its problem is, from the block layout: neither gmsh nor a solver starts."""
+
+    @abstractmethod
+    def step_seconds(self, case: Case, size: Size) -> float:
+        """Seconds a step on one rank."""
+
+    @abstractmethod
+    def memory_mb(self, size: Size) -> float:
+        """Greatest memory on one rank, MB."""
+
+    def largest_turn(self, case: Case) -> float:
+        """Greatest change of the angle in a step, rad."""
+        turn = case.solver.max_turn or self.turn
+        length, cap = case.actuator.length, case.actuator.cap
+        return min(turn, *(effect.largest_turn(length, cap) for effect in case.effects))
+
+
+def completed_mesh(mesh: Mesh, **defaults: Any) -> Mesh:
+    """Mesh settings with defaults where the case says nothing."""
+    new = {name: value for name, value in defaults.items() if name not in mesh.model_fields_set}
+    return mesh.model_copy(update=new)
+
+
+def count(mesh: MeshData, components: int, pressures: int) -> int:
+    """Unknowns: quadratic displacement, linear pressure.
+
+    Args:
+        mesh: of quadrilaterals or hexahedra, or of tetrahedra.
+        components: of the displacement.
+        pressures: an element's own; 0: one at each vertex, as tetrahedra have it.
+    """
+    import numpy as np
+
+    from geometry.mesh.data import vertex_positions
+
+    constraints = pressures * len(mesh.cells)
+    if not pressures:
+        constraints = len(np.unique(mesh.cells[:, vertex_positions(mesh.cell_type)]))
+    return components * len(mesh.nodes) + constraints
+
+
+def found_pressure(case: Case) -> tuple[str, ...]:
+    """The pressure among the unknowns, where something else is given."""
+    load = case.inflation
+    return ("pressure",) if load is not None and load.to is None else ()

@@ -1,0 +1,90 @@
+"""`model: section`: uniform bending of the cross-section, its winding spread over its surface."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fiberbend.case import convert
+from fiberbend.case.case import Case
+from fiberbend.effects.effect import ARC, THREAD, TWIST, VOLUME, mirror_breakers
+from fiberbend.models.model import Size, completed_mesh, count
+from fiberbend.models.uniform import UniformModel, twists
+
+if TYPE_CHECKING:
+    from fem.effects.effect import Effect as Term
+    from fiberbend.models.model import Make
+    from geometry.mesh.data import MeshData
+    from geometry.sections.size import MeshSize
+
+_FLAT = 1e-9
+"""Its elements have no length along the axis."""
+_ERRORS = ((4, 0.03), (3, 0.06), (2, 0.13), (1, 0.3))
+"""Refinement, and percent of the pressure for an angle up to 360° (docs/accuracy_uniform.md)."""
+
+
+class Section(UniformModel):
+    """Nothing depends on z in the frame that turns with the section."""
+
+    name = "section"
+    offers = frozenset({ARC, VOLUME, TWIST, THREAD})
+    turn = math.radians(10)
+    first_turn = math.radians(10)
+    memory = 5
+    start_s = 1.8
+    compile_s = 9.0
+    pictures_s = (3.0, 0.4)
+    fields_s = 0.3
+
+    def completed(self, case: Case) -> Case:
+        """A finer mesh: it is cheap."""
+        return case.model_copy(update={"mesh": completed_mesh(case.mesh, section=2)})
+
+    def half(self, case: Case) -> tuple[bool, str]:
+        """Always: half a turn about y maps a section onto itself whose winding has a hand."""
+        return True, "the section is its own image, by mirror or by half a turn about y"
+
+    def unused(self, case: Case) -> dict[str, set[str]]:
+        """What concerns the axis and the other half."""
+        return {"mesh": case.mesh.model_fields_set & {"axial", "symmetry"}}
+
+    def fineness(self, case: Case, half: bool) -> MeshSize:
+        """As the case says across the section."""
+        return dataclasses.replace(convert.mesh_size(case.mesh, half), axial=_FLAT)
+
+    def mesh(self, case: Case, msh: Path | None = None) -> MeshData:
+        """Quadrilaterals from the block layout."""
+        from geometry.bodies.extrude import swept_section
+
+        size = self.fineness(case, self.half(case)[0])
+        return swept_section(convert.dimensions(case.actuator), size)
+
+    def kinematics(self, case: Case) -> Make:
+        """Two components of the displacement, three where the winding twists."""
+        from fem.kinematics.uniform import Section as Bending
+
+        return functools.partial(Bending, length=case.actuator.length, twisted=twists(case))
+
+    def supports(self, case: Case, mesh: MeshData) -> list[Term]:
+        """A mirror plane, or the axis of half a turn."""
+        from fem.effects.supports import Symmetry, TwofoldAxis
+
+        return [TwofoldAxis() if twists(case) else Symmetry()]
+
+    def size(self, case: Case) -> Size:
+        """Of the mesh itself."""
+        mesh = self.mesh(case)
+        components = 3 if any(mirror_breakers(case.effects)) else 2
+        unknowns = count(mesh, components, 3)
+        return Size(len(mesh.cells), "quadrilaterals", unknowns, self.scalars(case), 1.0)
+
+    def step_seconds(self, case: Case, size: Size) -> float:
+        """Two iterations."""
+        return 0.015 + 9e-6 * size.unknowns
+
+    def mesh_error(self, case: Case) -> float:
+        """By refinement."""
+        return next(error for n, error in _ERRORS if case.mesh.section >= n)

@@ -1,0 +1,83 @@
+"""What section and cell share: uniform bending between the caps."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from fiberbend.case import convert
+from fiberbend.case.case import Case
+from fiberbend.models.model import ENDS_BEND, MeshedModel, Objection, Reading, Size, found_pressure
+
+if TYPE_CHECKING:
+    from fem.scene import Scene
+
+
+class UniformModel(MeshedModel):
+    """Curvature and stretch, and twist where the winding has a hand, are global unknowns."""
+
+    is_kept_straight = True
+    agreement = 0.5
+    straight_start = 1 / 20
+
+    def limits(self, case: Case) -> Iterator[Objection]:
+        """No uniform bend."""
+        yield from not_uniform(case)
+
+    def reading(self, case: Case, scene: Scene) -> Reading:
+        """Angle, stretch and twist are scalars."""
+        from fem.kinematics.uniform import CurvatureAngle, Uniform
+        from fem.march.selfcontact import UniformRod
+        from fiberbend.models.gauges import UniformGauge
+
+        body, actuator = scene.body, convert.dimensions(case.actuator)
+        assert isinstance(body, Uniform)
+        return Reading(
+            None,
+            CurvatureAngle(body),
+            lambda: UniformGauge(scene, actuator),
+            UniformRod(body, case.actuator.cap),
+        )
+
+    def memory_mb(self, size: Size) -> float:
+        """Little beside the libraries."""
+        return 130 + 7e-3 * size.unknowns
+
+    def scalars(self, case: Case) -> tuple[str, ...]:
+        """Global unknowns: those of uniform bending that nothing holds, and a pressure found."""
+        held = {name for effect in case.effects for name in effect.held_scalars()}
+        names = ["curvature", "stretch", *(["twist"] if twists(case) else [])]
+        return (*(name for name in names if name not in held), *found_pressure(case))
+
+    @abstractmethod
+    def mesh_error(self, case: Case) -> float:
+        """Percent of the pressure for an angle up to 360° by which the mesh is off."""
+
+    def errors(self, case: Case) -> Iterator[str]:
+        """Mesh and ends."""
+        if case.inflation is None:
+            return
+        if case.straight:
+            yield f"mesh: moves the moment by up to {self.mesh_error(case)} %"
+            yield (
+                "tip: a real one turns, its sheath yields: about half the force "
+                "(docs/accuracy_causes.md)"
+            )
+            return
+        yield f"mesh: moves P by up to {self.mesh_error(case)} % (docs/accuracy_uniform.md)"
+        yield f"ends: left out; {ENDS_BEND}"
+
+
+def not_uniform(case: Case) -> Iterator[Objection]:
+    """Why a case does not bend uniformly, beside its effects."""
+    if case.inflation is None:
+        yield "effects", "nothing bends it uniformly but a pressure"
+    if case.mesh.element == "tetrahedron":
+        yield "mesh.element", "tetrahedra are for a body"
+
+
+def twists(case: Case) -> bool:
+    """Whether the winding may twist the body."""
+    turns = case.turns
+    return turns is not None and turns.twists

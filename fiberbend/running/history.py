@@ -1,0 +1,162 @@
+"""One row of history.csv a converged step: what a user reads off a state."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from fem.effects.embedded_fibers import FiberPotential
+from fem.march.records import MODES, State
+from fem.scene import Scene
+from fem.solver.newton import Outcome
+from fiberbend.models.model import Gauge
+
+Floats = npt.NDArray[np.float64]
+
+DEGREE = 3
+"""Of the spline through the steps."""
+DOUBTS, NOTHING = 2.0, 2e-5
+"""Energy out of nowhere: more than so many doubts, and than this part of the greatest."""
+
+
+class Recorder:
+    """Makes the rows, for the whole body also where a part of it is solved.
+
+    Args:
+        scene: the scene whose states are recorded.
+        gauge: what the model reads off a state.
+        rest: the state before any load, at which the scene is unless there are rows.
+        rows: those of a run that is resumed.
+
+    Attributes:
+        rows: the rows so far.
+    """
+
+    def __init__(
+        self, scene: Scene, gauge: Gauge, rest: State, rows: list[dict[str, Any]] | None = None
+    ) -> None:
+        self._scene = scene
+        self._gauge = gauge
+        self._factor = scene.body.copies
+        self.rows = rows if rows is not None else [self._row(0, rest, None)]
+
+    def add(self, state: State, outcome: Outcome) -> dict[str, Any]:
+        """Append the row of a new state, at which the scene is; collective."""
+        row = self._row(len(self.rows), state, outcome)
+        self.rows.append(row)
+        return row
+
+    def integrate(self) -> list[int]:
+        """Fill in the work of the loads since rest, by a spline through all steps.
+
+        Returns:
+            Steps in which the stored energy changed by what no load has done. A state that is not
+            on the branch of the one before, as stable and as well converged as any, shows nowhere
+            else.
+        """
+        work, doubt = self._work()
+        for row, value in zip(self.rows, np.cumsum(work), strict=True):
+            row["work_mJ"] = float(value)
+        return departures(work, doubt, np.array([row["stored_mJ"] for row in self.rows]))
+
+    def _row(self, step: int, state: State, outcome: Outcome | None) -> dict[str, Any]:
+        scene = self._scene
+        tip = self._gauge.tip(state)
+        row: dict[str, Any] = {
+            "step": step,
+            "pressure_kPa": 1e3 * state.scalars.get("pressure", 0.0),
+            "angle_deg": float(np.rad2deg(state.measures["followed"])),
+            "tip_y_mm": tip[0],
+            "tip_z_mm": tip[1],
+        }
+        if "pressure" in state.scalars:
+            row["chamber_mm3"] = self._factor * state.measures["conjugate pressure"]
+        row |= self._gauge.columns(state)
+        row["newton_iterations"] = outcome.iterations if outcome else 0
+        row["min_det_F"] = outcome.least_det_f if outcome else 1.0
+        for discrete in scene.discrete.values():
+            if isinstance(discrete, FiberPotential):
+                row["fiber_min_N"], row["fiber_max_N"] = discrete.force_range()
+        energies = scene.energies()
+        names = [name for name in state.scalars if name not in scene.body.natural]
+        loads = {name: state.measures[f"conjugate {name}"] for name in names}
+        stored = sum(energies.values()) + sum(state.scalars[n] * v for n, v in loads.items())
+        row["work_mJ"] = 0.0
+        row["stored_mJ"] = self._factor * stored
+        for key, energy in energies.items():
+            row[f"energy {key} mJ"] = self._factor * energy
+        for name, value in loads.items():
+            row[f"load {name}"] = state.scalars[name]
+            row[f"conjugate {name}"] = self._factor * value
+        if outcome is not None:
+            row["unstable_modes"] = int(state.measures[MODES])
+            row |= self._gauge.last_columns(state)
+        return row
+
+    def _work(self) -> tuple[Floats, Floats]:
+        """Σ ∫ q d(conjugate of q) over the loads in the step to every row, and its doubt, N mm."""
+        names = [n for n in self._scene.body.scalars if n not in self._scene.body.natural]
+        if len(self.rows) < 2 or not names:
+            return np.zeros(len(self.rows)), np.zeros(len(self.rows))
+        values = np.array([[row[f"load {name}"] for name in names] for row in self.rows])
+        conjugates = np.array([[row[f"conjugate {name}"] for name in names] for row in self.rows])
+        return work_of(values, conjugates)
+
+
+def work_of(values: Floats, conjugates: Floats) -> tuple[Floats, Floats]:
+    """Σ ∫ q d(conjugate of q) in the step to each of n states, and its doubt, N mm, (n,) both.
+
+    Args:
+        values: of m loads, (n, m).
+        conjugates: theirs, (n, m).
+    """
+    total, doubt = np.zeros(len(values)), np.zeros(len(values))
+    # where another load begins to move the curves have a kink
+    moving = np.diff(values, axis=0) != 0
+    kinks = np.flatnonzero(np.any(moving[1:] != moving[:-1], axis=1)) + 1
+    for rows in np.split(np.arange(1, len(values)), kinks):
+        piece = np.r_[rows[0] - 1, rows]
+        for value, conjugate in zip(values[piece].T, conjugates[piece].T, strict=True):
+            parts = _parts(value, conjugate)
+            chord = (value[1:] + value[:-1]) / 2 * np.diff(conjugate)
+            total[rows] += parts
+            doubt[rows] += np.abs(parts - chord)
+        # a spline knows least where it has states on one side only
+        doubt[[rows[0], rows[-1]]] = np.inf
+    return total, doubt
+
+
+def departures(work: Floats, doubt: Floats, stored: Floats) -> list[int]:
+    """Steps in which the stored energy changes by what no load has done.
+
+    What the spline leaves in doubt is its distance from a chord, and all near the ends of a ramp.
+
+    Args:
+        work: of the loads in the step to each of n states, N mm, (n,).
+        doubt: of it, N mm, (n,).
+        stored: energy of each state, N mm, (n,).
+    """
+    gap = np.abs(work - np.diff(stored, prepend=stored[0]))
+    around = np.max([doubt, np.roll(doubt, 1), np.roll(doubt, -1)], axis=0)
+    odd = (gap > DOUBTS * around) & (gap > NOTHING * np.max(np.abs(stored)))
+    return [int(step) for step in np.flatnonzero(odd)]
+
+
+def _parts(value: Floats, conjugate: Floats) -> Floats:
+    """∫ q d(conjugate of q) between n states of one ramp by a spline through them, (n - 1,)."""
+    from scipy.interpolate import make_interp_spline
+
+    # a load that is held does work at a constant value: no curve to fit
+    parameter = np.arange(len(value), dtype=float)
+    if np.all(np.diff(conjugate) > 0):
+        parameter = conjugate
+    degree = min(DEGREE, len(value) - 1)
+    q = make_interp_spline(parameter, value, degree)
+    v = make_interp_spline(parameter, conjugate, degree)
+    points, weights = np.polynomial.legendre.leggauss(6)
+    low, high = parameter[:-1, None], parameter[1:, None]
+    t = (low + high) / 2 + (high - low) / 2 * points
+    parts: Floats = np.sum((high - low) / 2 * weights * q(t) * v(t, 1), axis=1)
+    return parts

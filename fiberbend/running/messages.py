@@ -1,0 +1,137 @@
+"""What is said of limit points and lost stability, in the user's units."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fem.march.records import Critical, Report
+
+UNSTABLE_END = (
+    "the end is unstable where every load is held at its value: given the pressure, no actuator "
+    "rests there"
+)
+_COUNT = ("no", "one", "two", "three")
+
+
+def critical_points(report: Report, copies: float) -> list[dict[str, Any]]:
+    """Entries of run.json.
+
+    Args:
+        report: of the march.
+        copies: how many of what is modelled the whole actuator is.
+    """
+    return [
+        {
+            "kind": point.kind,
+            "load": point.scalar,
+            **_values(point, copies),
+            "unstable_modes_before": point.before,
+            "unstable_modes_beyond": point.after,
+        }
+        for point in report.critical
+    ]
+
+
+def _values(point: Critical, copies: float) -> dict[str, float]:
+    values: dict[str, float] = {}
+    if point.scalar == "pressure":
+        values["pressure_kPa"] = 1e3 * point.value
+        values["chamber_mm3"] = copies * point.conjugate
+    else:
+        values["value"] = point.value
+    if point.followed is not None:
+        values["angle_deg"] = float(np.rad2deg(point.followed))
+    return values
+
+
+def remarks(report: Report) -> list[str]:
+    """All lines on what happened so far."""
+    lines = [remark(point) for point in report.critical if _matters(point)]
+    if report.self_contact is not None:
+        lines.append(self_contact(report.self_contact))
+    return lines
+
+
+def _matters(point: Critical) -> bool:
+    """Limits, lost stability, and stability regained; not one unstable mode less of several."""
+    return point.kind == "limit" or point.after > point.before or point.after == 0
+
+
+def remark(point: Critical) -> str:
+    """A line on a critical point."""
+    where = _where(point)
+    if point.kind == "limit" and point.after > point.before:
+        return f"limit point at {where}: beyond it {_beyond(point)}"
+    if point.kind == "limit":
+        load = "vacuum" if _vacuum(point) else point.scalar
+        return f"the {load} rises again from {where} on; given the {load}, the body snaps there"
+    if point.after > point.before:
+        count = _COUNT[point.after] if point.after < len(_COUNT) else str(point.after)
+        plural = "" if point.after == 1 else "s"
+        return (
+            f"{count} unstable mode{plural} from {where} on: the body can buckle, another branch "
+            "starts here; the run stays on its own"
+        )
+    return f"stable again from {where} on"
+
+
+def stopped(report: Report, target: str, beyond: float) -> str:
+    """Why a march ended before its target.
+
+    Args:
+        report: of the march.
+        target: what was asked for, with its unit.
+        beyond: so many times the volume at the limit point would have been followed.
+    """
+    limits = [p for p in report.critical if p.kind == "limit" and p.after > p.before]
+    limit = max(limits, key=lambda p: abs(p.value))
+    factor = f"1/{beyond:g} of" if _vacuum(limit) else f"{beyond:g} times"
+    followed = f"followed to {factor} the volume there"
+    if report.reason:
+        followed = f"there the run ends: {report.reason}"
+    return f"{target} is not reached: {remark(limit)}; {followed}"
+
+
+def jumped(before: dict[str, Any], after: dict[str, Any]) -> str:
+    """A line on a step that has left its branch, from the rows at its ends."""
+    ends = f"{before['pressure_kPa']:.4g} and {after['pressure_kPa']:.4g} kPa"
+    return (
+        f"between {ends} the stored energy changes by what no load has done: the run may have "
+        "gone to a neighbouring state there; shorter steps (solver.max_turn) may stay on one branch"
+    )
+
+
+def self_contact(measures: dict[str, float]) -> str:
+    """A line on a body that begins to pass through itself."""
+    pressure = measures.get("value pressure")
+    at = "" if pressure is None else f" ({1e3 * pressure:.4g} kPa)"
+    return (
+        f"from {_degrees(measures['followed'])}{at} on the body passes through itself: contact "
+        "with itself is not modelled"
+    )
+
+
+def _vacuum(point: Critical) -> bool:
+    return point.scalar == "pressure" and point.value < 0
+
+
+def _beyond(point: Critical) -> str:
+    if point.scalar != "pressure":
+        return f"the {point.scalar} falls"
+    if _vacuum(point):
+        return "the chamber collapses at falling vacuum"
+    return "the actuator balloons at falling pressure"
+
+
+def _where(point: Critical) -> str:
+    value = f"{1e3 * point.value:.4g} kPa" if point.scalar == "pressure" else f"{point.value:.4g}"
+    if point.followed is None:
+        return value
+    return f"{value}, {_degrees(point.followed)}"
+
+
+def _degrees(angle: float) -> str:
+    # plus zero: no minus sign before what is rounded to nothing
+    return f"{round(float(np.rad2deg(angle)), 1) + 0.0:.1f}°"

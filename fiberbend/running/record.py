@@ -1,0 +1,97 @@
+"""Content of run.json."""
+
+from __future__ import annotations
+
+import platform
+import resource
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fiberbend.case import convert
+from fiberbend.case.case import Case
+from fiberbend.compare.check import Check
+from fiberbend.models.resolution import winding_remark
+from fiberbend.running import messages
+from fiberbend.running.assembly import Assembly
+from fiberbend.version import __version__
+
+Row = Mapping[str, Any]
+
+
+def versions(*libraries: Mapping[str, str]) -> dict[str, str]:
+    """Versions that a result depends on: the program's, Python's and those of libraries."""
+    found = {"fiberbend": __version__, "python": platform.python_version()}
+    for more in libraries:
+        found |= more
+    return found
+
+
+def peak_memory_mb() -> float:
+    """Greatest memory of this process so far, MB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def entries(
+    status: str,
+    reason: str,
+    model: str,
+    counts: Mapping[str, Any],
+    wall_s: Mapping[str, float],
+    memory_mb: float,
+    ranks: int,
+    libraries: Mapping[str, str],
+) -> dict[str, Any]:
+    """What run.json says of a run of any model, in this order.
+
+    Args:
+        status: 'converged', 'stopped' or 'failed'.
+        reason: why not converged, or empty.
+        model: name of the model.
+        counts: "unknowns", "load_steps", "newton_iterations", "cutbacks" and what the model adds.
+        wall_s: seconds by phase.
+        memory_mb: greatest memory of all ranks together, MB.
+        ranks: number of ranks.
+        libraries: versions beside the program's and Python's.
+    """
+    return {
+        "status": status,
+        "reason": reason,
+        "model": model,
+        **counts,
+        "wall_s": dict(wall_s),
+        "peak_memory_MB": round(memory_mb, 1),
+        "ranks": ranks,
+        "versions": versions(libraries),
+    }
+
+
+def counted(assembly: Assembly, warnings: Sequence[str]) -> dict[str, Any]:
+    """What a run of finite elements has counted, and what it warns of."""
+    scene, report = assembly.scene, assembly.march.report
+    data = scene.domain.data
+    return {
+        "half": data.half,
+        "unknowns": scene.body.size,
+        "elements": len(data.cells),
+        "element": data.cell_type,
+        "effects": scene.keys,
+        "load_steps": report.steps,
+        "newton_iterations": report.iterations,
+        "factorisations": report.factorisations,
+        "cutbacks": report.cutbacks,
+        "warnings": list(warnings),
+        "critical_points": messages.critical_points(report, scene.body.copies),
+    }
+
+
+def of_effects(case: Case, rows: Sequence[Row]) -> dict[str, Any]:
+    """What the effects of a case report of a body, and whether its winding is resolved."""
+    found: dict[str, Any] = {"winding": winding_remark(case)}
+    for effect in case.effects:
+        found |= effect.summary(convert.site(case), rows)
+    return found
+
+
+def beside(check: Check | None) -> dict[str, Any]:
+    """How the run compares with other models, where that is known."""
+    return {} if check is None else {"crosscheck": check.entry()}

@@ -1,0 +1,99 @@
+"""Fields, pictures and plots of a run, from its snapshots and history."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import IO, Any
+
+import numpy as np
+
+from fiberbend.case.case import Case
+from fiberbend.compare.check import Check
+from fiberbend.running.folder import RunFolder
+from fiberbend.states.recovery import recover
+from fiberbend.states.snapshot import Scenery, Snapshot
+
+
+def draw(
+    folder: RunFolder,
+    case: Case,
+    scenery: Scenery,
+    snapshots: Sequence[Snapshot],
+    rows: Sequence[dict[str, Any]],
+    reason: str | None,
+    say: Callable[[str], None],
+    check: Check | None = None,
+    model: str = "body",
+) -> None:
+    """Write fields/*.vtu, pictures/*.png and the plots of a run folder; on rank 0.
+
+    Args:
+        folder: where to write.
+        case: says which of them are wanted, and names the requested angles.
+        scenery: mesh, materials and fibers.
+        snapshots: the states to show; none for a run that never converged a step.
+        rows: the history.
+        reason: why the run ended early, for the plots' titles, or None.
+        say: takes a line for the user where nothing can be drawn.
+        check: other models and measured points that are drawn beside the curves.
+        model: the run's own model.
+    """
+    output = case.output
+
+    def into(sub: str) -> Callable[[str, Callable[[IO[bytes]], object]], None]:
+        return lambda name, fill: folder.write(f"{sub}/{name}", fill)
+
+    if output.pictures:
+        draw_curves(folder, case, rows, reason, check, model)
+    if not (snapshots and (output.fields or output.pictures)):
+        return
+    if scenery.uniform:
+        from fiberbend.running.uniform_report import draw_states
+
+        draw_states(folder, case, scenery, snapshots, say)
+        return
+    fields = [recover(scenery, snapshot) for snapshot in snapshots]
+    if output.fields:
+        from fiberbend.states.paraview import write_fields
+
+        write_fields(scenery, snapshots, into("fields"), fields)
+    if output.pictures:
+        from fiberbend.drawing.body import draw_pictures
+        from fiberbend.drawing.stage import PictureError
+
+        try:
+            draw_pictures(scenery, snapshots, into("pictures"), fields)
+        except PictureError as error:
+            say(f"no pictures: {error}")
+
+
+def draw_curves(
+    folder: RunFolder,
+    case: Case,
+    rows: Sequence[dict[str, Any]],
+    reason: str | None,
+    check: Check | None = None,
+    model: str = "body",
+) -> None:
+    """Write the plots of a run of any model into pictures/; on rank 0.
+
+    Args:
+        folder: where to write.
+        case: names the title and the requested angles.
+        rows: the history.
+        reason: why the run ended early, or None.
+        check: other models and measured points that are drawn beside the curves.
+        model: the run's own model.
+    """
+    from fiberbend.drawing.curves import draw_plots
+
+    draw_plots(
+        rows,
+        lambda name, fill: folder.write(f"pictures/{name}", fill),
+        [float(np.rad2deg(angle)) for angle in case.output.at_angles],
+        case.title,
+        reason,
+        None if check is None else check.angles,
+        None if check is None else check.forces,
+        f"{model} model",
+    )

@@ -1,0 +1,270 @@
+"""A run from a case to its folder: mesh, scene, march, results."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
+
+from fem import compat
+from fem.march.frames import Frames
+from fem.march.guide import Guide
+from fem.results.checkpoint import Archive
+from fem.scene import Scene
+from fiberbend.case.case import Case
+from fiberbend.compare.check import Check
+from fiberbend.models.choice import choose_model
+from fiberbend.models.model import MeshedModel
+from fiberbend.models.resolution import winding_remark
+from fiberbend.models.result import RunResult
+from fiberbend.running import messages, record, restart
+from fiberbend.running.assembly import Assembly, assemble
+from fiberbend.running.folder import RunFolder
+from fiberbend.running.history import Recorder
+from fiberbend.running.hooks import Recording, ended
+from fiberbend.running.progress import Progress
+from fiberbend.running.warm import SectionStates, guides, section_states
+from fiberbend.states.snapshot import Scenery
+from geometry.mesh.data import MeshData
+
+MESH = "mesh.npz"
+
+
+def run_case(
+    case: Case,
+    out: Path | None,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+    resume: bool = False,
+) -> RunResult:
+    """Solve a case; collective over MPI.COMM_WORLD.
+
+    Args:
+        case: the case.
+        out: run folder, or None to write nothing.
+        overwrite: replace an earlier run.
+        progress: what is told meanwhile; silent unless given.
+        resume: go on from the checkpoint in the folder.
+
+    Raises:
+        CaseError: the folder cannot be used.
+        MeshError: gmsh failed.
+    """
+    comm = MPI.COMM_WORLD
+    progress = progress or Progress(quiet=True)
+    folder = None
+    if out is not None and resume:
+        folder = RunFolder.resume(out, case, comm)
+    elif out is not None:
+        folder = RunFolder.create(out, case, overwrite, comm)
+    model = choose_model(case)[0].elements()
+    if model is None:
+        from fiberbend.running.analytic import run_analytic
+
+        return _on_rank_0(comm, lambda: run_analytic(case, folder, progress))  # type: ignore[no-any-return]
+    if model.shared:
+        return _Run(case, model, folder, progress, comm).go(resume)
+    # too small to share: one rank solves it
+    alone = _Run(case, model, folder, progress, MPI.COMM_SELF)
+    return _on_rank_0(comm, lambda: alone.go(False))  # type: ignore[no-any-return]
+
+
+def _on_rank_0(comm: MPI.Comm, action: Callable[[], Any]) -> Any:
+    """Result of an action of rank 0 on every rank, or its error on every rank."""
+    outcome: tuple[Any, Exception | None] = (None, None)
+    if comm.rank == 0:
+        try:
+            outcome = (action(), None)
+        except Exception as error:
+            outcome = (None, error)
+    value, problem = comm.bcast(outcome)
+    if problem is not None:
+        raise problem
+    return value
+
+
+class _Run:
+    """The steps of one run of finite elements, and what they share."""
+
+    def __init__(
+        self,
+        case: Case,
+        model: MeshedModel,
+        folder: RunFolder | None,
+        progress: Progress,
+        comm: MPI.Comm,
+    ) -> None:
+        self.case, self.model, self.folder = case, model, folder
+        self.progress, self.comm = progress, comm
+
+    def go(self, again: bool) -> RunResult:
+        """Mesh, compile, solve, write."""
+        progress, case = self.progress, self.case
+        progress.phase("mesh")
+        mesh = _on_rank_0(self.comm, lambda: self._mesh(again))
+        section = self._section()
+        progress.phase("compile")
+
+        def lead(scene: Scene, frames: Frames) -> Guide | None:
+            return section.guide(scene, frames, case.actuator.length) if section else None
+
+        assembly = assemble(case, mesh, self.comm, lead)
+        recorder, recording = self._recording(assembly, again)
+        remark = winding_remark(case)
+        if remark is not None and "NOT" in remark:
+            progress.message(f"winding {remark}")
+        progress.phase("solve")
+        assembly.march.run(assembly.ramps, [recording])
+        status, reason = ended(case, assembly, recorder.rows)
+        self._warn_of_ends(status, recorder, recording)
+        check = self._cross_check(recorder.rows, section)
+        progress.phase("output")
+        recording.keep("last")
+        rows = check.beside(recorder.rows) if check else recorder.rows
+        run = record.entries(
+            status,
+            reason,
+            self.model.name,
+            record.counted(assembly, recording.warnings),
+            self._wall(assembly),
+            self.comm.allreduce(record.peak_memory_mb()),
+            self.comm.size,
+            compat.versions(),
+        )
+        run |= record.of_effects(case, recorder.rows) | record.beside(check)
+        if self.folder is not None:
+            self.folder.write_history(rows)
+            self.folder.write_run(**run)
+            if self.comm.rank == 0:
+                why = f"{status}: {reason}" if reason else None
+                self._draw(assembly, recording, why, rows, check)
+                run["wall_s"] = self._wall(assembly)
+                self.folder.write_run(**run)
+        self.comm.barrier()
+        self._tell(run, check)
+        return RunResult(status, reason, rows, run, self.folder.path if self.folder else None)
+
+    # --- before the march ----------------------------------------------------------------------
+
+    def _mesh(self, again: bool) -> MeshData:
+        folder = self.folder
+        if folder is not None and again:
+            return MeshData.load(folder.path / MESH)
+        mesh = self.model.mesh(self.case, folder.path / "actuator.msh" if folder else None)
+        if folder is not None:
+            mesh.save(folder.path / MESH)
+        return mesh
+
+    def _section(self) -> SectionStates | None:
+        """What a body leans on: its section's states, solved on rank 0; collective."""
+        if not (self.model.ends and guides(self.case)):
+            return None
+        self.progress.phase("section")
+        states: SectionStates | None = _on_rank_0(self.comm, lambda: section_states(self.case))
+        return states
+
+    def _recording(self, assembly: Assembly, again: bool) -> tuple[Recorder, Recording]:
+        """The rows and what listens to the march, which goes on where the checkpoint is."""
+        march, reading = assembly.march, assembly.reading
+        archive, gauge = Archive(assembly.scene, reading.frames), reading.gauge()
+        saved = restart.load(self.folder, archive) if again and self.folder else None
+        if saved is not None:
+            march.resume(saved.position)
+        rows = None if saved is None else saved.rows
+        recorder = Recorder(assembly.scene, gauge, march.rest, rows)
+        recording = Recording(
+            self.case,
+            assembly,
+            archive,
+            recorder,
+            self.folder,
+            self.progress,
+            self.model.resumes,
+            () if saved is None else saved.snapshots,
+        )
+        if again:
+            recording.warn(messages.remarks(march.report))
+            self.progress.message(f"resumed after step {recorder.rows[-1]['step']}")
+        return recorder, recording
+
+    # --- after the march -----------------------------------------------------------------------
+
+    def _warn_of_ends(self, status: str, recorder: Recorder, recording: Recording) -> None:
+        """Say what only a whole history shows: jumps, and an end at which nothing would rest."""
+        jumps, rows = recorder.integrate(), recorder.rows
+        lines = [messages.jumped(rows[step - 1], rows[step]) for step in jumps]
+        if status == "converged" and rows[-1].get("unstable_modes"):
+            lines.append(messages.UNSTABLE_END)
+        recording.warn(lines)
+
+    def _cross_check(
+        self, rows: list[dict[str, Any]], section: SectionStates | None
+    ) -> Check | None:
+        """The run beside the section model and the closed forms; only for a run with a folder."""
+        if self.folder is None:
+            return None
+        from fiberbend.compare.beside import check_run
+
+        self.progress.phase("crosscheck")
+        known = None if section is None else section.bending
+
+        def solve(beside: Case) -> RunResult:
+            model = choose_model(beside)[0].elements()
+            assert model is not None
+            return _Run(beside, model, None, Progress(quiet=True), MPI.COMM_SELF).go(False)
+
+        check: Check = _on_rank_0(
+            self.comm,
+            lambda: check_run(self.case, self.model, rows, solve, known),
+        )
+        return check
+
+    def _wall(self, assembly: Assembly) -> dict[str, float]:
+        seconds = {name: round(value, 3) for name, value in self.progress.wall_s.items()}
+        return seconds | {f"solve/{k}": round(v, 3) for k, v in assembly.newton.seconds.items()}
+
+    def _tell(self, run: dict[str, Any], check: Check | None) -> None:
+        """Say what the run took, and what stands beside it."""
+        say = self.progress.message
+        for line in check.lines() if check is not None else ():
+            say(line)
+        say(
+            f"{run['unknowns']} unknowns: {run['load_steps']} steps, {run['newton_iterations']} "
+            f"iterations, {run['factorisations']} factorisations, {run['cutbacks']} cut-backs"
+        )
+        phases = ", ".join(f"{name} {value:.1f} s" for name, value in run["wall_s"].items())
+        say(f"{phases}; peak memory {run['peak_memory_MB']:.0f} MB on {run['ranks']} ranks")
+
+    def _draw(
+        self,
+        assembly: Assembly,
+        recording: Recording,
+        reason: str | None,
+        rows: list[dict[str, Any]],
+        check: Check | None,
+    ) -> None:
+        """Fields, pictures and plots, on rank 0."""
+        from fiberbend.running import report
+
+        assert self.folder is not None
+        scenery = Scenery(
+            mesh=assembly.scene.domain.data,
+            materials=assembly.parts.materials,
+            fibers=assembly.parts.fibers,
+            smeared=assembly.parts.smeared,
+            title=self.case.title,
+            uniform=not self.model.ends,
+        )
+        report.draw(
+            self.folder,
+            self.case,
+            scenery,
+            recording.snapshots,
+            rows,
+            reason,
+            self.progress.message,
+            check,
+            self.model.name,
+        )

@@ -1,0 +1,122 @@
+"""States of the section model from which a body takes its start and its direction."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import numpy.typing as npt
+from mpi4py import MPI
+
+from fem.kinematics.uniform import CURVATURE, STRETCH
+from fem.march.frames import Frames
+from fem.march.guide import Guide
+from fem.march.hooks import AfterStep
+from fem.march.records import State, measure
+from fem.scene import Scene
+from fem.solver.newton import Outcome
+from fiberbend.case.case import Case
+from fiberbend.case.section_beside import as_section
+from fiberbend.effects.pressure import inflate
+from fiberbend.models.choice import meshed
+from fiberbend.models.result import Curve
+from fiberbend.running.assembly import assemble
+
+Floats = npt.NDArray[np.float64]
+
+PRESSURE = "pressure"
+BEYOND = 1.15
+"""The section goes so much further than the angle that ends a run: a body differs a little."""
+
+
+@dataclasses.dataclass(frozen=True)
+class SectionStates:
+    """m states of a section with n nodes, from rest on.
+
+    Attributes:
+        nodes: of its mesh, (n, 2), mm.
+        measures: by name, what a march may drive, of the whole actuator, (m,).
+        curvature: k, 1/mm, (m,).
+        stretch: λ0, (m,).
+        displacement: u and v, mm, (m, n, 2).
+        bending: pressure, angle and volume of the whole actuator.
+    """
+
+    nodes: Floats
+    measures: dict[str, Floats]
+    curvature: Floats
+    stretch: Floats
+    displacement: Floats
+    bending: Curve
+
+    def guide(self, scene: Scene, frames: Frames, length: float) -> Guide:
+        """The guide of a body."""
+        measures = {}
+        for name, values in self.measures.items():
+            share = scene.body.copies if name.startswith("conjugate") else 1.0
+            measures[name] = values / share
+        return Guide(
+            scene.body,
+            frames,
+            length,
+            self.nodes,
+            measures,
+            self.curvature,
+            self.stretch,
+            self.displacement,
+        )
+
+
+def guides(case: Case) -> bool:
+    """Whether a section bends as the body of a case does, between its ends."""
+    return case.inflation is not None and all(effect.steers() for effect in case.effects)
+
+
+def section_states(case: Case) -> SectionStates | None:
+    """March the section of a case through the case's load; on one rank.
+
+    Args:
+        case: a case for which `guides` holds.
+
+    Returns:
+        The states; None where the section does not get anywhere.
+    """
+    load = next(effect for effect in case.effects if effect.inflation() is not None)
+    inflation = load.inflation()
+    if inflation is not None and inflation.angle is not None:
+        load = inflate(angle=BEYOND * inflation.angle)
+    section = as_section(case, load)
+    stop = case.output.stop_at_angle
+    if stop is not None and inflation is not None and inflation.angle is None:
+        output = section.output.model_copy(update={"stop_at_angle": BEYOND * stop})
+        section = section.model_copy(update={"output": output})
+    states: list[State] = []
+
+    def keep(state: State, _outcome: Outcome) -> None:
+        states.append(state)
+
+    mesh = meshed(section).mesh(section)
+    assembly = assemble(section, mesh, MPI.COMM_SELF)
+    states.append(assembly.march.rest)
+    assembly.march.run(assembly.ramps, [AfterStep(keep)])
+    if len(states) < 4:
+        return None
+    copies = assembly.scene.body.copies
+    names = [measure(kind, PRESSURE) for kind in ("value", "followed", "conjugate")]
+    measures = {}
+    for name in names:
+        values = np.array([state.measures[name] for state in states])
+        if np.all(np.diff(values) > 0):
+            measures[name] = values * (copies if name.startswith("conjugate") else 1.0)
+    dofs = assembly.scene.body.node_dofs
+    pressure, angle, volume = (
+        np.array([state.measures[name] for state in states]) for name in names
+    )
+    return SectionStates(
+        mesh.nodes,
+        measures,
+        np.array([state.scalars[CURVATURE] for state in states]),
+        np.array([state.scalars[STRETCH] for state in states]),
+        np.array([state.w[dofs] for state in states]),
+        Curve(pressure, angle, copies * volume),
+    )

@@ -1,0 +1,1 @@
+"""Strain energies of rubber, one file a law; `table` lists them."""
