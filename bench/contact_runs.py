@@ -124,10 +124,10 @@ def carried(name: str, way: str, kpa: int) -> dict[str, float]:
     def push(name: str) -> Any:
         """Upward forces of roof or post on the nodes."""
         if way == "contact":
-            return body.copies * scene.force(f"Contact[{name}]")[up]
+            return body.symmetry_factor * scene.force(f"Contact[{name}]")[up]
         held = np.zeros(body.local)
-        held[scene.held(name)] = scene.residual()[0][scene.held(name)]
-        return body.copies * held[up]
+        held[scene.fixed(name)] = scene.residual()[0][scene.fixed(name)]
+        return body.symmetry_factor * held[up]
 
     frames, shape = built.reading.frames, built.march.states[-1].shape
     assert frames is not None

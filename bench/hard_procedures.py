@@ -12,11 +12,11 @@ import numpy as np
 from mpi4py import MPI
 
 from bench.hard_cases import Hard
-from fem.march.hooks import Hook, Steered
+from fem.march.hooks import Hook, Marching
 from fem.march.records import Ramp, Report, State
 from fem.results.measures import Tip
-from fem.solver.closures import Stationary
 from fem.solver.newton import Outcome
+from fem.solver.side_conditions import Stationary
 from fiberbend.case.section_beside import as_section
 from fiberbend.effects.pressure import inflate
 from fiberbend.models.choice import meshed
@@ -112,7 +112,7 @@ class Driven(Hook):
         self.tip = Tip(self.scene.body) if model == "body" else None
         self._note()
 
-    def after_step(self, march: Steered, state: State, outcome: Outcome) -> None:
+    def after_step(self, march: Marching, state: State, outcome: Outcome) -> None:
         """Record it."""
         self.recorder.add(state, outcome)
         self._note()
@@ -163,7 +163,7 @@ def perturbed(hard: Hard, model: str) -> Done:
     done = driven.run()
     scene, newton = driven.scene, driven.newton
     end = driven.march.states[-1]
-    closures = [Stationary(scene, name) for name in scene.natural]
+    conditions = [Stationary(scene, name) for name in scene.natural]
     span = driven.case.actuator.length
     volumetric = scene.volumetric
     rng = np.random.default_rng(4)
@@ -176,7 +176,7 @@ def perturbed(hard: Hard, model: str) -> Done:
         for name in scene.natural:
             size = scene.body.size_of(name)
             scene.set_scalar(name, end.scalars[name] + 0.01 * size * rng.uniform(-1, 1))
-        outcome = newton.solve(start, scene.natural, closures)
+        outcome = newton.solve(start, scene.natural, conditions)
         done.run["newton_iterations"] += outcome.iterations
         off = float(np.max(np.abs(scene.w - end.w)[~volumetric])) / span
         for name in scene.natural:

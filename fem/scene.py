@@ -13,8 +13,12 @@ from petsc4py import PETSc
 
 from fem import compat
 from fem.effects.effect import Constraint, Discrete, Effect
+from fem.kernels import compiling
+from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
-from fem.kinematics.kinematics import Body, Kinematics
+from fem.kinematics.kinematics import Kinematics
+from fem.matrix import may_free
+from fem.ranks import total
 
 Floats = npt.NDArray[np.float64]
 
@@ -47,7 +51,7 @@ class Scene:
         natural: global scalars in which the potential is stationary at an equilibrium.
         force_scale: scale of the forces in the last residual.
         force_noise: norm of the forces that round-off in stiff discrete potentials makes.
-        free: local dofs (owned and ghosts) that no constraint holds.
+        free: local dofs (owned and ghosts) that no constraint fixes, (local,).
         discrete: by key, the potentials with own code.
 
     Raises:
@@ -70,7 +74,7 @@ class Scene:
         self.body = kinematics(domain, (name for effect in ordered for name in effect.fields))
         self.force_scale = 1.0
         self._force_floor = 1e-30
-        self._corners: dict[tuple[str, str], float] = {}
+        self._second: dict[tuple[str, str], float] = {}
         self._loads: dict[str, Floats] = {}
         self._at: Floats | None = None
         self.discrete: dict[str, Discrete] = {}
@@ -84,45 +88,47 @@ class Scene:
             if discrete is not None:
                 self.discrete[effect.key] = discrete
             constraints += effect.constraints()
-        held = {name: value for effect in ordered for name, value in effect.held_scalars().items()}
-        for name, value in held.items():
+        fixed: dict[str, float] = {}
+        for effect in ordered:
+            fixed |= effect.fixed_scalars()
+        for name, value in fixed.items():
             self.set_scalar(name, value)
-        self.natural = tuple(name for name in self.body.natural if name not in held)
+        self.natural = tuple(name for name in self.body.natural if name not in fixed)
         self._compile(potentials)
         self._constrain(constraints)
         self.force_noise = self._noise()
 
     def __del__(self) -> None:
-        if hasattr(self, "matrix") and compat.may_free(self.matrix):
+        if hasattr(self, "matrix") and may_free(self.matrix):
             self.matrix.destroy()
 
     # --- compilation ---------------------------------------------------------------------------
 
     def _compile(self, potentials: dict[str, Any]) -> None:
         body, mesh = self.body, self.domain.mesh
-        total = sum(potentials.values(), ufl.Form([]))
+        whole = sum(potentials.values(), ufl.Form([]))
         test, trial = ufl.TestFunction(body.space), ufl.TrialFunction(body.space)
-        residual = ufl.derivative(total, body.w, test)
+        residual = ufl.derivative(whole, body.w, test)
         tangent = ufl.derivative(residual, body.w, trial)
         forms: dict[str, Any] = {"residual": residual, "tangent": tangent}
         for key, form in potentials.items():
             forms[f"energy {key}"] = form
             if self.effects[key].outside:
                 forms[f"force {key}"] = ufl.derivative(form, body.w, test)
-        lowered = ufl.algorithms.apply_algebra_lowering.apply_algebra_lowering(total)
+        lowered = ufl.algorithms.apply_algebra_lowering.apply_algebra_lowering(whole)
         for i, name in enumerate(body.scalars):
             conjugate = _differentiate(lowered, body.scalar(name))
             forms[f"conjugate {name}"] = conjugate
             forms[f"load {name}"] = ufl.derivative(conjugate, body.w, test)
             for other in list(body.scalars)[i:] if body.natural else ():
-                corner = _differentiate(conjugate, body.scalar(other))
-                if corner is not None:
-                    forms[f"corner {name} {other}"] = corner
+                second = _differentiate(conjugate, body.scalar(other))
+                if second is not None:
+                    forms[f"second {name} {other}"] = second
         if body.pressure_field is not None:
             forms["volume"] = body.part(test, body.pressure_field)[0] * body.dx()
         if body.stand_ins:
             forms = {name: ufl.replace(form, body.stand_ins) for name, form in forms.items()}
-        with compat.compiling(mesh.comm):
+        with compiling(mesh.comm):
             self._forms = {name: compat.compile_form(mesh, form) for name, form in forms.items()}
         self.signatures = {name: form.signature() for name, form in forms.items()}
         self.kernels = sum(len(form.integrals()) for form in forms.values())
@@ -137,20 +143,20 @@ class Scene:
     def _constrain(self, constraints: list[Constraint]) -> None:
         body = self.body
         self.free = np.ones(body.local, dtype=bool)
-        self._held: dict[str, npt.NDArray[np.int32]] = {}
-        self._held_values = np.zeros(body.local)
+        self._fixed: dict[str, npt.NDArray[np.int32]] = {}
+        self._fixed_values = np.zeros(body.local)
         for constraint in constraints:
             nodes = self.domain.surface_nodes(constraint.surface)
             dofs = body.node_dofs[nodes, constraint.component]
             dofs = dofs[dofs >= 0]
             self.free[dofs] = False
-            self._held_values[dofs] = constraint.value
-            old = self._held.get(constraint.name, np.zeros(0, dtype=np.int32))
-            self._held[constraint.name] = np.union1d(old, dofs).astype(np.int32)
+            self._fixed_values[dofs] = constraint.value
+            old = self._fixed.get(constraint.name, np.zeros(0, dtype=np.int32))
+            self._fixed[constraint.name] = np.union1d(old, dofs).astype(np.int32)
         if body.pins:
             dofs = np.array([body.node_dofs[pin] for pin in body.pins], dtype=np.int32)
             self.free[dofs] = False
-            self._held["pin"] = dofs
+            self._fixed["pin"] = dofs
         follow, lead = body.ties
         self.free[follow] = self.free[lead]
         self._dirichlet = compat.dirichlet(body.space, np.flatnonzero(~self.free))
@@ -160,12 +166,12 @@ class Scene:
             self.volumetric[p[p < body.owned]] = True
         """Owned dofs of the pressure field."""
 
-    def hold(self, dofs: npt.NDArray[np.int32], values: Floats) -> None:
-        """Hold further local dofs at given values, in mm (prescribed boundary displacement)."""
+    def fix(self, dofs: npt.NDArray[np.int32], values: Floats) -> None:
+        """Fix further local dofs at given values, in mm (prescribed boundary displacement)."""
         self.free[dofs] = False
-        self._held_values[dofs] = values
-        self._held["prescribed"] = np.union1d(
-            self._held.get("prescribed", np.zeros(0, dtype=np.int32)), dofs
+        self._fixed_values[dofs] = values
+        self._fixed["prescribed"] = np.union1d(
+            self._fixed.get("prescribed", np.zeros(0, dtype=np.int32)), dofs
         ).astype(np.int32)
         self._dirichlet = compat.dirichlet(self.body.space, np.flatnonzero(~self.free))
 
@@ -178,8 +184,8 @@ class Scene:
         return values
 
     def set(self, w: Floats) -> None:
-        """Take the owned coefficients w as the state; held dofs take their values."""
-        w = np.where(self.free[: self.body.owned], w, self._held_values[: self.body.owned])
+        """Take the owned coefficients w as the state; fixed dofs take their values."""
+        w = np.where(self.free[: self.body.owned], w, self._fixed_values[: self.body.owned])
         follow, lead = self.body.ties
         w[follow] = w[lead]
         if self._is_at(w):
@@ -199,7 +205,7 @@ class Scene:
 
     def _forget(self) -> None:
         self._at = None
-        self._corners.clear()
+        self._second.clear()
         self._loads.clear()
 
     def scalar(self, name: str) -> float:
@@ -262,26 +268,26 @@ class Scene:
                 continue
             if key in self.discrete:
                 mine += self.discrete[key].energy()
-            result[key] = float(compat.total(comm, mine))
+            result[key] = float(total(comm, mine))
         return result
 
     def conjugate(self, name: str) -> float:
         """−∂Π/∂q of a global scalar q: the chamber volume in mm³ for the pressure."""
         mine = -compat.assemble_scalar(self._forms[f"conjugate {name}"])
         mine += sum(discrete.conjugate(name) for discrete in self.discrete.values())
-        return float(compat.total(self.domain.comm, mine))
+        return float(total(self.domain.comm, mine))
 
-    def corner(self, first: str, second: str) -> float:
+    def second_derivative(self, first: str, second: str) -> float:
         """∂²Π/∂q∂r of two global scalars at the present state."""
-        if (first, second) in self._corners:
-            return self._corners[first, second]
-        mine = sum(discrete.corner(first, second) for discrete in self.discrete.values())
-        for key in (f"corner {first} {second}", f"corner {second} {first}"):
+        if (first, second) in self._second:
+            return self._second[first, second]
+        mine = sum(discrete.second_derivative(first, second) for discrete in self.discrete.values())
+        for key in (f"second {first} {second}", f"second {second} {first}"):
             if key in self._forms:
                 mine += compat.assemble_scalar(self._forms[key])
                 break
-        value = float(compat.total(self.domain.comm, mine))
-        self._corners[first, second] = self._corners[second, first] = value
+        value = float(total(self.domain.comm, mine))
+        self._second[first, second] = self._second[second, first] = value
         return value
 
     def _sum(self, form: Any, add: Iterable[Callable[[Floats], None]]) -> tuple[Floats, float]:
@@ -308,8 +314,7 @@ class Scene:
         for discrete in self.discrete.values():
             discrete.update(self.body.w.x.array)
             discrete.add_noise(noise)
-        total = compat.total(self.domain.comm, float(noise @ noise))
-        return float(np.sqrt(total))
+        return float(np.sqrt(total(self.domain.comm, float(noise @ noise))))
 
     def residual(self) -> tuple[Floats, float]:
         """R = ∂Π/∂w at the present state.
@@ -321,10 +326,10 @@ class Scene:
         r, norm = self._sum(
             self._forms["residual"], [item.add_residual for item in self.discrete.values()]
         )
-        held = ~self.free[: self.body.owned]
-        reaction = self.norm(r[held])
-        total = float(np.sqrt(compat.total(self.domain.comm, norm**2)))
-        self.force_scale = max(reaction, total, self._force_floor)
+        fixed = ~self.free[: self.body.owned]
+        reaction = self.norm(r[fixed])
+        discrete = float(np.sqrt(total(self.domain.comm, norm**2)))
+        self.force_scale = max(reaction, discrete, self._force_floor)
         return r, self.force_scale
 
     def load(self, name: str, constrained: bool = False) -> Floats:
@@ -337,7 +342,7 @@ class Scene:
 
     def assemble_tangent(self) -> PETSc.Mat:
         """K = ∂R/∂w at the present state; unit diagonal on constrained dofs."""
-        self._corners.clear()  # fibers may predict other forces now
+        self._second.clear()  # fibers may predict other forces now
         self._loads.clear()
         self.matrix.zeroEntries()
         compat.assemble_matrix(self.matrix, self._forms["tangent"], self._dirichlet)
@@ -351,7 +356,7 @@ class Scene:
 
     def norm(self, values: Floats) -> float:
         """Euclidean norm over all ranks of owned values."""
-        return float(np.sqrt(compat.total(self.domain.comm, float(values @ values))))
+        return float(np.sqrt(total(self.domain.comm, float(values @ values))))
 
     @property
     def outside(self) -> list[str]:
@@ -364,9 +369,9 @@ class Scene:
 
     @property
     def supports(self) -> list[str]:
-        """Names of what holds dofs."""
-        return sorted(self._held)
+        """Names of what fixes dofs."""
+        return sorted(self._fixed)
 
-    def held(self, name: str) -> npt.NDArray[np.int32]:
-        """Local dofs that the constraints of this name hold, ghosts included."""
-        return self._held[name]
+    def fixed(self, name: str) -> npt.NDArray[np.int32]:
+        """Local dofs that the constraints of this name fix, ghosts included, (n,)."""
+        return self._fixed[name]

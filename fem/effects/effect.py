@@ -17,10 +17,10 @@ Floats = npt.NDArray[np.float64]
 
 @dataclasses.dataclass(frozen=True)
 class Constraint:
-    """A displacement component held at a value on a named surface.
+    """A displacement component fixed at a value on a named surface.
 
     Attributes:
-        name: what holds it; reactions are reported under this name.
+        name: what fixes it; reactions are reported under this name.
         surface: named surface of the mesh.
         component: 0, 1 or 2.
         value: mm.
@@ -68,7 +68,7 @@ class Discrete(Protocol):
     def add_load(self, name: str, b: Floats) -> None:
         """Add ∂²Π/∂w∂q of a global scalar to local coefficients (owned and ghosts)."""
 
-    def corner(self, first: str, second: str) -> float:
+    def second_derivative(self, first: str, second: str) -> float:
         """This rank's ∂²Π/∂q∂r of two global scalars."""
 
     def state(self) -> dict[str, Floats]:
@@ -103,9 +103,9 @@ class Effect:
         return None
 
     def constraints(self) -> tuple[Constraint, ...]:
-        """Displacement components that it holds."""
+        """Displacement components that it fixes."""
         return ()
 
-    def held_scalars(self) -> dict[str, float]:
-        """Natural unknowns of the kinematics, such as the curvature, that it holds at a value."""
+    def fixed_scalars(self) -> dict[str, float]:
+        """Natural unknowns of the kinematics, such as the curvature, that it fixes at a value."""
         return {}

@@ -10,9 +10,10 @@ import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fem import compat
+from analytic.path import cross_matrix
 from fem.kinematics.kinematics import Kinematics
 from geometry.mesh.data import facet_positions
+from geometry.mesh.reference import shape_functions
 from geometry.winding.segments import EmbeddedFibers
 
 Floats = npt.NDArray[np.float64]
@@ -24,26 +25,20 @@ class _Second:
 
     Attributes:
         block: ∂²Π/∂w², (s, k, k).
-        borders: by scalar, ∂²Π/∂w∂q, (s, k).
-        corners: by pair of scalars, ∂²Π/∂q∂r of all segments together.
+        mixed: by scalar, ∂²Π/∂w∂q, (s, k).
+        scalars: by pair of scalars, ∂²Π/∂q∂r of all segments together.
     """
 
     block: Floats
-    borders: dict[str, Floats]
-    corners: dict[tuple[str, str], float]
+    mixed: dict[str, Floats]
+    scalars: dict[tuple[str, str], float]
 
 
 def _contract(vectors: Floats, maps: Floats) -> Floats:
-    """Σ over points and components of vectors (n, q, 3) with maps (n, q, 3, k), (n, k)."""
+    """Σ_qi v_qi M_qik over points and components: v (n, q, 3), M (n, q, 3, k), result (n, k)."""
     count, width = len(maps), maps.shape[3]
     result: Floats = (vectors.reshape(count, 1, -1) @ maps.reshape(count, -1, width))[:, 0]
     return result
-
-
-def _cross(spin: Floats) -> Floats:
-    """The matrix of spin ×."""
-    x, y, z = spin
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 class FiberPotential:
@@ -57,7 +52,7 @@ class FiberPotential:
     not the tangent at the solution; `predict(None)` switches it off.
 
     In uniform bending F T has a part T_z (λ0 e_z + ω × x') that depends on global scalars; the
-    derivatives with respect to these are `conjugate`, `add_load` and `corner`.
+    derivatives with respect to these are `conjugate`, `add_load` and `second_derivative`.
 
     Args:
         body: the kinematics.
@@ -88,11 +83,17 @@ class FiberPotential:
         host = host[self.index]
         self._start = np.flatnonzero(np.r_[True, host[1:] != host[:-1]][: len(host)])
 
+        # With φ_a the shape functions of the host cell, ξ its reference coordinates, X_a (mm) the
+        # nodes of the host facet and t = dξ/ds along the piece (s its parameter): dX/ds =
+        # Σ_a (∇φ_a · t) X_a, S (mm) the arc length, dS = |dX/ds| ds. At each point i
+        #   _slope: T·∇φ_a = (∇φ_a · t)/|dX/ds|, 1/mm, so that F T = Σ_a slope_a x_a;
+        #   _rise: T_z = dZ/dS; _value: φ_a; _share: c_i = w_i dS_i/Σ w dS, weights of the mean.
+        # Only nodes of the facet enter: off it φ_a and its derivative along it vanish.
         positions = facet_positions(domain.data.cell_type)[facet]
         count, quadrature = len(self.index), segments.weights.shape[1]
         dim = segments.points.shape[2]
         points = segments.points[self.index].reshape(-1, dim)
-        _, gradient = compat.tabulate_gradient(domain.data.cell_type, points)
+        value, gradient = shape_functions(domain.data.cell_type, points)
         tangent = segments.tangents[self.index].reshape(-1, dim)
         along = np.einsum("pad,pd->pa", gradient, tangent).reshape(count, quadrature, -1)
         along = np.take_along_axis(along, positions[:, None, :], axis=2)
@@ -110,7 +111,6 @@ class FiberPotential:
         self._uniform = body.carry() is not None
         parts = body.components
         if self._uniform:
-            value, _ = compat.tabulate_gradient(domain.data.cell_type, points)
             value = np.take_along_axis(
                 value.reshape(count, quadrature, -1), positions[:, None, :], axis=2
             )
@@ -141,11 +141,11 @@ class FiberPotential:
         carry = self._body.carry()
         if carry is not None:
             position = (self._value @ x[:, None, :, None])[..., 0]
-            along, spin = np.array([0.0, 0.0, carry.stretch]), _cross(carry.spin)
+            along, spin = np.array([0.0, 0.0, carry.stretch]), cross_matrix(carry.spin)
             t = t + self._rise * (along + position @ spin.T)
             self._map = self._slope + self._rise[..., None] * (spin @ self._value)
             for name, (vector, turn) in carry.rates.items():
-                self._rates[name] = self._rise * (vector + position @ _cross(turn).T)
+                self._rates[name] = self._rise * (vector + position @ cross_matrix(turn).T)
         self._stretch = np.linalg.norm(t, axis=2)
         self._direction = t / self._stretch[:, :, None]
         self.strain = np.sum(self._share * self._stretch, axis=1) - 1
@@ -208,7 +208,19 @@ class FiberPotential:
         self._predicted = self.stiffness * (self.strain + change)
 
     def _second_derivatives(self) -> _Second:
-        """∂²Π of every segment in its own dofs and the scalars, at the present state."""
+        """∂²Π of every segment in its own dofs and the scalars, at the present state.
+
+        With t = F T, λ = |t| and n = t/λ at each point, c its weight, e = Σ c λ − 1, ℓ in mm, EA
+        and the force N in N, and a, b any of the unknowns w and q:
+
+            ∂e/∂a = Σ c n · ∂t/∂a,
+            ∂²Π/∂a∂b = ℓ EA ∂e/∂a ∂e/∂b
+                     + ℓ N Σ c [∂t/∂a · (I − n nᵀ)/λ · ∂t/∂b + n · ∂²t/∂a∂b].
+
+        t is linear in w and in q; ∂²t/∂w∂q = T_z (∂ω/∂q) × φ alone does not vanish, and only in
+        uniform bending. Material and geometric stiffness of a truss: Crisfield 1991, Non-linear
+        Finite Element Analysis of Solids and Structures 1, chapter 3.
+        """
         if self._second is not None:
             return self._second
         force, stiffness = self.force, self.stiffness
@@ -225,19 +237,19 @@ class FiberPotential:
         count, width = self._dofs.shape
         block = self._map.reshape(count, -1, width).swapaxes(1, 2) @ side.reshape(count, -1, width)
         block += stiff[:, None, None] * (self._b[:, :, None] * self._b[:, None, :])
-        borders: dict[str, Floats] = {}
-        corners: dict[tuple[str, str], float] = {}
+        mixed: dict[str, Floats] = {}
+        scalars: dict[tuple[str, str], float] = {}
         carry = self._body.carry()
         for name, rate in self._rates.items():
             assert carry is not None
-            turned = self._rise[..., None] * (_cross(carry.rates[name][1]) @ self._value)
-            border = _contract(rate, side) + _contract(pull[:, :, None] * n, turned)
-            borders[name] = border + (stiff * self._e_q[name])[:, None] * self._b
+            turned = self._rise[..., None] * (cross_matrix(carry.rates[name][1]) @ self._value)
+            geometric = _contract(rate, side) + _contract(pull[:, :, None] * n, turned)
+            mixed[name] = geometric + (stiff * self._e_q[name])[:, None] * self._b
             for other, last in self._rates.items():
-                geometric = np.sum(rate * (across @ last[..., None])[..., 0])
+                turning = np.sum(rate * (across @ last[..., None])[..., 0])
                 material = np.sum(stiff * self._e_q[name] * self._e_q[other])
-                corners[name, other] = float(geometric + material)
-        self._second = _Second(block, borders, corners)
+                scalars[name, other] = float(turning + material)
+        self._second = _Second(block, mixed, scalars)
         return self._second
 
     def add_tangent(self, matrix: PETSc.Mat, free: npt.NDArray[np.bool_]) -> None:
@@ -262,13 +274,13 @@ class FiberPotential:
     def add_load(self, name: str, b: Floats) -> None:
         """Add ∂²Π/∂w∂q to local coefficients (owned and ghosts)."""
         if name in self._e_q:
-            self._add(b, self._second_derivatives().borders[name])
+            self._add(b, self._second_derivatives().mixed[name])
 
-    def corner(self, first: str, second: str) -> float:
+    def second_derivative(self, first: str, second: str) -> float:
         """This rank's ∂²Π/∂q∂r of two global scalars."""
         if first not in self._e_q or second not in self._e_q:
             return 0.0
-        return self._second_derivatives().corners[first, second]
+        return self._second_derivatives().scalars[first, second]
 
     # --- memory of converged steps ---------------------------------------------------------
 

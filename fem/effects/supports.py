@@ -1,4 +1,4 @@
-"""Supports: displacement components held on named surfaces."""
+"""Supports: displacement components fixed on named surfaces."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from fem.effects.effect import Constraint, Effect
 
 
 class Clamp(Effect):
-    """All displacement components held on a surface.
+    """All displacement components fixed on a surface.
 
     Args:
         surface: named surface, by default the root cap's outer face.
@@ -26,7 +26,7 @@ class Clamp(Effect):
 
 
 class Symmetry(Effect):
-    """A mirror plane: the displacement across it is held.
+    """A mirror plane: the displacement across it is fixed at zero.
 
     Args:
         surface: named surface in the plane.
@@ -66,16 +66,16 @@ class TwofoldAxis(Effect):
 
 
 class HeldStraight(Effect):
-    """Uniform bending with the curvature held at zero, and the stretch at one if wanted.
+    """Uniform bending with the curvature fixed at zero, and the stretch at one if wanted.
 
     Args:
-        stretch: hold the stretch too.
+        stretch: fix the stretch too.
     """
 
     def __init__(self, stretch: bool = False) -> None:
         self.stretch = stretch
 
-    def held_scalars(self) -> dict[str, float]:
+    def fixed_scalars(self) -> dict[str, float]:
         """k = 0, and λ0 = 1."""
         return {"curvature": 0.0} | ({"stretch": 1.0} if self.stretch else {})
 
@@ -83,7 +83,7 @@ class HeldStraight(Effect):
 class BlockedTip(Effect):
     """A straight roof over the body and a post under the tip (paper III-C, V-C, Fig. 11a).
 
-    Guided form: the vertical displacement v is held on a strip along the crown and on a strip at
+    Guided form: the vertical displacement v is fixed on a strip along the crown and on a strip at
     the distal end of the tip cap's underside; u and w stay free.
 
     Args:

@@ -10,7 +10,8 @@ import ufl
 from mpi4py import MPI
 
 from fem import compat
-from geometry.mesh.data import MeshData, facet_positions
+from geometry.mesh.data import MeshData
+from geometry.mesh.reference import surface_weights
 
 QUADRATURE_DEGREE = {"quadrilateral": 5, "hexahedron": 5, "tetrahedron": 4}
 """Three Gauss points a direction on bricks: exact for the volume of the quadratic chamber wall."""
@@ -106,20 +107,4 @@ class Domain:
 
     def surface_weights(self, name: str) -> npt.NDArray[np.float64]:
         """Area weight of every input node, ∫ φ_a dA over a named surface, in mm²; (n,)."""
-        data = self.data
-        pairs = data.facets[name]
-        weights = np.zeros(len(data.nodes))
-        if not len(pairs):
-            return weights
-        for facet, positions in enumerate(facet_positions(data.cell_type)):
-            cells = pairs[pairs[:, 1] == facet, 0]
-            if not len(cells):
-                continue
-            points, quadrature, spans = compat.facet_quadrature(data.cell_type, facet, self.degree)
-            values, gradients = compat.tabulate_gradient(data.cell_type, points)
-            x = data.nodes[data.cells[cells]]
-            jacobian = np.einsum("cai,qad,de->cqie", x, gradients, spans, optimize=True)
-            area = np.linalg.norm(np.cross(jacobian[..., 0], jacobian[..., 1]), axis=-1)
-            part = np.einsum("cq,q,qa->ca", area, quadrature, values[:, positions])
-            np.add.at(weights, data.cells[cells][:, positions], part)
-        return weights
+        return surface_weights(self.data, name)

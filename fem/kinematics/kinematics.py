@@ -1,4 +1,4 @@
-"""How positions follow from the unknowns: what every model shares, and the 3-D body."""
+"""How positions follow from the unknowns: what every model shares."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ Dofs = npt.NDArray[np.int32]
 
 def _displacement(cell: str) -> Any:
     # scalar elements, not one vector element: contiguous rows let the compiler vectorise kernels
-    return ufl.FiniteElement("Lagrange", cell, 2)
+    return compat.scalar_element("Lagrange", cell, 2)
 
 
 def _pressure(cell: str) -> Any:
     """P1 discontinuous on bricks (Q2–P1disc), continuous on tetrahedra (Taylor–Hood)."""
     family = "Lagrange" if cell == "tetrahedron" else "DPC"
-    return ufl.FiniteElement(family, cell, 1)
+    return compat.scalar_element(family, cell, 1)
 
 
 DISPLACEMENT, PRESSURE = "u", "p"
@@ -72,9 +72,10 @@ class Kinematics:
         scalars: the global scalars, by name, that effects and kinematics declared.
         natural: those of them that are unknowns of the kinematics: at an equilibrium the
             potential is stationary in them.
-        pins: (node, component) held so that no rigid motion is left.
+        pins: (node, component) fixed so that no rigid motion is left.
         ties: local dofs that follow others, and these; on one rank only.
-        copies: how many of what is modelled the whole actuator is.
+        symmetry_factor: how many of what is modelled make up the whole actuator: two halves, or a
+            length over that of a slice.
         stand_ins: constants that stand for frozen scalars while forms are differentiated, and
             these; whoever compiles a form replaces them.
     """
@@ -85,7 +86,7 @@ class Kinematics:
         self.natural: tuple[str, ...] = ()
         self.pins: tuple[tuple[int, int], ...] = ()
         self.ties: tuple[Dofs, Dofs] = (np.zeros(0, dtype=np.int32), np.zeros(0, dtype=np.int32))
-        self.copies = 2.0 if domain.data.half else 1.0
+        self.symmetry_factor = 2.0 if domain.data.half else 1.0
         cell = domain.data.cell_type
         wanted = set(fields)
         self.names = [name for name in FIELDS if name in wanted]
@@ -241,29 +242,3 @@ class Kinematics:
             return float(self.domain.comm.allreduce(mine, MPI.MIN))
 
         return least
-
-
-class Body(Kinematics):
-    """The 3-D body: F = I + ∂u/∂X, x = X + u."""
-
-    def __init__(self, domain: Domain, fields: Iterable[str]) -> None:
-        super().__init__(domain, fields, components=3)
-
-    @property
-    def x(self) -> Any:
-        """Deformed position, a UFL vector in mm."""
-        return ufl.SpatialCoordinate(self.domain.mesh) + self.u
-
-    @property
-    def F(self) -> Any:
-        """Deformation gradient, a UFL 3×3 tensor."""
-        return ufl.Identity(3) + ufl.grad(self.u)
-
-    def volume_density(self, surface: str) -> Any:
-        """Density per reference area of the volume a closed cavity surface encloses.
-
-        V = −∮ x_x (cof F · N)_x dS with N out of the solid: x e_x has no flux through planes
-        y = const or z = const that close the cavity, nor through x = 0.
-        """
-        normal = ufl.FacetNormal(self.domain.mesh)
-        return -self.x[0] * ufl.dot(ufl.cofac(self.F), normal)[0]

@@ -1,4 +1,4 @@
-"""Uniform bending: the section and the cell, whose neighbours along the axis are like them.
+"""Uniform bending: what is modelled, a section or a slice, is like all others along the axis.
 
 Positions are components x' = (X + u, Y + v, w) in a frame that turns with the section at the rate
 ω = (k, 0, τ) and moves along its own z at the rate λ0. Then
@@ -6,7 +6,7 @@ Positions are components x' = (X + u, Y + v, w) in a frame that turns with the s
     F = ∇x' + (λ0 e_z + ω × x') ⊗ e_z,
 
 exact for a prismatic body that bends and twists uniformly. λ0 is the stretch at the pin, where
-v = 0 is held: without it v + c and λ0 − k c would be the same state.
+v is fixed at zero: without it v + c and λ0 − k c would be the same state.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Uniform(Kinematics):
     ) -> None:
         super().__init__(domain, fields, components)
         self.length, self.extent, self.twisted = length, extent, twisted
-        self.copies *= length / extent
+        self.symmetry_factor *= length / extent
         self.natural = (CURVATURE, STRETCH, *((TWIST,) if twisted else ()))
         self.pins = ((domain.data.points["pin"], 1),)
         for name in self.natural:
@@ -125,75 +125,6 @@ class Uniform(Kinematics):
                 spin[axis] = values[name]
                 rates[name] = (np.zeros(3), axes[axis])
         return Carry(values[STRETCH], spin, rates)
-
-
-class Section(Uniform):
-    """Nothing depends on z; a two-dimensional mesh, and forces per mm of length.
-
-    Args:
-        domain: mesh of quadrilaterals with the point "pin".
-        fields: names of the fields that the effects ask for.
-        length: L, mm.
-        twisted: τ and w(X, Y) join the unknowns.
-    """
-
-    def __init__(
-        self, domain: Domain, fields: Iterable[str], length: float, twisted: bool = False
-    ) -> None:
-        super().__init__(domain, fields, length, twisted, 3 if twisted else 2, extent=1.0)
-
-    def _relative(self) -> tuple[Any, Any]:
-        zero = ufl.constantvalue.Zero()
-        position, u = ufl.SpatialCoordinate(self.domain.mesh), self.u
-        rest = (position[0], position[1], zero)
-        x = [rest[i] + u[i] for i in range(self.components)]
-        slopes = [[ufl.grad(u)[i, j] for j in range(2)] for i in range(self.components)]
-        for i in range(2):
-            slopes[i][i] += 1
-        if not self.twisted:
-            x.append(zero)
-            slopes.append([zero, zero])
-        return ufl.as_vector(x), ufl.as_matrix([[*row, zero] for row in slopes])
-
-
-class Cell(Uniform):
-    """A slice that repeats along the axis, with every fiber in it; x' depends on z too.
-
-    Half a section is a slice between mirror planes. A whole section is a full pitch that repeats:
-    x' at its end is tied to x' at its start. Half a turn about the y axis through a point where a
-    fiber crosses x = 0 maps a helix onto itself, so that u = w = 0 there is no constraint, but
-    takes away what rigid motion is left.
-
-    Args:
-        domain: mesh of a slice from z = 0, with the points "pin" and "crown".
-        fields: names of the fields that the effects ask for.
-        length: L, mm.
-        twisted: τ is an unknown.
-    """
-
-    def __init__(
-        self, domain: Domain, fields: Iterable[str], length: float, twisted: bool = False
-    ) -> None:
-        extent = float(np.ptp(domain.data.nodes[:, 2]))
-        super().__init__(domain, fields, length, twisted, 3, extent)
-        data = domain.data
-        if not data.half:
-            if domain.comm.size > 1:
-                raise ValueError("a slice with tied ends is solved on one rank")
-            pin = data.points["pin"]
-            self.pins += ((pin, 0), (pin, 2), (data.points["crown"], 0))
-            start, end = (data.facet_nodes(name) for name in ("section_root", "section_tip"))
-            pairs = np.unique(np.column_stack([end.ravel(), start.ravel()]), axis=0)
-            self.ties = (self.node_dofs[pairs[:, 0]].ravel(), self.node_dofs[pairs[:, 1]].ravel())
-
-    def _relative(self) -> tuple[Any, Any]:
-        position, u = ufl.SpatialCoordinate(self.domain.mesh), self.u
-        x = ufl.as_vector([position[0] + u[0], position[1] + u[1], u[2]])
-        plane = ufl.as_matrix([[1, 0, 0], [0, 1, 0], [0, 0, 0]])
-        return x, plane + ufl.grad(u)
-
-    def _bulge(self, x: Any, gradient: Any, normal: Any) -> Any:
-        return x[0] * ufl.dot(ufl.cofac(gradient), normal)[0]
 
 
 class CurvatureAngle:

@@ -1,19 +1,19 @@
-"""States of a scene at equilibrium: captured, put back, found under a load, and judged."""
+"""States of a scene at equilibrium: captured, put back, found under a load, stable or not."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from fem import compat
 from fem.march.predictor import Predictor
 from fem.march.records import MODES, State, measure
+from fem.ranks import total
 from fem.scene import Scene
-from fem.solver.border import Closure
-from fem.solver.closures import Conjugate, Functional, Stationary, Target
+from fem.solver.bordered import SideCondition
 from fem.solver.newton import Newton, Outcome
+from fem.solver.side_conditions import Functional, GivenConjugate, GivenFunctional, Stationary
 
 TINY = 1e-5
-"""Strain to a neighbour that shows a slope: its square is lost, round-off is not seen."""
+"""Strain of a perturbed state that shows a slope: its square is lost, round-off is not seen."""
 
 
 class Equilibrium:
@@ -23,7 +23,7 @@ class Equilibrium:
         scene: the scene.
         newton: its solver.
         predictor: what a solve starts from.
-        control: functional that requests refer to (the bending angle), or None.
+        control: the quantity that requests refer to (the bending angle), or None.
     """
 
     def __init__(
@@ -32,7 +32,7 @@ class Equilibrium:
         self.scene, self.newton = scene, newton
         self._predictor, self._control = predictor, control
         comm, volumetric = scene.domain.comm, int(np.count_nonzero(scene.volumetric))
-        self._volumetric = int(compat.total(comm, volumetric))
+        self._volumetric = int(total(comm, volumetric))
 
     def capture(self) -> State:
         """The present state of the scene."""
@@ -43,7 +43,7 @@ class Equilibrium:
             if name not in scene.natural:  # there it is zero
                 measures[measure("conjugate", name)] = scene.conjugate(name)
         if self._control is not None:
-            measures["followed"] = self._control.value()
+            measures["control"] = self._control.value()
         return State(
             w=scene.w.copy(),
             scalars=scalars,
@@ -62,8 +62,8 @@ class Equilibrium:
         """One equation for each natural scalar."""
         return [Stationary(self.scene, name) for name in self.scene.natural]
 
-    def neighbour(self, base: State, scalar: str) -> State:
-        """A state near another along its linear response to a scalar; the scene is left at that."""
+    def perturbed(self, base: State, scalar: str) -> State:
+        """A state perturbed along its linear response to a scalar; the scene is left at that."""
         scene, body = self.scene, self.scene.body
         self.restore(base)
         scene.predict(None)
@@ -89,30 +89,30 @@ class Equilibrium:
 
         Args:
             scalar: the load that is driven.
-            kind: what is given: its 'value', its 'conjugate' or 'followed'.
+            kind: what is given: its 'value', its 'conjugate' or the 'control' quantity.
             target: what that is to be.
             along: states from which the start is extrapolated, a measure and its value there.
         """
         start = self._predictor.start(*along)
         unknown: list[str] = list(self.scene.natural)
-        closures: list[Closure] = list(self._natural())
+        conditions: list[SideCondition] = list(self._natural())
         if kind == "value":
             self.scene.set_scalar(scalar, target)
-            return self.newton.solve(start, unknown, closures)
+            return self.newton.solve(start, unknown, conditions)
         if kind == "conjugate":
-            closures.append(Conjugate(self.scene, scalar, target))
+            conditions.append(GivenConjugate(self.scene, scalar, target))
         else:
             assert self._control is not None
-            closures.append(Target(self._control, target))
-        return self.newton.solve(start, [*unknown, scalar], closures)
+            conditions.append(GivenFunctional(self._control, target))
+        return self.newton.solve(start, [*unknown, scalar], conditions)
 
-    def judge(self, state: State, before: State, scalar: str) -> None:
+    def assess_stability(self, state: State, before: State, scalar: str) -> None:
         """Write the stability of the state just found into its measures.
 
         Unstable modes are the negative eigenvalues of the Hessian of the potential in all fields
-        and natural scalars, with the loads held at their values, whatever was given when the state
+        and natural scalars, with the loads at given values, whatever was given when the state
         was found. d conjugate / d value is negative beyond a limit point; there, one of the modes
-        is gone where the conjugate is held instead.
+        is gone where the conjugate is given instead.
 
         Args:
             state: the present state, found by the last solve.
@@ -124,7 +124,7 @@ class Equilibrium:
         modes = self._modes()
         if modes != before.measures.get(MODES, 0):
             # not by an old factor, nor with forces that were predicted
-            near = self.neighbour(state, scalar)
+            near = self.perturbed(state, scalar)
             modes = self._modes()
             change = [
                 near.measures[name] - state.measures[name]

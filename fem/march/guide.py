@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
+from analytic.path import arc
 from fem.kinematics.kinematics import Kinematics
 from fem.march.frames import Frames, Shape
 
@@ -85,19 +86,14 @@ class Guide:
         return self._frames.fit(self._displacement(state[0], state[1], state[2:].reshape(-1, 2)))
 
     def _displacement(self, k: float, stretch: float, moved: Floats) -> Floats:
+        """Of the owned nodes, mm, (n, 3): an arc between straight caps.
+
+        Args:
+            k: curvature, 1/mm.
+            stretch: λ0.
+            moved: u, v of the nodes in their section, mm, (n, 2).
+        """
         x, y, z = self._nodes.T
         along = np.clip(z, 0.0, self._length)
-        angle = k * along
-        # (1 − cos)/k and sin/k by sinc: no limit needed at k = 0
-        half = np.sinc(angle / 2 / np.pi)
-        chord = stretch * along * half
-        cos, sin = np.cos(angle), np.sin(angle)
-        up, ahead = y + moved[:, 1], z - along
-        position = np.column_stack(
-            [
-                x + moved[:, 0],
-                -chord * np.sin(angle / 2) + up * cos - ahead * sin,
-                chord * np.cos(angle / 2) + up * sin + ahead * cos,
-            ]
-        )
-        return position - self._nodes
+        ahead, down = arc(k * along, stretch * along, z - along, y + moved[:, 1]).T
+        return np.column_stack([x + moved[:, 0], -down, ahead]) - self._nodes

@@ -10,7 +10,7 @@ from fem.march.records import Ramp, State
 from fem.solver.newton import Outcome
 
 
-class Steered(Protocol):
+class Marching(Protocol):
     """A march as its hooks see it: where it stands, and how the way from there may be changed."""
 
     @property
@@ -33,13 +33,13 @@ class Hook:
     A march calls its hooks in their order, on every rank.
     """
 
-    def before_ramp(self, march: Steered, ramp: Ramp) -> None:
+    def before_ramp(self, march: Marching, ramp: Ramp) -> None:
         """The march stands at its last state and drives this load next, or goes on with it."""
 
-    def after_step(self, march: Steered, state: State, outcome: Outcome) -> None:
+    def after_step(self, march: Marching, state: State, outcome: Outcome) -> None:
         """The march has converged to a state, at which the scene is, and keeps it."""
 
-    def after_cutback(self, march: Steered, reason: str) -> None:
+    def after_cutback(self, march: Marching, reason: str) -> None:
         """An increment has failed; the march is back at its last state and tries a shorter one."""
 
 
@@ -49,6 +49,6 @@ class AfterStep(Hook):
     def __init__(self, call: Callable[[State, Outcome], None]) -> None:
         self._call = call
 
-    def after_step(self, march: Steered, state: State, outcome: Outcome) -> None:
+    def after_step(self, march: Marching, state: State, outcome: Outcome) -> None:
         """Call it."""
         self._call(state, outcome)

@@ -18,7 +18,7 @@ from fem.march.records import (
 Floats = npt.NDArray[np.float64]
 
 APART = 0.02
-"""States closer than this part of their neighbours' distance give no curvature."""
+"""States closer than this part of the distance to the next give no curvature."""
 NEAR = 0.05
 """A state within this part of an increment from a limit point is a state at the limit point."""
 
@@ -108,7 +108,7 @@ def limit_between(states: Sequence[State], scalar: str) -> float | None:
     """The conjugate at a limit point well between the last two states; None where there is none.
 
     Args:
-        states: converged and judged states, the last one last.
+        states: converged states of assessed stability, the last one last.
         scalar: the load that is driven.
     """
     if not _turned(states, scalar):
@@ -148,7 +148,7 @@ def critical(states: Sequence[State], scalar: str) -> list[Critical]:
     """Where stability was lost or gained between the last two states.
 
     Args:
-        states: converged and judged states, the last one last.
+        states: converged states of assessed stability, the last one last.
         scalar: the load that is driven.
     """
     old, new = states[-2].measures, states[-1].measures
@@ -157,21 +157,21 @@ def critical(states: Sequence[State], scalar: str) -> list[Critical]:
     found = []
     if _turned(states, scalar):
         at, top = extreme(states, scalar, 1 / rate)
-        angle = _followed(states, scalar, at) if "followed" in new else None
+        angle = _control(states, scalar, at) if "control" in new else None
         change = 1 if rate < 0 else -1
         found.append(Critical("limit", scalar, top, at, angle, before, before + change))
         before += change
     if after != before:
         value, conjugate = (new[measure(kind, scalar)] for kind in ("value", "conjugate"))
-        angle = new.get("followed")
+        angle = new.get("control")
         found.append(Critical("bifurcation", scalar, value, conjugate, angle, before, after))
     return found
 
 
-def _followed(states: Sequence[State], scalar: str, at: float) -> float:
-    """The followed functional where the conjugate takes a value, by the last three states."""
+def _control(states: Sequence[State], scalar: str, at: float) -> float:
+    """The control quantity where the conjugate takes a value, by the last three states."""
     v, _ = _curve(states[-3:], scalar)
     if len(v) < 3 or not _apart(v):
         states, v = states[-2:], v[-2:]
-    values = [state.measures["followed"] for state in states[-3:]]
+    values = [state.measures["control"] for state in states[-3:]]
     return float(lagrange(v, at) @ values)

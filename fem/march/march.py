@@ -24,8 +24,8 @@ from fem.march.records import Causes, Critical, Ramp, Report, Rules, State, meas
 from fem.march.selfcontact import Rod, first_contact
 from fem.march.ways import Requests, Way
 from fem.scene import Scene
-from fem.solver.closures import Functional
 from fem.solver.newton import Newton, Outcome
+from fem.solver.side_conditions import Functional
 
 JUMPED = "Newton went to another branch"
 BEYOND = "the load falls from here on"
@@ -40,7 +40,7 @@ class March:
         newton: solver of that problem.
         rules: incrementation.
         frames: rod frames for the predictor; None where the kinematics turns by itself.
-        control: functional that requests refer to (the bending angle), or None.
+        control: the quantity that requests refer to (the bending angle), or None.
         guide: a cheaper model's shapes, on which the predictor leans, or None.
         rod: the states as rods, to see whether the body passes through itself; None: not looked.
         causes: what tells physical causes of a failure; None: how Newton ended is all that is
@@ -92,7 +92,7 @@ class March:
         self.equilibrium.restore(position.states[-1])
 
     def run(self, ramps: Sequence[Ramp], hooks: Sequence[Hook] = ()) -> Report:
-        """March through all ramps in order, earlier loads held.
+        """March through all ramps in order, earlier loads keep their values.
 
         Args:
             ramps: the loads.
@@ -125,13 +125,13 @@ class March:
             increment: the next increment of the driven quantity.
         """
         state = self.states[-1]
-        self.position.states = [self.equilibrium.neighbour(state, scalar), state]
+        self.position.states = [self.equilibrium.perturbed(state, scalar), state]
         self.position.increment = increment
 
     def extrapolate_in_frames(self, turning: bool) -> None:
         """Whether displacements are extrapolated in frames that turn with the body, or as they are.
 
-        Frames are the better start unless something holds the body from outside.
+        Frames are the better start unless something touches the body from outside.
         """
         self._predictor.turn(turning)
 
@@ -142,7 +142,7 @@ class March:
         now = self.states[-1].measures
         if not self.position.path_following:
             sign = np.sign(ramp.target - now[ramp.key])
-            stops = ramp.stops if ramp.drive != "followed" else (*ramp.stops, *ramp.at)
+            stops = ramp.stops if ramp.drive != "control" else (*ramp.stops, *ramp.at)
             largest = abs(ramp.largest) if ramp.largest else np.inf
             return Way(ramp.drive, ramp.key, sign, ramp.target, abs(span), stops, largest)
         key = measure("conjugate", ramp.scalar)
@@ -170,7 +170,7 @@ class March:
             return True
         if position.increment is None:
             base = self.states[-1]
-            seed = self.equilibrium.neighbour(base, ramp.scalar)
+            seed = self.equilibrium.perturbed(base, ramp.scalar)
             size = abs(ramp.first) if ramp.first else self._first_size(seed, ramp, abs(span))
             position.states = [seed, base]
             position.increment = min(size, abs(ramp.largest or np.inf), abs(span))
@@ -192,12 +192,12 @@ class March:
             size = min(position.increment, self._turn_limit(way.key), way.largest)
             target = way.next(now, size)
             if way.kind == "value" and limit_ahead(self.states, ramp.scalar, target):
-                self._turn_off(ramp)
+                self._follow_path(ramp)
                 continue
             kind, aim = way.kind, target
             goal = requests.due(state)
-            if goal is not None and requests.hits(goal, self._guess(way.key, target, "followed")):
-                kind, aim = "followed", goal
+            if goal is not None and requests.hits(goal, self._guess(way.key, target, "control")):
+                kind, aim = "control", goal
             new, outcome, kind = self._attempt(ramp, span, kind, aim)
             self._predictor.heed(failed=new is None)
             if new is None:
@@ -218,7 +218,7 @@ class March:
                 if way.kind == kind == "value" and (
                     outcome.reason == BEYOND or softens(self.states, ramp.scalar)
                 ):
-                    self._turn_off(ramp)
+                    self._follow_path(ramp)
                 continue
             if goal is not None and not requests.met(new, goal, kind, way):
                 self.equilibrium.restore(state)
@@ -237,7 +237,7 @@ class March:
             position.increment = size
             for hook in self._called:
                 hook.after_step(self, new, outcome)
-            if kind == "followed" and ramp.until is not None and aim >= ramp.until - 1e-9:
+            if kind == "control" and ramp.until is not None and aim >= ramp.until - 1e-9:
                 return True
 
     def _attempt(
@@ -279,11 +279,11 @@ class March:
         return outcome
 
     def _found(self, scalar: str, outcome: Outcome) -> State | None:
-        """The state that was found, judged."""
+        """The state that was found, its stability assessed."""
         if not outcome.converged:
             return None
         new = self.equilibrium.capture()
-        self.equilibrium.judge(new, self.states[-1], scalar)
+        self.equilibrium.assess_stability(new, self.states[-1], scalar)
         return new
 
     def _jumped(self, scalar: str, aim: float, new: State) -> bool:
@@ -299,7 +299,7 @@ class March:
 
     # --- limit points --------------------------------------------------------------------------
 
-    def _turn_off(self, ramp: Ramp) -> None:
+    def _follow_path(self, ramp: Ramp) -> None:
         """Drive the conjugate from here on, at the pace it had."""
         key = measure("conjugate", ramp.scalar)
         a, b = (state.measures[key] for state in self.states[-2:])
@@ -307,7 +307,7 @@ class March:
         self.position.path_following = True
 
     def _passed(self, ramp: Ramp, span: float, new: State) -> float | None:
-        """Value asked for that a detour has passed and never reached before."""
+        """Value asked for that following the path has passed and never reached before."""
         if not self.position.path_following:
             return None
         sign, key = np.sign(span), measure("value", ramp.scalar)
@@ -358,22 +358,22 @@ class March:
         return float(weights @ [state.measures[name] for state in history])
 
     def _turn_limit(self, drive: str) -> float:
-        """Increment that turns the followed functional by `turn`, from the last two states."""
+        """Increment that changes the control quantity by `turn`, from the last two states."""
         if not self._controlled or len(self.states) < min(self.rules.memory, 3):
             return np.inf
         a, b = (state.measures for state in self.states[-2:])
-        turned = abs(b["followed"] - a["followed"])
+        turned = abs(b["control"] - a["control"])
         return float(abs(b[drive] - a[drive]) * self.rules.turn / max(turned, 1e-12))
 
     def _first_size(self, seed: State, ramp: Ramp, span: float) -> float:
         """First increment, by the linear response.
 
-        It turns the followed functional by `first_turn`, a twentieth of the load where nothing
+        It changes the control quantity by `first_turn`, a twentieth of the load where nothing
         turns, and changes the conjugate by no more than `swell`, unless a guide knows the way.
         """
         base = self.states[-1].measures
         change = {name: abs(value - base[name]) for name, value in seed.measures.items()}
-        driven, turned = change[ramp.key], change.get("followed", 0.0)
+        driven, turned = change[ramp.key], change.get("control", 0.0)
         volume = measure("conjugate", ramp.scalar)
         if driven < 1e-300:
             return span / 20

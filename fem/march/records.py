@@ -14,6 +14,8 @@ from fem.solver.newton import Outcome
 Floats = npt.NDArray[np.float64]
 
 
+DRIVES = VALUE, CONJUGATE, CONTROL = "value", "conjugate", "control"
+"""What a ramp may drive."""
 MODES = "modes"
 """Name of the measure that counts unstable modes."""
 
@@ -39,18 +41,21 @@ class State:
 
 @dataclasses.dataclass(frozen=True)
 class Ramp:
-    """One load: a scalar driven to a target, directly or through its conjugate.
+    """One load: a scalar driven to a target, directly or through its work-conjugate.
+
+    The work-conjugate of a scalar q is −∂Π/∂q: the chamber volume in mm³ of a pressure in MPa. The
+    control quantity of a march is a functional of the state, the bending angle in rad.
 
     Attributes:
         scalar: name of the global scalar, such as 'pressure'.
         target: its final value, or its conjugate's (the chamber volume).
         drive: 'value'; 'conjugate' to find the scalar so that its conjugate follows the ramp; or
-            'followed' to find it so that the followed functional does.
+            'control' to find it so that the control quantity does.
         first: first increment of the driven quantity; None: from the linear response.
         largest: greatest increment; None: no limit but the convergence.
         stops: values of the driven quantity to be hit exactly.
-        at: values of the followed functional to be hit exactly.
-        until: value of the followed functional at which the ramp ends; None: at the target.
+        at: values of the control quantity to be hit exactly.
+        until: value of the control quantity at which the ramp ends; None: at the target.
     """
 
     scalar: str
@@ -62,6 +67,10 @@ class Ramp:
     at: tuple[float, ...] = ()
     until: float | None = None
 
+    def __post_init__(self) -> None:
+        if self.drive not in DRIVES:
+            raise ValueError(f"drive {self.drive!r}, expected one of {', '.join(DRIVES)}")
+
     @property
     def key(self) -> str:
         """Name of the measure that it drives."""
@@ -69,8 +78,8 @@ class Ramp:
 
 
 def measure(kind: str, scalar: str) -> str:
-    """Name of what is driven: 'followed', or the value or the conjugate of a scalar."""
-    return kind if kind == "followed" else f"{kind} {scalar}"
+    """Name of what is driven: 'control', or the value or the conjugate of a scalar."""
+    return kind if kind == CONTROL else f"{kind} {scalar}"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -83,7 +92,7 @@ class Rules:
         cut: factor after a failed increment.
         cutbacks: consecutive failed increments after which the march gives up; on a falling
             branch beyond a limit point, which only explains why a load is not reached, all of them.
-        turn: greatest change of the followed functional an increment may aim at.
+        turn: greatest change of the control quantity an increment may aim at.
         first_turn: the same for an increment from the linear response.
         memory: states from which the next is extrapolated: 3 on a smooth path, more where steps are
             short; 2 where kinks are to be expected, across which a parabola misleads and foresees
@@ -94,7 +103,7 @@ class Rules:
             increment of the value; beyond it Newton may have found another branch.
         swell: greatest relative change of the conjugate in an increment that drives it in place
             of the value.
-        beyond: how far beyond a limit point a falling branch is followed, as a factor of the
+        beyond: how far beyond a limit point a falling branch is traced, as a factor of the
             conjugate.
     """
 
@@ -115,16 +124,16 @@ class Rules:
 
 @dataclasses.dataclass(frozen=True)
 class Critical:
-    """Where a body loses its stability, or gains it back, with all loads held.
+    """Where a body loses its stability, or gains it back, with all loads at given values.
 
     Attributes:
         kind: 'limit': a load that is driven has a greatest or a least value here, and the mode is
-            gone where its conjugate is held instead; 'bifurcation': another branch starts here, and
-            the mode is there however the load is driven.
+            gone where its conjugate is given instead; 'bifurcation': another branch starts here,
+            and the mode is there however the load is driven.
         scalar: the load that is driven.
         value: its value, interpolated at a limit; that of the first state beyond a bifurcation.
         conjugate: its conjugate there, such as the chamber volume.
-        followed: the followed functional there, if there is one.
+        control: the control quantity there, if there is one.
         before: unstable modes before it.
         after: unstable modes beyond it.
     """
@@ -133,7 +142,7 @@ class Critical:
     scalar: str
     value: float
     conjugate: float
-    followed: float | None
+    control: float | None
     before: int
     after: int
 

@@ -8,13 +8,9 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from analytic.path import screw
 from fem.kinematics.kinematics import Kinematics
-from fem.kinematics.uniform import (
-    CURVATURE,
-    STRETCH,
-    TWIST,
-    Uniform,
-)
+from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST, Uniform
 from fem.march.frames import Frames, Shape
 from fem.march.records import State
 
@@ -49,31 +45,41 @@ def directions() -> Floats:
     return np.column_stack([np.cos(angle), np.sin(angle)])
 
 
-def _corners(reach: Floats) -> Floats:
-    """Corners of the polygons, (n, m, 2): where a side meets the next one."""
+def _vertices(reach: Floats) -> Floats:
+    """Vertices of the polygons, (n, m, 2): where a side meets the next one."""
+    # sides n_i · x = h_i and n_{i+1} · x = h_{i+1}, h the support function, normals δ apart, meet
+    # on the first's tangent t_i at x = h_i n_i + [(h_{i+1} − h_i cos δ)/sin δ] t_i
     normal, step = directions(), 2 * np.pi / DIRECTIONS
     along = (np.roll(reach, -1, axis=1) - reach * np.cos(step)) / np.sin(step)
     tangent = np.column_stack([-normal[:, 1], normal[:, 0]])
-    corners: Floats = reach[:, :, None] * normal + along[:, :, None] * tangent
-    return corners
+    vertices: Floats = reach[:, :, None] * normal + along[:, :, None] * tangent
+    return vertices
 
 
 def clearance(pose: Pose, most: float = np.inf) -> float:
     """Least distance of a body's sections from its slices elsewhere, mm; negative: inside.
 
-    A slice lies between two neighbouring sections. Distances are those from planes: exact where
-    bodies touch, too small far away; none is reported beyond the size of a section. Sections
-    closer along the axis than one and a half times that size are neighbours, and not compared.
+    A slice lies between two successive sections j and j + 1 and is the set n · x ≤ h of its planes:
+    both sections' own (R e_z and −R e_z through their centres c) and one a side of the polygon,
+    whose normal n and distance h are the mean of both sections'. The distance of a vertex p from it
+    is taken as max(n · p − h) over the planes,
+
+        axial = max(−e_z · R_jᵀ(p − c_j), e_z · R_{j+1}ᵀ(p − c_{j+1})),
+        beside = max_i [n_i · ½ (R_jᵀ(p − c_j) + R_{j+1}ᵀ(p − c_{j+1})) − ½ (h_ij + h_i,j+1)],
+
+    in mm: exact where bodies touch, too small far away, as with separating axes (Gottschalk, Lin
+    and Manocha 1996, doi 10.1145/237170.237244). None is reported beyond the size of a section.
+    Sections closer along the axis than one and a half times that size are not compared.
 
     Args:
         pose: the body.
         most: mm; greater distances are reported as this one, and cost less.
     """
-    corners = _corners(pose.reach)
-    size = float(np.ptp(corners, axis=1).max())
-    turned = np.einsum("nab,nmb->nma", pose.rotation[:, :, :2], corners)
+    vertices = _vertices(pose.reach)
+    size = float(np.ptp(vertices, axis=1).max())
+    turned = np.einsum("nab,nmb->nma", pose.rotation[:, :, :2], vertices)
     points = pose.centre[:, None] + turned
-    radius = np.linalg.norm(corners, axis=2).max()
+    radius = np.linalg.norm(vertices, axis=2).max()
     middles = points.mean(axis=1)
     wide = np.linalg.norm(points - middles[:, None], axis=2).max(axis=1)
     slices, halves = (middles[1:] + middles[:-1]) / 2, np.maximum(wide[1:], wide[:-1])
@@ -81,7 +87,7 @@ def clearance(pose: Pose, most: float = np.inf) -> float:
     between = np.linalg.norm(middles[:, None] - slices, axis=2) - wide[:, None] - halves
     far = np.abs(pose.z[:, None] - (pose.z[1:] + pose.z[:-1]) / 2) > 1.5 * size
     least = min(size, most)
-    # balls around section and slice are apart: a bound that most pairs pass
+    # |m_i − m_j| − r_i − r_j of the balls around section and slice: a bound that most pairs pass
     candidates = far & (between < least)
     for j in np.flatnonzero(candidates.any(axis=0)):
         some = points[candidates[:, j]].reshape(-1, 3)
@@ -162,7 +168,7 @@ class UniformRod:
         w = (1 - share) * old.w + share * new.w
         spin = np.array([scalars[CURVATURE], 0.0, scalars.get(TWIST, 0.0)])
         along = np.clip(self._z, 0.0, self._body.length)
-        rotation, centre = _helix(along, spin, scalars[STRETCH])
+        rotation, centre = screw(along, spin, scalars[STRETCH])
         centre = centre + rotation[:, :, 2] * (self._z - along)[:, None]
         bent = (self._z >= 0) & (self._z <= self._body.length)
         reach = np.where(bent[:, None], self._reach(w[self._dofs]), self._reach(0.0))
@@ -174,21 +180,6 @@ class UniformRod:
             x = np.vstack([x, x * [-1, 1]])
         reach: Floats = (x @ directions().T).max(axis=0)
         return reach
-
-
-def _helix(along: Floats, spin: Floats, stretch: float) -> tuple[Floats, Floats]:
-    """Rotations exp(z spin ×) and centres ∫ rotation · stretch e_z dz at some z."""
-    rate = float(np.linalg.norm(spin))
-    axis = spin / rate if rate else np.array([1.0, 0.0, 0.0])
-    x, y, z = axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    angle = (rate * along)[:, None, None]
-    rotation = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
-    # sin a / a and so on by sinc: no limit needed without spin
-    half = angle / 2
-    sinc, versine = np.sinc(angle / np.pi), np.sin(half) * np.sinc(half / np.pi)
-    mean = np.eye(3) + versine * cross + (1 - sinc) * (cross @ cross)
-    return rotation, stretch * along[:, None] * mean[:, :, 2]
 
 
 def first_contact(rod: Rod, old: State, new: State) -> float | None:

@@ -17,7 +17,7 @@ class Way:
     """How a ramp is driven at present.
 
     Attributes:
-        kind: 'value', 'conjugate' or 'followed'.
+        kind: 'value', 'conjugate' or 'control'.
         key: the measure that is driven.
         sign: whether it grows.
         end: its value at the end.
@@ -43,18 +43,18 @@ class Way:
 
 
 class Requests:
-    """Values of the followed functional that a ramp is to hit."""
+    """Values of the control quantity that a ramp is to hit."""
 
     def __init__(self, ramp: Ramp) -> None:
         self._insist = False
-        self._pending = sorted(ramp.at) if ramp.drive != "followed" else []
+        self._pending = sorted(ramp.at) if ramp.drive != "control" else []
         if ramp.until is not None:
             before = (a for a in self._pending if a < ramp.until)
             self._pending = sorted({*before, ramp.until})
 
     def due(self, state: State) -> float | None:
         """The next one."""
-        here = state.measures.get("followed", np.inf)
+        here = state.measures.get("control", np.inf)
         return next((a for a in self._pending if a > here + 1e-9), None)
 
     def hits(self, goal: float, expected: float) -> bool:
@@ -69,8 +69,8 @@ class Requests:
 
     def met(self, new: State, goal: float, kind: str, way: Way) -> bool:
         """Whether a new state may be kept: it has not run past the one that was due."""
-        if kind != "followed":
-            self._insist = new.measures["followed"] > goal + 1e-9
+        if kind != "control":
+            self._insist = new.measures["control"] > goal + 1e-9
             return not self._insist
         if way.kind != kind and way.sign * (new.measures[way.key] - way.end) > 0:
             # the angle lies beyond the load's end: go there by the load instead

@@ -17,6 +17,7 @@ from fem.march.records import (
     State,
     measure,
 )
+from fem.ranks import total
 from fem.scene import Scene
 from fem.solver.newton import Outcome
 
@@ -30,7 +31,7 @@ SQUEEZED = 0.6
 MEETING = 0.1
 """Opposite walls so close, in parts of the chamber's height, meet."""
 SLACK = 0.5
-"""A winding holds nothing where so much of its length is slack."""
+"""A winding carries nothing where so much of its length is slack."""
 WHERE = {"post": "under the post", "roof": "under the roof", "clamp": "at the clamp"}
 """What is said of an element at a named surface."""
 
@@ -162,14 +163,14 @@ class Diagnosis:
         ]
 
     def _winding(self) -> list[str]:
-        """Fibers that hold nothing."""
+        """Fibers that carry nothing."""
         comm = self._scene.domain.comm
         for item in self._scene.discrete.values():
             if isinstance(item, FiberPotential) and item.tension_only:
                 lengths = np.array([item.length[item.strain <= 0].sum(), item.length.sum()])
-                slack, total = compat.total(comm, lengths)
-                if slack > SLACK * total:
-                    return [f"the winding is slack over {100 * slack / total:.0f} % of its length"]
+                slack, whole = total(comm, lengths)
+                if slack > SLACK * whole:
+                    return [f"the winding is slack over {100 * slack / whole:.0f} % of its length"]
         return []
 
     # --- where ---------------------------------------------------------------------------------

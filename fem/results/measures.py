@@ -149,7 +149,7 @@ class Resultant:
         return Resultant(self.force + other.force, self.moment + other.moment)
 
 
-def resultant(scene: Scene, vector: Floats, held: npt.NDArray[np.int32] | None) -> Resultant:
+def resultant(scene: Scene, vector: Floats, only: npt.NDArray[np.int32] | None) -> Resultant:
     """Force and moment of owned nodal forces at the deformed positions, of the whole body.
 
     In a half model the mirror image is added.
@@ -157,12 +157,12 @@ def resultant(scene: Scene, vector: Floats, held: npt.NDArray[np.int32] | None) 
     Args:
         scene: gives positions.
         vector: owned entries of a force vector, N.
-        held: local dofs to which it is restricted, or None for all.
+        only: local dofs to which it is restricted, (n,), or None for all.
     """
     body = scene.body
-    mask = np.full(body.local, held is None)
-    if held is not None:
-        mask[held] = True
+    mask = np.full(body.local, only is None)
+    if only is not None:
+        mask[only] = True
     dofs = body.node_dofs[body.owned_nodes]
     force = np.where(mask[dofs], vector[dofs], 0.0)
     x = body.domain.data.nodes[body.owned_nodes] + body.w.x.array[dofs]
@@ -197,7 +197,7 @@ def balance(scene: Scene, mirror: str = "symmetry") -> Balance:
     """
     residual, _ = scene.residual()
     supports = {
-        name: resultant(scene, residual, scene.held(name))
+        name: resultant(scene, residual, scene.fixed(name))
         for name in scene.supports
         if name != mirror
     }

@@ -68,4 +68,4 @@ class Probe:
         gap = np.asarray(self._obstacle.gap(x, self._numbers))
         least = comm.allreduce(float(gap.min(initial=np.inf)), MPI.MIN)
         area = comm.allreduce(float(self._area[gap < 0].sum()), MPI.SUM)
-        return Touch(least, body.copies * area)
+        return Touch(least, body.symmetry_factor * area)

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from petsc4py import PETSc
 
-from fem import compat
+from fem.matrix import may_free
 
 Floats = npt.NDArray[np.float64]
 
@@ -92,7 +92,7 @@ class Factor:
         self.seconds["solve"] += time.perf_counter() - start
 
     def __del__(self) -> None:
-        if self._ksp is not None and compat.may_free(self._ksp):
+        if self._ksp is not None and may_free(self._ksp):
             self.destroy()
 
     def destroy(self) -> None:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fem.solver.border import Border, Closure
+from fem.solver.bordered import BorderedSystem, SideCondition
 from fem.solver.factor import Factor
 
 Floats = npt.NDArray[np.float64]
@@ -98,7 +98,7 @@ class Outcome:
         iterations: linear solves.
         factorisations: tangents assembled and factorised for them.
         reason: why not, in words; empty when converged.
-        history: force, volume and closure residual of every iterate, relative.
+        history: residuals of forces, volumes and side conditions of every iterate, relative.
         least_det_f: least det F of the last iterate.
     """
 
@@ -114,7 +114,7 @@ class Newton:
     """Full Newton steps on the bordered vector (w, q), K factorised once an iteration.
 
     The scalars are eliminated: K a = r, K B = columns, then a small dense system. Rows and
-    columns of the border may differ.
+    columns of the bordered system may differ.
 
     Args:
         problem: residual, tangent and scalars.
@@ -143,24 +143,24 @@ class Newton:
         return {**self._assembly, **self.factor.seconds}
 
     def solve(
-        self, w: Floats, unknown: Sequence[str] = (), closures: Sequence[Closure] = ()
+        self, w: Floats, unknown: Sequence[str] = (), conditions: Sequence[SideCondition] = ()
     ) -> Outcome:
         """Find w and the unknown scalars from a starting guess.
 
         Args:
             w: owned coefficients to start from.
             unknown: names of the scalars that are found; they start from their present values.
-            closures: as many equations.
+            conditions: as many equations.
 
         Returns:
             The outcome; when converged the problem holds the solution.
 
         Raises:
-            ValueError: numbers of unknown scalars and closures differ.
+            ValueError: numbers of unknown scalars and conditions differ.
         """
-        if len(unknown) != len(closures):
-            raise ValueError("every unknown scalar needs one closing equation")
-        return _Solve(self, list(unknown), list(closures)).run(w)
+        if len(unknown) != len(conditions):
+            raise ValueError("every unknown scalar needs one side condition")
+        return _Solve(self, list(unknown), list(conditions)).run(w)
 
     def negative_pivots(self, natural: Sequence[str] = ()) -> int:
         """Number of negative eigenvalues of the last tangent (Sylvester's inertia).
@@ -173,14 +173,16 @@ class Newton:
         bad = int(np.sum(np.linalg.eigvals(block).real < 0)) if len(natural) else 0
         return self.factor.negative_pivots + bad
 
-    def border(self, unknown: Sequence[str], closures: Sequence[Closure]) -> Border:
+    def bordered(
+        self, unknown: Sequence[str], conditions: Sequence[SideCondition]
+    ) -> BorderedSystem:
         """Rows and columns of scalars at the present state and factor."""
         columns = [self.problem.load(name) for name in unknown]
         free = self.problem.free[: self._owned]
-        return Border(columns, unknown, closures, free, self.factor.solve_many, self.comm)
+        return BorderedSystem(columns, unknown, conditions, free, self.factor.solve_many, self.comm)
 
     def response(
-        self, scalar: str, unknown: Sequence[str] = (), closures: Sequence[Closure] = ()
+        self, scalar: str, unknown: Sequence[str] = (), conditions: Sequence[SideCondition] = ()
     ) -> tuple[Floats, dict[str, float]]:
         """Rates of the fields and of unknown scalars with a given one, along the equilibrium.
 
@@ -188,11 +190,11 @@ class Newton:
         """
         self.problem.assemble_tangent()
         self.factor.renew()
-        border = self.border(unknown, closures)
-        self.schur = border.schur
+        system = self.bordered(unknown, conditions)
+        self.schur = system.schur
         a = self.solve_linear(self.problem.load(scalar))
-        sides = np.array([closure.slope(scalar) for closure in closures])
-        a, q = border.eliminate(a, sides)
+        sides = np.array([condition.slope(scalar) for condition in conditions])
+        a, q = system.eliminate(a, sides)
         return -a, dict(zip(unknown, -q, strict=True))
 
     def solve_linear(self, r: Floats) -> Floats:
@@ -205,12 +207,12 @@ class Newton:
 class _Solve:
     """One SNES solve: the callbacks share its state."""
 
-    def __init__(self, newton: Newton, unknown: list[str], closures: list[Closure]) -> None:
+    def __init__(self, newton: Newton, unknown: list[str], conditions: list[SideCondition]) -> None:
         self.newton = newton
         self.problem = newton.problem
         self.comm = newton.comm
         self.unknown = unknown
-        self.closures = closures
+        self.conditions = conditions
         self.last = self.comm.rank == self.comm.size - 1
         self.owned = newton._owned
         self.history: list[tuple[float, float, float]] = []
@@ -256,7 +258,7 @@ class _Solve:
         r, scale = problem.residual()
         self.scale = max(scale, 1e-30)
         r[~problem.free[: self.owned]] = 0.0
-        g = np.array([closure.value() for closure in self.closures])
+        g = np.array([condition.value() for condition in self.conditions])
         volumetric = problem.volumetric
         self.history.append(
             (
@@ -269,7 +271,7 @@ class _Solve:
         self.newton._assembly["residual"] += time.perf_counter() - start
 
     def jacobian(self, _snes: PETSc.SNES, _x: PETSc.Vec, _a: PETSc.Mat, _p: PETSc.Mat) -> None:
-        """Tangent, its factor, and the border; or the last ones again."""
+        """Tangent, its factor, and the bordered system; or the last ones again."""
         if self.newton.settings.reuse and self.fast():
             return
         start = time.perf_counter()
@@ -281,8 +283,8 @@ class _Solve:
         problem.assemble_tangent()
         self.newton._assembly["tangent"] += time.perf_counter() - start
         self.newton.factor.renew()
-        self.border = self.newton.border(self.unknown, self.closures)
-        self.newton.schur = self.border.schur
+        self.system = self.newton.bordered(self.unknown, self.conditions)
+        self.newton.schur = self.system.schur
 
     def fast(self) -> bool:
         """Whether the last factor is likely to reduce the residual tenfold once more."""
@@ -299,22 +301,22 @@ class _Solve:
         self.solves += 1
         r_w, r_q = self.split(r)
         a = self.newton.solve_linear(r_w)
-        a, q = self.border.eliminate(a, r_q)
+        a, q = self.system.eliminate(a, r_q)
         self.join(y, a, q)
         # SNES takes the step x − y, so the correction is −(a, q)
         if self.newton.settings.hybrid:
             self.problem.predict(-a, dict(zip(self.unknown, -q, strict=True)))
 
     def test(self, _snes: PETSc.SNES, iteration: int, _norms: tuple[float, ...]) -> int:
-        """Force, volume and closing equations, each for itself."""
+        """Force, volume and side conditions, each for itself."""
         reasons = PETSc.SNES.ConvergedReason
-        force, volume, closing = self.history[-1]
+        force, volume, side = self.history[-1]
         tolerance = self.newton.settings.tolerance
         if not np.isfinite(force):
             self.reason = INVERTED.format(self.least)
             return int(reasons.DIVERGED_FNORM_NAN)
         resolved = max(tolerance, self.problem.force_noise / self.scale)
-        if force <= resolved and volume <= tolerance and closing <= tolerance:
+        if force <= resolved and volume <= tolerance and side <= tolerance:
             return int(reasons.CONVERGED_FNORM_RELATIVE)
         if iteration >= self.newton.settings.iterations:
             self.reason = f"no convergence in {iteration} iterations"

@@ -69,7 +69,7 @@ class PressureEffect(Effect):
         if self.volume is not None:
             drive, target = "conjugate", self.volume
         elif self.angle is not None:
-            drive, target = "followed", self.angle
+            drive, target = "control", self.angle
         assert target is not None
         by_value = drive == "value"
         ramp = Ramp(

@@ -70,7 +70,7 @@ class Body(MeshedModel):
 
     def kinematics(self, case: Case) -> Make:
         """x = X + u."""
-        from fem.kinematics.kinematics import Body as InSpace
+        from fem.kinematics.body import Body as InSpace
 
         return InSpace
 

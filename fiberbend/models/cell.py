@@ -74,7 +74,7 @@ class Cell(UniformModel):
 
     def kinematics(self, case: Case) -> Make:
         """Three components of the displacement."""
-        from fem.kinematics.uniform import Cell as Bending
+        from fem.kinematics.cell import Cell as Bending
 
         return functools.partial(Bending, length=case.actuator.length, twisted=twists(case))
 

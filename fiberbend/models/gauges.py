@@ -94,13 +94,13 @@ class UniformGauge:
         self._crown = int(np.argmax(nodes[:, 1]))
         self._top = int(scene.body.node_dofs[self._crown, 1])
         self._height = float(nodes[self._crown, 1])
-        self._per_length = scene.body.copies / actuator.length
+        self._per_length = scene.body.symmetry_factor / actuator.length
 
     def tip(self, state: State) -> tuple[float, float]:
         """y and z of the centroid of the tip cap's outer face, mm; in the plane of bending."""
         actuator = self._actuator
         arc = actuator.length * state.scalars[STRETCH]
-        z, down = tip(state.measures["followed"], arc, actuator.cap, actuator.face_height)
+        z, down = tip(state.measures["control"], arc, actuator.cap, actuator.face_height)
         return -float(down), float(z)
 
     def columns(self, state: State) -> dict[str, float]:

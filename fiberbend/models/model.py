@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fem.march.records import State
     from fem.march.selfcontact import Rod
     from fem.scene import Scene
-    from fem.solver.closures import Functional
+    from fem.solver.side_conditions import Functional
     from geometry.mesh.data import MeshData
     from geometry.sections.size import MeshSize
 
@@ -53,13 +53,13 @@ class Reading:
 
     Attributes:
         frames: rod frames of a body; None where the kinematics turns by itself.
-        followed: the bending angle.
+        control: the bending angle, which loads may be driven by.
         gauge: makes the columns of the history; call it when the scene is at rest.
         rod: the states as rods with caps, to see whether the body passes through itself.
     """
 
     frames: Frames | None
-    followed: Functional
+    control: Functional
     gauge: Callable[[], Gauge]
     rod: Rod
 

@@ -64,7 +64,7 @@ class Section(UniformModel):
 
     def kinematics(self, case: Case) -> Make:
         """Two components of the displacement, three where the winding twists."""
-        from fem.kinematics.uniform import Section as Bending
+        from fem.kinematics.section import Section as Bending
 
         return functools.partial(Bending, length=case.actuator.length, twisted=twists(case))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fem.march.hooks import Hook, Steered
+from fem.march.hooks import Hook, Marching
 from fem.march.records import Ramp, State
 from fem.results.touch import probes
 from fem.scene import Scene
@@ -34,13 +34,13 @@ class Approach(Hook):
         """Least gap to each obstacle, mm."""
         return {name: probe.read().gap for name, probe in self._probes.items()}
 
-    def before_ramp(self, march: Steered, ramp: Ramp) -> None:
+    def before_ramp(self, march: Marching, ramp: Ramp) -> None:
         """See what touches where the ramp begins, or where a run goes on."""
         self._ramp = ramp
         self._before = march.position.states[-1], self._gaps()
         march.extrapolate_in_frames(not _touching(self._before[1]))
 
-    def after_step(self, march: Steered, state: State, outcome: Outcome) -> None:
+    def after_step(self, march: Marching, state: State, outcome: Outcome) -> None:
         """Shorten the next step to where touch is foreseen, or start anew after a kink."""
         gaps = self._gaps()
         (earlier, former), self._before = self._before, (state, gaps)

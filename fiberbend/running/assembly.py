@@ -77,13 +77,13 @@ def assemble(case: Case, mesh: MeshData, comm: MPI.Comm, lead: Lead | None = Non
         newton,
         rules(case, model, guide is not None),
         frames=frames,
-        control=reading.followed,
+        control=reading.control,
         guide=guide,
         rod=reading.rod,
         causes=Diagnosis(scene),
         hooks=[Approach(scene)] if any(effect.touches() for effect in case.effects) else [],
     )
-    return Assembly(parts, scene, reading, newton, march, parts.ramps(scene.body.copies))
+    return Assembly(parts, scene, reading, newton, march, parts.ramps(scene.body.symmetry_factor))
 
 
 def rules(case: Case, model: MeshedModel, guided: bool) -> Rules:

@@ -39,7 +39,7 @@ class Recorder:
     ) -> None:
         self._scene = scene
         self._gauge = gauge
-        self._factor = scene.body.copies
+        self._factor = scene.body.symmetry_factor
         self.rows = rows if rows is not None else [self._row(0, rest, None)]
 
     def add(self, state: State, outcome: Outcome) -> dict[str, Any]:
@@ -67,7 +67,7 @@ class Recorder:
         row: dict[str, Any] = {
             "step": step,
             "pressure_kPa": 1e3 * state.scalars.get("pressure", 0.0),
-            "angle_deg": float(np.rad2deg(state.measures["followed"])),
+            "angle_deg": float(np.rad2deg(state.measures["control"])),
             "tip_y_mm": tip[0],
             "tip_z_mm": tip[1],
         }

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fem.march.hooks import Hook, Steered
+from fem.march.hooks import Hook, Marching
 from fem.march.records import Ramp, State
 from fem.results.checkpoint import Archive
 from fem.solver.newton import Outcome
@@ -55,7 +55,7 @@ class Recording(Hook):
         self.snapshots = list(snapshots)
         self.warnings: list[str] = []
 
-    def after_step(self, march: Steered, state: State, outcome: Outcome) -> None:
+    def after_step(self, march: Marching, state: State, outcome: Outcome) -> None:
         """Record the step, and where the march stands."""
         row = self._recorder.add(state, outcome)
         self.warn(messages.remarks(march.position.report))
@@ -73,7 +73,7 @@ class Recording(Hook):
             self._recorder.integrate()
             restart.save(self._folder, self._archive, march.position, self._recorder.rows)
 
-    def after_cutback(self, march: Steered, reason: str) -> None:
+    def after_cutback(self, march: Marching, reason: str) -> None:
         """Say so."""
         self._progress.message(f"increment cut back: {reason}")
 
@@ -118,7 +118,7 @@ class Recording(Hook):
 
     def _requested(self, state: State) -> str:
         """Label of the requested output that this state is, or nothing."""
-        angle = state.measures["followed"]
+        angle = state.measures["control"]
         for goal in self._case.output.at_angles:
             if abs(angle - goal) < 1e-6:
                 return f"{np.rad2deg(goal):03.0f}deg"
@@ -156,5 +156,5 @@ def _share(ramp: Ramp, state: State) -> float:
     """Part of a ramp that is done, by its load or by the angle at which it ends."""
     done = state.measures[ramp.key] / ramp.target
     if ramp.until:
-        done = max(done, state.measures["followed"] / ramp.until)
+        done = max(done, state.measures["control"] / ramp.until)
     return float(np.clip(done, 0.0, 1.0))

@@ -15,18 +15,18 @@ UNSTABLE_END = (
 _COUNT = ("no", "one", "two", "three")
 
 
-def critical_points(report: Report, copies: float) -> list[dict[str, Any]]:
+def critical_points(report: Report, symmetry_factor: float) -> list[dict[str, Any]]:
     """Entries of run.json.
 
     Args:
         report: of the march.
-        copies: how many of what is modelled the whole actuator is.
+        symmetry_factor: how many of what is modelled the whole actuator is.
     """
     return [
         {
             "kind": point.kind,
             "load": point.scalar,
-            **_values(point, copies),
+            **_values(point, symmetry_factor),
             "unstable_modes_before": point.before,
             "unstable_modes_beyond": point.after,
         }
@@ -34,15 +34,15 @@ def critical_points(report: Report, copies: float) -> list[dict[str, Any]]:
     ]
 
 
-def _values(point: Critical, copies: float) -> dict[str, float]:
+def _values(point: Critical, symmetry_factor: float) -> dict[str, float]:
     values: dict[str, float] = {}
     if point.scalar == "pressure":
         values["pressure_kPa"] = 1e3 * point.value
-        values["chamber_mm3"] = copies * point.conjugate
+        values["chamber_mm3"] = symmetry_factor * point.conjugate
     else:
         values["value"] = point.value
-    if point.followed is not None:
-        values["angle_deg"] = float(np.rad2deg(point.followed))
+    if point.control is not None:
+        values["angle_deg"] = float(np.rad2deg(point.control))
     return values
 
 
@@ -108,7 +108,7 @@ def self_contact(measures: dict[str, float]) -> str:
     pressure = measures.get("value pressure")
     at = "" if pressure is None else f" ({1e3 * pressure:.4g} kPa)"
     return (
-        f"from {_degrees(measures['followed'])}{at} on the body passes through itself: contact "
+        f"from {_degrees(measures['control'])}{at} on the body passes through itself: contact "
         "with itself is not modelled"
     )
 
@@ -127,9 +127,9 @@ def _beyond(point: Critical) -> str:
 
 def _where(point: Critical) -> str:
     value = f"{1e3 * point.value:.4g} kPa" if point.scalar == "pressure" else f"{point.value:.4g}"
-    if point.followed is None:
+    if point.control is None:
         return value
-    return f"{value}, {_degrees(point.followed)}"
+    return f"{value}, {_degrees(point.control)}"
 
 
 def _degrees(angle: float) -> str:

@@ -80,7 +80,7 @@ def counted(assembly: Assembly, warnings: Sequence[str]) -> dict[str, Any]:
         "factorisations": report.factorisations,
         "cutbacks": report.cutbacks,
         "warnings": list(warnings),
-        "critical_points": messages.critical_points(report, scene.body.copies),
+        "critical_points": messages.critical_points(report, scene.body.symmetry_factor),
     }
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from mpi4py import MPI
 
-from fem import compat
+from fem import kernels
 from fem.march.frames import Frames
 from fem.march.guide import Guide
 from fem.results.checkpoint import Archive
@@ -131,7 +131,7 @@ class _Run:
             self._wall(assembly),
             self.comm.allreduce(record.peak_memory_mb()),
             self.comm.size,
-            compat.versions(),
+            kernels.versions(),
         )
         run |= record.of_effects(case, recorder.rows) | record.beside(check)
         if self.folder is not None:

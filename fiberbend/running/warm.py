@@ -53,7 +53,7 @@ class SectionStates:
         """The guide of a body."""
         measures = {}
         for name, values in self.measures.items():
-            share = scene.body.copies if name.startswith("conjugate") else 1.0
+            share = scene.body.symmetry_factor if name.startswith("conjugate") else 1.0
             measures[name] = values / share
         return Guide(
             scene.body,
@@ -101,13 +101,13 @@ def section_states(case: Case) -> SectionStates | None:
     assembly.march.run(assembly.ramps, [AfterStep(keep)])
     if len(states) < 4:
         return None
-    copies = assembly.scene.body.copies
-    names = [measure(kind, PRESSURE) for kind in ("value", "followed", "conjugate")]
+    symmetry_factor = assembly.scene.body.symmetry_factor
+    names = [measure(kind, PRESSURE) for kind in ("value", "control", "conjugate")]
     measures = {}
     for name in names:
         values = np.array([state.measures[name] for state in states])
         if np.all(np.diff(values) > 0):
-            measures[name] = values * (copies if name.startswith("conjugate") else 1.0)
+            measures[name] = values * (symmetry_factor if name.startswith("conjugate") else 1.0)
     dofs = assembly.scene.body.node_dofs
     pressure, angle, volume = (
         np.array([state.measures[name] for state in states]) for name in names
@@ -118,5 +118,5 @@ def section_states(case: Case) -> SectionStates | None:
         np.array([state.scalars[CURVATURE] for state in states]),
         np.array([state.scalars[STRETCH] for state in states]),
         np.array([state.w[dofs] for state in states]),
-        Curve(pressure, angle, copies * volume),
+        Curve(pressure, angle, symmetry_factor * volume),
     )

@@ -14,7 +14,7 @@ from fem.march.frames import Frames
 from fem.march.march import Ramp, Rules
 from fem.march.selfcontact import BodyRod, clearance
 from fem.results.diagnosis import Diagnosis
-from fem.solver.border import Closure
+from fem.solver.bordered import SideCondition
 from fem.solver.newton import Outcome
 from geometry.bodies.extrude import swept_body
 from geometry.sections.size import MeshSize
@@ -49,9 +49,11 @@ def stop_newton(body: Bender, after: int) -> None:
     newton = body.newton
     solve, calls = newton.solve, [0]
 
-    def fail(w: Floats, unknown: Sequence[str] = (), closures: Sequence[Closure] = ()) -> Outcome:
+    def fail(
+        w: Floats, unknown: Sequence[str] = (), conditions: Sequence[SideCondition] = ()
+    ) -> Outcome:
         calls[0] += 1
-        outcome = solve(w, unknown, closures)
+        outcome = solve(w, unknown, conditions)
         if calls[0] <= after:
             return outcome
         turn_inside_out(body, cap_sheath(body))

@@ -19,7 +19,7 @@ from fem.effects.winding import SmearedWinding
 from fem.effects.winding import Winding as Discrete
 from fem.kinematics.domain import Domain
 from fem.march.frames import Frames
-from fem.march.hooks import Hook, Steered
+from fem.march.hooks import Hook, Marching
 from fem.march.march import (
     March,
     Ramp,
@@ -171,12 +171,12 @@ class Keeper(Hook):
         self.energies = [sum(stored(scene).values())]
         self.warnings: list[str] = []
 
-    def after_step(self, march: Steered, state: State, outcome: Outcome) -> None:
+    def after_step(self, march: Marching, state: State, outcome: Outcome) -> None:
         """Keep the state and its energy."""
         self.states.append(state)
         self.energies.append(sum(stored(self._scene).values()))
 
-    def after_cutback(self, march: Steered, reason: str) -> None:
+    def after_cutback(self, march: Marching, reason: str) -> None:
         """Keep what failed."""
         self.warnings.append(reason)
 

@@ -22,7 +22,7 @@ def measure(comm: MPI.Comm) -> dict[str, float]:
     body = bender(domain=domain)
     report = body.run([Ramp("pressure", 0.03, largest=0.01, at=(ANGLE,))])
     assert report.status == "converged", report.reason
-    bent = next(s for s in body.states if abs(s.measures["followed"] - ANGLE) < 1e-9)
+    bent = next(s for s in body.states if abs(s.measures["control"] - ANGLE) < 1e-9)
     low, high = body.scene.discrete["SmearedWinding"].force_range()  # type: ignore[attr-defined]
     tip = body.tip.position()
     return {

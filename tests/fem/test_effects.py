@@ -171,7 +171,7 @@ def test_gravity_does_the_work_of_the_weight() -> None:
 
 
 def test_pressure_is_conjugate_to_the_volume() -> None:
-    # ∂Π/∂P = −V, and ∂R/∂P is the load that closures use
+    # ∂Π/∂P = −V, and ∂R/∂P is the load that conditions use
     scene = _scene("pressure", "hexahedron")
     w = perturb(scene, AMPLITUDE, 9)
     scene.set_scalar("pressure", 0.7)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
-from fem.kinematics.kinematics import Body
 from fem.march.frames import Frames
 from fem.results.measures import BendingAngle, Tip
 from geometry.bodies.extrude import swept_body

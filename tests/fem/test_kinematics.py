@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from fem.effects.chamber_pressure import ChamberPressure
+from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
-from fem.kinematics.kinematics import Body
 from fem.scene import Scene
 from geometry.checks import surface_area
 from geometry.mesh.reference import area_vectors

@@ -20,7 +20,7 @@ from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Clamp, Symmetry
 from fem.kinematics.domain import Domain
 from fem.march.frames import Frames
-from fem.march.hooks import AfterStep, Hook, Steered
+from fem.march.hooks import AfterStep, Hook, Marching
 from fem.march.limit_points import crossing, extreme, limit_ahead
 from fem.march.march import March
 from fem.march.records import (
@@ -76,10 +76,10 @@ def sphere(c2: float = 0.0, rules: Rules | None = None, hooks: Sequence[Hook] = 
     warnings: list[str] = []
 
     class Keep(Hook):
-        def after_step(self, march: Steered, state: State, outcome: Outcome) -> None:
+        def after_step(self, march: Marching, state: State, outcome: Outcome) -> None:
             states.append(state)
 
-        def after_cutback(self, march: Steered, reason: str) -> None:
+        def after_cutback(self, march: Marching, reason: str) -> None:
             warnings.append(reason)
 
     march = March(scene, newton, rules or Rules(), hooks=[Keep(), *hooks])

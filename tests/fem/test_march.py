@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from fem.march.hooks import Hook, Steered
+from fem.march.hooks import Hook, Marching
 from fem.march.march import Ramp, Rules, State
-from fem.solver.newton import Closure, Newton, Outcome
+from fem.solver.newton import Newton, Outcome, SideCondition
 from tests.fem.parts import Bender, Floats, bender
 
 TARGET = 0.03
@@ -35,7 +35,7 @@ def _measures(body: Bender, name: str) -> Floats:
 
 def test_requests_are_hit(inflated: Bender) -> None:
     # at_angles and output pressures of a case are promises
-    angles = _measures(inflated, "followed")
+    angles = _measures(inflated, "control")
     pressures = _measures(inflated, "value pressure")
     assert all(np.abs(angles - angle).min() < 1e-8 for angle in ANGLES)
     assert all(np.abs(pressures - stop).min() < 1e-8 * TARGET for stop in (*STOPS, TARGET))
@@ -66,7 +66,7 @@ def test_volume_control_reaches_the_state_of_pressure_control(inflated: Bender) 
     report = other.run([Ramp("pressure", end.measures["conjugate pressure"], drive="conjugate")])
     assert report.status == "converged", report.reason
     assert other.scene.scalar("pressure") == pytest.approx(TARGET, rel=1e-6)
-    assert other.angle.value() == pytest.approx(end.measures["followed"], rel=1e-6)
+    assert other.angle.value() == pytest.approx(end.measures["control"], rel=1e-6)
     found = other.states[-1].measures["conjugate pressure"]
     assert found == pytest.approx(end.measures["conjugate pressure"], rel=1e-8)
 
@@ -90,11 +90,11 @@ class _Flaky:
         return getattr(self._newton, name)
 
     def solve(
-        self, w: Floats, unknown: Sequence[str] = (), closures: Sequence[Closure] = ()
+        self, w: Floats, unknown: Sequence[str] = (), conditions: Sequence[SideCondition] = ()
     ) -> Outcome:
         """Solve, then pretend."""
         self.calls += 1
-        outcome = self._newton.solve(w, unknown, closures)
+        outcome = self._newton.solve(w, unknown, conditions)
         if self.calls != 3:
             return outcome
         scene: Any = self._newton.problem
@@ -107,7 +107,7 @@ def test_a_failed_increment_is_rolled_back_exactly() -> None:
     seen: list[tuple[Floats, float, State]] = []
 
     class Look(Hook):
-        def after_cutback(self, march: Steered, reason: str) -> None:
+        def after_cutback(self, march: Marching, reason: str) -> None:
             scene = body.scene
             seen.append((scene.w.copy(), scene.scalar("pressure"), march.position.states[-1]))
 
@@ -138,10 +138,10 @@ class _Hopeless(_Flaky):
     """A Newton that never converges again after its second call."""
 
     def solve(
-        self, w: Floats, unknown: Sequence[str] = (), closures: Sequence[Closure] = ()
+        self, w: Floats, unknown: Sequence[str] = (), conditions: Sequence[SideCondition] = ()
     ) -> Outcome:
         """Give up."""
-        outcome = super().solve(w, unknown, closures)
+        outcome = super().solve(w, unknown, conditions)
         if self.calls < 3:
             return outcome
         return dataclasses.replace(outcome, converged=False, reason="hopeless")
@@ -162,5 +162,13 @@ def test_first_increment_turns_by_what_the_rules_say() -> None:
     turn = np.deg2rad(1.0)
     body = bender(Rules(first_turn=turn))
     body.run([Ramp("pressure", 0.02)])
-    first = body.states[1].measures["followed"]
+    first = body.states[1].measures["control"]
     assert first == pytest.approx(turn, rel=0.1)
+
+
+def test_an_unknown_drive_is_refused() -> None:
+    # as a key of the measures it would fail in the middle of a march only
+    with pytest.raises(
+        ValueError, match="drive 'angle', expected one of value, conjugate, control"
+    ):
+        Ramp("pressure", 1.0, drive="angle")

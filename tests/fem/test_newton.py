@@ -62,7 +62,7 @@ def test_predicted_fiber_force_changes_the_way_and_not_the_end() -> None:
 
 
 class _Volume:
-    """Closing equation: the chamber's volume takes a value."""
+    """Side condition: the chamber's volume takes a value."""
 
     def __init__(self, body: Bender, target: float) -> None:
         self._scene, self._target = body.scene, target
@@ -77,7 +77,7 @@ class _Volume:
         return 0.0  # V does not depend on P
 
 
-def test_border_finds_the_scalar(plain: tuple[Bender, Outcome]) -> None:
+def test_a_bordered_system_finds_the_scalar(plain: tuple[Bender, Outcome]) -> None:
     # the pressure that belongs to a volume, from a wrong one
     body, _ = plain
     volume = body.scene.conjugate("pressure")
@@ -86,7 +86,7 @@ def test_border_finds_the_scalar(plain: tuple[Bender, Outcome]) -> None:
     outcome = body.newton.solve(0.95 * w, ["pressure"], [_Volume(body, volume)])
     assert outcome.converged, outcome.reason
     assert body.scene.scalar("pressure") == pytest.approx(PRESSURE, rel=1e-7)
-    with pytest.raises(ValueError, match="closing equation"):
+    with pytest.raises(ValueError, match="side condition"):
         body.newton.solve(w, ["pressure"], [])
 
 

@@ -41,10 +41,10 @@ def test_patch(cell: str, bulk: dict[str, float] | None) -> None:
     u = nodes @ _shear().T - nodes
     surface = np.unique(np.concatenate([domain.surface_nodes(n) for n in domain.data.facets]))
     assert len(surface) < len(nodes), "there must be something to solve for"
-    scene.hold(body.node_dofs[surface].ravel(), u[surface].ravel())
+    scene.fix(body.node_dofs[surface].ravel(), u[surface].ravel())
     if bulk is None:
         # with every boundary node held p is known up to a constant
-        scene.hold(body.dofs("p")[0, :1, 0], np.zeros(1))
+        scene.fix(body.dofs("p")[0, :1, 0], np.zeros(1))
     start = scene.w.copy()
     start[body.node_dofs] = u + np.random.default_rng(6).uniform(-0.05, 0.05, u.shape)
     outcome = Newton(scene, MPI.COMM_SELF, Settings(tolerance=1e-12)).solve(start)

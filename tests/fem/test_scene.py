@@ -139,7 +139,7 @@ def test_held_dofs_take_their_values() -> None:
     domain = stub(CELL)
     scene = Scene(domain, [law("yeoh", ["wall", "floor"]), Incompressible(), ChamberPressure()])
     dofs = scene.body.node_dofs[domain.surface_nodes("tip"), 2]
-    scene.hold(dofs, np.linspace(0, 1, len(dofs)))
+    scene.fix(dofs, np.linspace(0, 1, len(dofs)))
     scene.set(np.full(scene.body.owned, 0.5))
     assert np.array_equal(scene.w[dofs], np.linspace(0, 1, len(dofs)))
-    assert np.array_equal(scene.held("prescribed"), np.unique(dofs))
+    assert np.array_equal(scene.fixed("prescribed"), np.unique(dofs))

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 from fem.effects.elastic import Elastic
 from fem.kinematics.domain import Domain
-from fem.kinematics.uniform import Section
+from fem.kinematics.section import Section
 from fem.march.frames import Frames
 from fem.march.records import State
 from fem.march.selfcontact import (
@@ -88,7 +88,7 @@ def _uniform_states(turns: float) -> tuple[UniformRod, State, State]:
         State(
             scene.w.copy(),
             {"curvature": angle / ACTUATOR.length, "stretch": 1.0},
-            {"followed": angle},
+            {"control": angle},
             None,
             {},
         )
@@ -124,7 +124,7 @@ def test_first_contact_of_a_body(half: bool) -> None:
     for angle in (1e-6, 2 * np.pi):
         set_positions(scene, _bent(domain.data.nodes, angle))
         shape = frames.fit(scene.body.displacement())
-        states.append(State(scene.w.copy(), {}, {"followed": angle}, shape, {}))
+        states.append(State(scene.w.copy(), {}, {"control": angle}, shape, {}))
     share = first_contact(BodyRod(scene.body, frames), *states)
     assert share is not None
     # 2°: elements of 8 mm give no station at the ends of the caps

@@ -13,15 +13,11 @@ from fem.effects.effect import Effect
 from fem.effects.incompressible import Incompressible
 from fem.effects.winding import SmearedWinding
 from fem.effects.winding import Winding as Discrete
+from fem.kinematics.cell import Cell
 from fem.kinematics.domain import Domain
 from fem.kinematics.kinematics import Kinematics
-from fem.kinematics.uniform import (
-    CURVATURE,
-    STRETCH,
-    TWIST,
-    Cell,
-    Section,
-)
+from fem.kinematics.section import Section
+from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
 from fem.scene import Scene
 from geometry.bodies.extrude import swept_section, swept_slice
 from geometry.sections.size import MeshSize
@@ -114,7 +110,7 @@ class _Bordered:
         a.array_w[:] = v[:owned]
         matrix.mult(a, b)
         columns = np.array([scene.load(name, constrained=True) for name in self.names])
-        corner = [[scene.corner(i, j) for j in self.names] for i in self.names]
+        corner = [[scene.second_derivative(i, j) for j in self.names] for i in self.names]
         field = b.array_r + v[owned:] @ columns
         held = ~scene.free[:owned]
         field[held] = 0.0
@@ -172,7 +168,7 @@ def test_volume_of_an_undeformed_section_swept_along_an_arc(model: str, twisted:
             scene.set_scalar(key, value)
     scene.set(np.zeros(scene.body.owned))
     area, moment = np.pi * 8**2 / 2, 2 / 3 * 8**3 + np.pi * 8**2 / 2 * 2
-    per_length = scene.conjugate("pressure") * scene.body.copies / SHORT.length
+    per_length = scene.conjugate("pressure") * scene.body.symmetry_factor / SHORT.length
     # quadratic arcs of 22.5° lose 5e-5 of the area
     assert per_length == pytest.approx(stretch * area + k * moment, rel=1e-4)
 

@@ -175,7 +175,7 @@ def test_touch_and_lift_off(contact: dict[str, Any]) -> None:
     def keep(state: State, _: Outcome) -> None:
         body = built.scene.body
         up = body.node_dofs[body.owned_nodes, 1]
-        force = body.copies * float(built.scene.force(f"Contact[{name}]")[up].sum())
+        force = body.symmetry_factor * float(built.scene.force(f"Contact[{name}]")[up].sum())
         met.append((round(state.scalars["pressure"], 9), force, state.w))
 
     mesh = meshed(case).mesh(case)

@@ -100,6 +100,6 @@ def test_one_mode_less_of_several_is_no_news() -> None:
 
 def test_critical_points_are_those_of_the_whole_actuator() -> None:
     # half a body has half the chamber
-    (entry,) = messages.critical_points(Report(critical=[_point("limit", 0.02, 0, 1)]), copies=2)
+    (entry,) = messages.critical_points(Report(critical=[_point("limit", 0.02, 0, 1)]), symmetry_factor=2)
     assert entry["chamber_mm3"] == 2000.0
     assert entry["pressure_kPa"] == pytest.approx(20.0)

@@ -110,7 +110,7 @@ def test_the_body_between_carries_the_moment_of_a_section() -> None:
     assert (report.status, report.cutbacks) == ("converged", 0)
     scene, body = built.scene, built.scene.body
     y, z = body.node_dofs[:, 1], body.node_dofs[:, 2]
-    up = body.copies * (scene.force("Contact[roof]") + scene.force("Contact[post]"))[y]
+    up = body.symmetry_factor * (scene.force("Contact[roof]") + scene.force("Contact[post]"))[y]
     rest, here = mesh.nodes[:, 2], mesh.nodes[:, 2] + body.w.x.array[z]
     middle = here[np.abs(rest - 40) < 1e-9].mean()
     beyond = rest > 40

@@ -21,7 +21,7 @@ from typing import Any
 import pytest
 import yaml
 
-from fem import compat
+from fem import kernels
 from fiberbend import run
 from fiberbend.sweep.command import run_sweep
 from fiberbend.sweep.fields import Column
@@ -363,9 +363,9 @@ def test_no_form_is_compiled_twice(tmp_path: Path) -> None:
     path.write_text(yaml.safe_dump(SWEEP), encoding="utf-8")
     points, store = read_sweep(path).points, Store.open(tmp_path / "out")
     assert store.solve(points[0])["status"] == "converged"
-    before = set(compat.cache_folder().glob("*.so"))
+    before = set(kernels.cache_folder().glob("*.so"))
     assert store.solve(points[-1])["status"] == "converged"
-    assert set(compat.cache_folder().glob("*.so")) == before
+    assert set(kernels.cache_folder().glob("*.so")) == before
 
 
 def test_a_value_between_steps_is_on_a_line() -> None:

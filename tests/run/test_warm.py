@@ -57,12 +57,12 @@ def test_a_body_steered_by_its_section_needs_fewer_iterations(
 
 def test_the_sign_of_round_off_at_rest_decides_nothing() -> None:
     guide = Guide.__new__(Guide)
-    guide._measures = {"followed": np.array([0.0, 0.2, 3.2])}
+    guide._measures = {"control": np.array([0.0, 0.2, 3.2])}
     for noise in (5.8e-16, 0.0, -7.4e-16):
-        assert guide.covers("followed", noise)
-        assert guide.covers("followed", 3.2 - noise)
-    assert not guide.covers("followed", -1e-6)
-    assert not guide.covers("followed", 3.2 + 1e-6)
+        assert guide.covers("control", noise)
+        assert guide.covers("control", 3.2 - noise)
+    assert not guide.covers("control", -1e-6)
+    assert not guide.covers("control", 3.2 + 1e-6)
     assert not guide.covers("value pressure", 0.0)
 
 

@@ -81,10 +81,10 @@ def solve(k: int) -> Pitch:
     )
     start_from(scene, _start(pitch))
     top = scene.body.node_dofs[domain.surface_nodes("top"), 2]
-    scene.hold(top, np.full(len(top), (STRETCH - 1) * pitch / 2))
+    scene.fix(top, np.full(len(top), (STRETCH - 1) * pitch / 2))
     # half a turn about the y axis maps the winding to itself, so this point stays on it
     middle = int(np.argmin(np.abs(mesh.nodes - [0.0, OUTER, pitch / 4]).sum(axis=1)))
-    scene.hold(scene.body.node_dofs[middle, :1], np.zeros(1))
+    scene.fix(scene.body.node_dofs[middle, :1], np.zeros(1))
     scene.set(scene.w.copy())
     newton = Newton(scene, MPI.COMM_SELF, Settings(iterations=25))
     outcome, pressure = balanced_pressure(

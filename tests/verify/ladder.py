@@ -106,7 +106,7 @@ class Ladder:
             nodes = domain.surface_nodes(surface)
             values = self.exact.displacement(domain.data.nodes[nodes])
             for i in components:
-                scene.hold(scene.body.node_dofs[nodes, i], values[:, i])
+                scene.fix(scene.body.node_dofs[nodes, i], values[:, i])
         outcome, values_found = self.find(scene, Newton(scene, MPI.COMM_SELF, Settings()))
         assert outcome.converged, f"{self.title}, {cell}, n = {n}: {outcome.reason}"
         u, p = errors(scene, self.exact)

@@ -67,9 +67,9 @@ class TubeLadder(Ladder):
     def find(self, scene: Scene, newton: Newton) -> tuple[Outcome, dict[str, float]]:
         """The pressure that belongs to the volume."""
         ratio = (self.exact.deformed_inner / self.exact.inner) ** 2 * self.exact.stretch
-        closure = VolumeRatio(scene, volume_at_rest(scene), ratio)
+        condition = VolumeRatio(scene, volume_at_rest(scene), ratio)
         scene.set_scalar("pressure", self.exact.pressure)
-        outcome = newton.solve(scene.w.copy(), ["pressure"], [closure])
+        outcome = newton.solve(scene.w.copy(), ["pressure"], [condition])
         return outcome, {"p [MPa]": scene.scalar("pressure")}
 
 

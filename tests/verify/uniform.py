@@ -15,12 +15,8 @@ from fem.effects.elastic import Elastic
 from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Symmetry, TwofoldAxis
 from fem.kinematics.domain import Domain
-from fem.kinematics.uniform import (
-    CURVATURE,
-    STRETCH,
-    TWIST,
-    Section,
-)
+from fem.kinematics.section import Section
+from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
 from fem.march.hooks import AfterStep
 from fem.march.march import March
 from fem.march.records import Ramp, Rules, State
@@ -69,7 +65,7 @@ class Held(Effect):
     def __init__(self, values: dict[str, float]) -> None:
         self.values = values
 
-    def held_scalars(self) -> dict[str, float]:
+    def fixed_scalars(self) -> dict[str, float]:
         """As given."""
         return self.values
 
@@ -93,21 +89,21 @@ def section(
     return Scene(where, [*effects, support], make)
 
 
-def march(scene: Scene, ramp: Ramp, followed: str = STRETCH, turn: float = 0.05) -> list[State]:
+def march(scene: Scene, ramp: Ramp, control: str = STRETCH, turn: float = 0.05) -> list[State]:
     """All states of a ramp from rest.
 
     Args:
         scene: at rest.
-        ramp: the load; "followed" drives the scalar `followed`.
-        followed: a global scalar.
-        turn: greatest change of `followed` in a step.
+        ramp: the load; "control" drives the scalar `control`.
+        control: a global scalar.
+        turn: greatest change of `control` in a step.
     """
     states: list[State] = []
     runner = March(
         scene,
         Newton(scene, MPI.COMM_SELF, Settings()),
         Rules(turn=turn, first_turn=turn),
-        control=Value(scene, followed),
+        control=Value(scene, control),
         hooks=[AfterStep(lambda state, _: states.append(state))],
     )
     report = runner.run([ramp])
@@ -117,7 +113,7 @@ def march(scene: Scene, ramp: Ramp, followed: str = STRETCH, turn: float = 0.05)
 
 def resultants(scene: Scene) -> dict[str, float]:
     """∂Π/∂q of k, λ0 (and τ) per mm of length of the whole section: N mm, N, N mm."""
-    factor = -scene.body.copies / scene.body.length  # type: ignore[attr-defined]
+    factor = -scene.body.symmetry_factor / scene.body.length  # type: ignore[attr-defined]
     return {name: factor * scene.conjugate(name) for name in RATES if name in scene.body.natural}
 
 
@@ -134,7 +130,7 @@ class _Balance:
         return self._scene.load(self._name)
 
     def slope(self, scalar: str) -> float:
-        return self._scene.corner(self._name, scalar)
+        return self._scene.second_derivative(self._name, scalar)
 
 
 @dataclasses.dataclass(frozen=True)

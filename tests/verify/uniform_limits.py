@@ -149,7 +149,7 @@ def _wound(n: int, pattern: str, pitch: float, straight: bool) -> Scene:
 def extending_tube(n: int, pitch: float, stretch: float) -> float:
     """Pressure in MPa that stretches the tube with a smeared double helix."""
     scene = _wound(n, "double-helix", pitch, straight=True)
-    march(scene, Ramp("pressure", stretch, drive="followed"))
+    march(scene, Ramp("pressure", stretch, drive="control"))
     return scene.scalar("pressure")
 
 

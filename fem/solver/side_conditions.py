@@ -1,4 +1,4 @@
-"""Equations that close a bordered system: a scalar is found so that each of them holds."""
+"""Side conditions of an equilibrium: one scalar is found so that each of them is met."""
 
 from __future__ import annotations
 
@@ -25,8 +25,14 @@ class Functional(Protocol):
         """∂/∂q of a global scalar."""
 
 
-class Conjugate:
-    """Closing equation: the conjugate of a scalar takes a value."""
+class GivenConjugate:
+    """(c − c̄)/|c̄| = 0: the work-conjugate c = −∂Π/∂q of a scalar takes a value.
+
+    Args:
+        scene: the scene.
+        name: of the scalar q.
+        target: c̄, such as a chamber volume in mm³.
+    """
 
     def __init__(self, scene: Scene, name: str, target: float) -> None:
         self._scene, self._name, self._target = scene, name, target
@@ -42,11 +48,19 @@ class Conjugate:
 
     def slope(self, scalar: str) -> float:
         """Its derivative with respect to a global scalar."""
-        return -self._scene.corner(self._name, scalar) / self._scale
+        return -self._scene.second_derivative(self._name, scalar) / self._scale
 
 
 class Stationary:
-    """Closing equation: the potential is stationary in a natural scalar."""
+    """∂Π/∂q · l/f = 0: the potential is stationary in a natural scalar.
+
+    The lever l is the size of what is modelled over the change of q that strains it by one, f the
+    scale of the forces, so that the condition is as fine as those on the forces.
+
+    Args:
+        scene: the scene.
+        name: of the scalar q.
+    """
 
     def __init__(self, scene: Scene, name: str) -> None:
         self._scene, self._name = scene, name
@@ -66,11 +80,16 @@ class Stationary:
 
     def slope(self, scalar: str) -> float:
         """Its derivative with respect to a global scalar."""
-        return self._scene.corner(self._name, scalar) / self._scale
+        return self._scene.second_derivative(self._name, scalar) / self._scale
 
 
-class Target:
-    """Closing equation: a functional takes a value."""
+class GivenFunctional:
+    """g − ḡ = 0: a functional takes a value.
+
+    Args:
+        functional: g, of the order of one (an angle in rad).
+        target: ḡ.
+    """
 
     def __init__(self, functional: Functional, target: float) -> None:
         self._functional, self._target = functional, target

@@ -1,4 +1,13 @@
-"""Global scalars eliminated from a bordered system with one factor of K."""
+"""Global scalars eliminated from a bordered system with one factor of K.
+
+    | K  B | | w |   | r |      K = ∂R/∂w, (n, n), factorised
+    | C  D | | q | = | s |      B = ∂R/∂q, (n, m); C = ∂g/∂w, (m, n); D = ∂g/∂q, (m, m)
+
+with n fields w, m scalars q and m side conditions g(w, q) = 0. Block elimination:
+S = D − C K⁻¹B, q = S⁻¹ (s − C K⁻¹r), w = K⁻¹r − K⁻¹B q. Keller 1977, Numerical
+solution of bifurcation and nonlinear eigenvalue problems, in Applications of Bifurcation Theory
+(ed. Rabinowitz), Academic Press, pp. 359–384.
+"""
 
 from __future__ import annotations
 
@@ -9,64 +18,69 @@ import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
 
-from fem import compat
+from fem.ranks import total
 
 Floats = npt.NDArray[np.float64]
 
 
-class Closure(Protocol):
+class SideCondition(Protocol):
     """One more equation g(w, q) = 0, in exchange for one global scalar that is found."""
 
     def value(self) -> float:
         """g at the present state, scaled so that 1 is a large error."""
 
     def row(self) -> Floats:
-        """∂g/∂w on the owned dofs."""
+        """∂g/∂w on the owned dofs, (owned,)."""
 
     def slope(self, scalar: str) -> float:
         """∂g/∂q of a global scalar."""
 
 
-class Border:
+class BorderedSystem:
     """Rows and columns of the scalars at the present tangent, and their Schur complement.
 
     Args:
-        columns: ∂R/∂q of every unknown scalar, owned part.
+        columns: B, ∂R/∂q of every unknown scalar, owned part, m of (owned,).
         names: names of these scalars.
-        closures: as many equations.
-        free: owned dofs that no constraint holds.
-        solve: K⁻¹ times owned vectors.
+        conditions: as many equations.
+        free: owned dofs that no constraint fixes, (owned,).
+        solve: K⁻¹ times owned vectors, all at once.
         comm: communicator.
 
     Attributes:
-        schur: Schur complement of the scalars, equations by unknowns.
+        schur: Schur complement S of the scalars, (m, m), conditions by unknowns.
     """
 
     def __init__(
         self,
         columns: Sequence[Floats],
         names: Sequence[str],
-        closures: Sequence[Closure],
+        conditions: Sequence[SideCondition],
         free: npt.NDArray[np.bool_],
         solve: Callable[[Sequence[Floats]], list[Floats]],
         comm: MPI.Comm,
     ) -> None:
         self._comm = comm
-        self.rows = [np.where(free, closure.row(), 0.0) for closure in closures]
+        self.rows = [np.where(free, condition.row(), 0.0) for condition in conditions]
         self.spread = solve(columns)
-        slopes = [[closure.slope(name) for name in names] for closure in closures]
-        self.schur = np.array(slopes).reshape(len(closures), len(names))
+        slopes = [[condition.slope(name) for name in names] for condition in conditions]
+        self.schur = np.array(slopes).reshape(len(conditions), len(names))
         for spread, column in zip(self.spread, self.schur.T, strict=True):
             column -= self._dots(spread)
 
     def _dots(self, a: Floats) -> Floats:
         """Inner products of the rows with a vector, over all ranks."""
         mine = np.array([float(row @ a) for row in self.rows])
-        total: Floats = compat.total(self._comm, mine)
-        return total
+        dots: Floats = total(self._comm, mine)
+        return dots
 
     def eliminate(self, a: Floats, r_q: Floats) -> tuple[Floats, Floats]:
-        """Solution (w, q) of the bordered system from a = K⁻¹ r and the scalars' right side."""
+        """Solution (w, q) of the bordered system.
+
+        Args:
+            a: K⁻¹ r, owned part, (owned,).
+            r_q: right side s of the side conditions, (m,).
+        """
         if not self.rows:
             return a, np.zeros(0)
         q = np.linalg.solve(self.schur, r_q - self._dots(a))
