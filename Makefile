@@ -42,10 +42,12 @@ tables: setup ## make the accuracy tables in docs/ again; half an hour
 speed: setup ## measure what an answer costs in each model; a minute on an idle machine
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/speed.py
 
-check: setup ## lint, format and types
+check: setup ## lint, format, types, the order of the folders and dead code
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/vulture
 
 format: setup ## put the code in its format
 	$(BIN)/ruff check --fix .

@@ -195,7 +195,6 @@ def sweep(
     out: Path | None = None,
     jobs: Annotated[int, Parameter(name=("--jobs", "-j"), validator=_count)] = 1,
     retry: bool = False,
-    worker: Annotated[bool, Parameter(show=False)] = False,
 ) -> int:
     """Solve a case at many points, in a folder that can be gone on with.
 
@@ -205,16 +204,12 @@ def sweep(
         out: Folder; runs/SWEEP unless given.
         jobs: Processes that solve at once; 1 unless said.
         retry: Run failed points again.
-        worker: Be one of those processes; for the sweep itself.
     """
     from fiberbend.schema.problems import CaseError
-    from fiberbend.sweep.command import INTERRUPTED, run_sweep, run_worker
+    from fiberbend.sweep.command import INTERRUPTED, run_sweep
 
     folder = out or Path("runs") / file.stem
     try:
-        if worker:
-            launch.start_mpi()
-            return run_worker(file, folder, settings)
         return run_sweep(file, folder, settings, jobs, retry, say=say)
     except CaseError:
         raise

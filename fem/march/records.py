@@ -14,7 +14,7 @@ from fem.solver.newton import Outcome
 Floats = npt.NDArray[np.float64]
 
 
-DRIVES = VALUE, CONJUGATE, CONTROL = "value", "conjugate", "control"
+DRIVES = ("value", "conjugate", "control")
 """What a ramp may drive."""
 MODES = "modes"
 """Name of the measure that counts unstable modes."""

@@ -34,7 +34,6 @@ class Factor:
         self._symmetric = symmetric
         self._ksp: PETSc.KSP | None = None
         self.seconds = {"factor": 0.0, "solve": 0.0}
-        self.renewed = 0
 
     def _create(self) -> PETSc.KSP:
         self._matrix.setOption(PETSc.Mat.Option.SYMMETRIC, self._symmetric)
@@ -75,7 +74,6 @@ class Factor:
             raise RuntimeError(f"MUMPS took ordering {factor.getMumpsInfog(7)} instead of PORD")
         if factor.getMumpsInfog(1) < 0:
             raise ZeroDivisionError(f"MUMPS: INFOG(1) = {factor.getMumpsInfog(1)}")
-        self.renewed += 1
         self.seconds["factor"] += time.perf_counter() - start
 
     @property

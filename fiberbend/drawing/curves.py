@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from fiberbend import columns as col
-from fiberbend.drawing.labels import Labels
 from fiberbend.drawing.overlay import (
     MODELS,
     Line,
@@ -39,6 +38,8 @@ _STYLES = dict(
 )
 _SAME_ANGLE = 0.05
 _LONG = 40
+_LEFT = 0.17
+"""Part of the width that a point's text takes to its left."""
 _ROOM = 2.0
 _TINY = 1e-6
 _ANGLE = (col.PRESSURE, col.ANGLE)
@@ -71,19 +72,15 @@ def plot_pressure_angle(
     """
     data = _columns(rows, _ANGLE)
     page, axes = _axes(title, reason, "pressure P (kPa)", "bending angle θ (°)")
-    labels = _curves(axes, data, overlay, name)
     reached = []
     for angle in angles:
         nearest = int(np.abs(data[1] - angle).argmin())
         if abs(data[1][nearest] - angle) <= _SAME_ANGLE:
             reached.append((data[0][nearest], angle))
-    for point in reached:
-        axes.plot(*point, "o", color=_RED, markersize=9, zorder=4)
-    labels.avoid_points(*np.array(reached).reshape(-1, 2).T)
+    _curves(axes, data, overlay, name)
     for pressure, angle in reached:
-        text = f"{angle:g}° at {pressure:.1f} kPa"
-        labels.beside(text, np.array([pressure]), np.array([angle]))
-    _name_curves(labels, data, overlay, name)
+        axes.plot(pressure, angle, "o", color=_RED, markersize=9, zorder=4)
+        _name_point(axes, f"{angle:g}° at {pressure:.1f} kPa", pressure, angle)
     save(page, target)
 
 
@@ -142,10 +139,9 @@ def plot_tip_force(
     """
     data = _columns(rows, _FORCE)
     page, axes = _axes(title, reason, "pressure P (kPa)", "tip force (N)")
-    labels = _curves(axes, data, overlay, name)
-    end = data[0][-1:], data[1][-1:]
-    labels.beside(f"{end[1][0]:.3g} N at {end[0][0]:.1f} kPa", *end)
-    _name_curves(labels, data, overlay, name)
+    _curves(axes, data, overlay, name)
+    pressure, force = data[0][-1], data[1][-1]
+    _name_point(axes, f"{force:.3g} N at {pressure:.1f} kPa", pressure, force)
     save(page, target)
 
 
@@ -234,41 +230,34 @@ def _label(
     axes.annotate(text, point, shift, textcoords="offset points", ha=side, fontsize=12)
 
 
-def _curves(axes: Any, data: Sequence[Floats], overlay: Overlay | None, name: str) -> Labels:
-    """Draw the run's curve and what is beside it; set the limits.
-
-    Returns:
-        Labels that keep off all of it.
-    """
+def _curves(axes: Any, data: Sequence[Floats], overlay: Overlay | None, name: str) -> None:
+    """Draw the run's curve and what is beside it, with a legend; set the limits."""
     overlay = overlay or Overlay()
     _range(axes, data, overlay)
-    labels = Labels(axes)
+    own = {"color": _BLUE, "markersize": 4, "linewidth": 1.8, "clip_on": False, "zorder": 3}
+    axes.plot(*data, "o-", **own, label=name or None)
     for line in overlay.lines:
         color, style = _STYLES[line.name]
-        axes.plot(line.across, line.up, style, color=color, linewidth=1.1, zorder=2)
-        labels.avoid(line.across, line.up)
-    axes.plot(*data, "o-", color=_BLUE, markersize=4, linewidth=1.8, clip_on=False, zorder=3)
-    labels.avoid(data[0], data[1], weight=3.0)
-    for points in overlay.points:
-        axes.plot(points.across, points.up, "x", color=_MEASURED, markersize=7, zorder=3.5)
-        labels.avoid_points(points.across, points.up)
-    return labels
-
-
-def _name_curves(
-    labels: Labels, data: Sequence[Floats], overlay: Overlay | None, name: str
-) -> None:
-    """Names of all curves, where there is more than one."""
-    if overlay is None or not (overlay.lines or overlay.points):
-        return
-    if name:
-        labels.along(name, data[0], data[1], _BLUE)
-    for line in overlay.lines:
-        labels.along(_shown(line.label), line.across, line.up, _STYLES[line.name][0])
+        label = _shown(line.label)
+        axes.plot(line.across, line.up, style, color=color, linewidth=1.1, zorder=2, label=label)
     for points in overlay.points:
         text = points.label if len(points.label) <= _LONG else f"{points.label[:_LONG]}…"
-        order = np.argsort(-np.abs(points.up))
-        labels.beside(text, points.across[order], points.up[order], _MEASURED, 11)
+        mark = {"color": _MEASURED, "markersize": 7, "zorder": 3.5}
+        axes.plot(points.across, points.up, "x", **mark, label=text)
+    if overlay.lines or overlay.points:
+        axes.legend(fontsize=11, loc="best", edgecolor="none", framealpha=0.8)
+
+
+def _name_point(axes: Any, text: str, across: float, up: float) -> None:
+    """Write beside a point of a rising curve: over it to the left, or else under it."""
+    from matplotlib.patheffects import withStroke
+
+    left = axes.transLimits.transform((across, up))[0] > _LEFT
+    shift, side = ((-9, 4), "right") if left else ((9, -13), "left")
+    label = axes.annotate(
+        text, (across, up), shift, textcoords="offset points", ha=side, fontsize=12, zorder=5
+    )
+    label.set_path_effects([withStroke(linewidth=3, foreground="white")])
 
 
 def _shown(label: str) -> str:

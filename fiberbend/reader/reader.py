@@ -20,7 +20,13 @@ from fiberbend.effects.table import EffectEntry, unwrap
 from fiberbend.models import choice
 from fiberbend.reader.checks import Parts, check, misfits
 from fiberbend.reader.defaults import complete
-from fiberbend.reader.yaml_file import apply_setting, load_yaml, root_paths
+from fiberbend.reader.yaml_file import (
+    apply_setting,
+    lines_told,
+    read_yaml,
+    root_paths,
+    setting_path,
+)
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.validation import from_pydantic
 
@@ -50,7 +56,8 @@ def read_case(path: Path | str, settings: Iterable[str] = ()) -> Case:
     Raises:
         CaseError: everything that is wrong with file, settings and case.
     """
-    data = load_yaml(Path(path))
+    source, settings = read_yaml(Path(path)), list(settings)
+    data = source.data
     if "case" in data and not _SWEEP.isdisjoint(data):
         raise CaseError([Problem(str(path), f"this is a sweep: fiberbend sweep {path}")])
     root_paths(data, Path(path).parent)
@@ -63,7 +70,8 @@ def read_case(path: Path | str, settings: Iterable[str] = ()) -> Case:
     if problems:
         raise CaseError(problems)
     root_paths(data, Path())
-    return parse_case(data)
+    with lines_told(source.lines, [setting_path(setting) for setting in settings]):
+        return parse_case(data)
 
 
 def as_case(case: Case | Mapping[str, Any] | Path | str) -> Case:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
+import dataclasses
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import yaml
 
-from fiberbend.schema.paths import put
+from fiberbend.schema.paths import dotted, put
 from fiberbend.schema.problems import CaseError, Problem
 
 
@@ -29,15 +32,37 @@ class _Loader(yaml.SafeLoader):
         return super().construct_mapping(node, deep)
 
 
+@dataclasses.dataclass(frozen=True)
+class Source:
+    """What a YAML file holds, and where.
+
+    Attributes:
+        data: its mapping.
+        lines: the line of each value, by its dotted path.
+    """
+
+    data: dict[str, Any]
+    lines: dict[str, int]
+
+
 def load_yaml(path: Path) -> dict[str, Any]:
     """Read a YAML file that holds one mapping.
 
     Raises:
         CaseError: no such file, malformed, a key twice, or no mapping.
     """
+    return read_yaml(path).data
+
+
+def read_yaml(path: Path) -> Source:
+    """Read a YAML file that holds one mapping, with the lines of its values.
+
+    Raises:
+        CaseError: no such file, malformed, a key twice, or no mapping.
+    """
     try:
         with path.open(encoding="utf-8") as file:
-            data = yaml.load(file, _Loader)
+            data, lines = _parse(file)
     except FileNotFoundError:
         raise CaseError([Problem(str(path), "no such file, expected a case file")]) from None
     except (OSError, UnicodeDecodeError) as error:
@@ -50,7 +75,67 @@ def load_yaml(path: Path) -> dict[str, Any]:
         raise CaseError([Problem(where, f"malformed YAML, {what}")]) from None
     if not isinstance(data, dict):
         raise CaseError([Problem(str(path), "holds no mapping, expected a case")])
-    return data
+    return Source(data, lines)
+
+
+def _parse(stream: str | IO[str]) -> tuple[Any, dict[str, int]]:
+    """The value that YAML holds, and the line of every value within it."""
+    loader = _Loader(stream)
+    node = loader.get_single_node()
+    lines = {place: mark.line + 1 for place, mark in _marks(node, (), ())}
+    return None if node is None else loader.construct_document(node), lines
+
+
+def _marks(node: Any, keys: tuple[str, ...], around: tuple[Any, ...]) -> Iterator[tuple[str, Any]]:
+    """The path and the mark of every value within a node.
+
+    Raises:
+        MarkedYAMLError: an alias puts a value into itself.
+    """
+    if node in around:
+        raise yaml.MarkedYAMLError(
+            problem="a value within itself, expected an end", problem_mark=node.start_mark
+        )
+    if isinstance(node, yaml.MappingNode):
+        parts = [(str(key.value), key.start_mark, value) for key, value in node.value]
+    elif isinstance(node, yaml.SequenceNode):
+        parts = [(str(index), value.start_mark, value) for index, value in enumerate(node.value)]
+    else:
+        return
+    for key, mark, value in parts:
+        yield dotted((*keys, key)), mark
+        yield from _marks(value, (*keys, key), (*around, node))
+
+
+@contextlib.contextmanager
+def lines_told(lines: Mapping[str, int], changed: Sequence[str] = ()) -> Iterator[None]:
+    """Let the problems found within say in which line of a file they stand.
+
+    Args:
+        lines: the line of each value of the file, by its dotted path.
+        changed: paths whose values come from elsewhere.
+    """
+    try:
+        yield
+    except CaseError as error:
+        raise CaseError(located(problem, lines, changed) for problem in error.problems) from None
+
+
+def located(problem: Problem, lines: Mapping[str, int], changed: Sequence[str] = ()) -> Problem:
+    """A problem with the line of its value, or of what should hold the value.
+
+    Args:
+        problem: the problem.
+        lines: the line of each value of a file, by its dotted path.
+        changed: paths whose values come from elsewhere.
+    """
+    path = f"{problem.path}."
+    if any(path.startswith(f"{other}.") or f"{other}.".startswith(path) for other in changed):
+        return problem
+    keys = problem.path.split(".")
+    places = (dotted(keys[:count]) for count in range(len(keys), 0, -1))
+    line = next((lines[place] for place in places if place in lines), problem.line)
+    return dataclasses.replace(problem, line=line)
 
 
 def root_paths(data: dict[str, Any], folder: Path) -> None:
@@ -65,6 +150,11 @@ def root_paths(data: dict[str, Any], folder: Path) -> None:
         output["measured"] = str(folder.resolve() / output["measured"])
 
 
+def setting_path(setting: str) -> str:
+    """The path of a change, `effects.0.pressure.to=150 kPa`."""
+    return setting.partition("=")[0].strip()
+
+
 def apply_setting(data: dict[str, Any], setting: str) -> None:
     """Change one value of a case that is not yet checked.
 
@@ -76,12 +166,11 @@ def apply_setting(data: dict[str, Any], setting: str) -> None:
     Raises:
         CaseError: the path leads nowhere, or the value is not YAML.
     """
-    path, equals, text = setting.partition("=")
-    path = path.strip()
+    path, (_, equals, text) = setting_path(setting), setting.partition("=")
     if not equals or not path:
         raise CaseError([Problem(f"--set {setting}", 'expected a path and a value, "path=value"')])
     try:
-        value = yaml.load(text, _Loader)
+        value, _ = _parse(text)
     except yaml.YAMLError:
         raise CaseError([Problem(path, f"{text!r} is not a YAML value")]) from None
     put(data, path, value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Callable
@@ -65,24 +66,23 @@ class Progress:
             angle_deg: bending angle in degrees.
             iterations: Newton iterations of this step.
         """
-        spent = self._clock() - self._phase_begin
-        left = spent * (1 - fraction) / fraction if fraction > 0 else None
-        text = (
-            f"step {step:3d}  P {pressure_kpa:8.2f} kPa  θ {angle_deg:7.2f}°  "
-            f"{iterations:2d} iterations"
-        )
-        times = f"{_clock_text(self._clock() - self._begin)} elapsed"
-        if left is not None:
-            times += f", about {_clock_text(left)} to go"
         if not self._speaks:
             return
         if self._stream.isatty() and launch.size() == 1:
-            short = (
-                f"step {step}  {pressure_kpa:.1f} kPa  {angle_deg:.1f}°  {iterations} iterations"
+            self._draw(
+                fraction,
+                f"step {step}  {pressure_kpa:.1f} kPa  {angle_deg:.1f}°  {iterations} iter.",
             )
-            self._draw(fraction, f"{short}  {times}")
-        else:
-            self._say(f"{text}  {100 * fraction:5.1f} %  {times}")
+            return
+        spent = self._clock() - self._phase_begin
+        left = spent * (1 - fraction) / fraction if fraction > 0 else None
+        times = f"{_clock_text(self._clock() - self._begin)} elapsed"
+        if left is not None:
+            times += f", about {_clock_text(left)} to go"
+        self._say(
+            f"step {step:3d}  P {pressure_kpa:8.2f} kPa  θ {angle_deg:7.2f}°  "
+            f"{iterations:2d} iterations  {100 * fraction:5.1f} %  {times}"
+        )
 
     def message(self, text: str) -> None:
         """Say something else: a cut-back, a warning."""
@@ -109,19 +109,31 @@ class Progress:
 
     def _draw(self, fraction: float, text: str) -> None:
         if self._bar is None:
-            from rich.console import Console
-            from rich.progress import BarColumn, TextColumn
-            from rich.progress import Progress as RichProgress
-
-            self._bar = RichProgress(
-                BarColumn(bar_width=10),
-                TextColumn("{task.description}", markup=False),
-                console=Console(file=self._stream),
-            )
-            self._bar.start()
-            self._bar.add_task("", total=1.0)
+            self._bar = self._new_bar()
         task = self._bar.task_ids[0]
         self._bar.update(task, completed=min(max(fraction, 0.0), 1.0), description=text)
+        self._bar.start()
+
+    def _new_bar(self) -> RichProgress:
+        from rich.console import Console
+        from rich.progress import BarColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+        from rich.progress import Progress as RichProgress
+
+        bar = RichProgress(
+            BarColumn(bar_width=10),
+            TextColumn("{task.description}", markup=False),
+            TimeElapsedColumn(),
+            TextColumn("elapsed,"),
+            TimeRemainingColumn(compact=True),
+            TextColumn("to go"),
+            console=Console(file=self._stream),
+            # from all steps: one alone can take longer than rich's half a minute
+            speed_estimate_period=math.inf,
+        )
+        bar.add_task("", total=1.0)
+        # the time of the whole run, not of the bar
+        bar.tasks[0].start_time = bar.get_time() - (self._clock() - self._begin)
+        return bar
 
     def _close_bar(self) -> None:
         if self._bar is not None:

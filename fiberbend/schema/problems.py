@@ -16,14 +16,17 @@ class Problem:
     Attributes:
         path: dotted path in the case, or the name of a file.
         text: the rest of the line: what was found, what was expected.
+        line: line of the file in which the value stands, where it comes from a file.
     """
 
     path: str
     text: str
+    line: int | None = None
 
     def __str__(self) -> str:
         """The line that a user reads."""
-        return f"{self.path}: {self.text}"
+        where = "" if self.line is None else f" (line {self.line})"
+        return f"{self.path}: {self.text}{where}"
 
 
 class CaseError(Exception):

@@ -55,6 +55,8 @@ def _text(line: Any, root: type[Model]) -> str:
         ((word, bound),) = context.items()
         phrase = {"gt": "more than", "ge": "at least", "lt": "less than", "le": "at most"}[word]
         return f"{shown}, expected {phrase} {bound:g}"
+    if kind == "float_type" and _is_number(line["input"]):
+        return f"{shown}, expected a number; YAML wants a point and a sign in it, as in 1.0e-9"
     return f"{shown}, {_PLAIN.get(kind, line['msg'])}"
 
 
@@ -71,3 +73,12 @@ def _expected(root: type[Model], location: tuple[str | int, ...]) -> str:
         if field.description:
             return re.split(r"[.;:]", field.description)[0].lower()
     return "a value"
+
+
+def _is_number(value: Any) -> bool:
+    """Whether a value is the text of a number, such as 1e-9, which is none to YAML 1.1."""
+    try:
+        float(value)
+    except (TypeError, ValueError):
+        return False
+    return isinstance(value, str)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import sys
 from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -14,12 +13,7 @@ from fiberbend.running.folder import RunFolder
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.sweep.points import Sweep, read_sweep
 from fiberbend.sweep.store import Store
-from fiberbend.sweep.workers import (
-    Crew,
-    Event,
-    serve,
-    work,
-)
+from fiberbend.sweep.workers import Crew, Event, work
 
 FAILED = 2
 INTERRUPTED = 130
@@ -63,16 +57,11 @@ def run_sweep(
     say(f"{len(sweep.points)} points, {before} finished before")
     interrupted = False
     try:
-        _solve(sweep, store, path, settings, jobs, _Teller(len(sweep.points), before, say))
+        _solve(sweep, store, jobs, _Teller(len(sweep.points), before, say))
     except KeyboardInterrupt:
         interrupted = True
     _write(sweep, store, say, pictures=not interrupted)
     return _summary(sweep, store, interrupted, say)
-
-
-def run_worker(path: Path, out: Path, settings: Sequence[str]) -> int:
-    """Be one worker process of a sweep."""
-    return serve(read_sweep(path, settings).points, Store.open(out))
 
 
 class _Teller:
@@ -92,26 +81,22 @@ class _Teller:
         elif "wait" in event:
             self._say(f"another process is solving {', '.join(event['wait'])}; waiting")
         elif "died" in event:
-            where = f" in {event['died']}" if event["died"] else ""
-            self._say(f"a worker died{where} (code {event['code']})")
+            self._say(f"a worker died in {event['died']} (code {event['code']})")
 
 
-def _solve(
-    sweep: Sweep, store: Store, path: Path, settings: Sequence[str], jobs: int, tell: _Teller
-) -> None:
+def _solve(sweep: Sweep, store: Store, jobs: int, tell: _Teller) -> None:
     left = sum(store.result(point) is None for point in sweep.points)
     if min(jobs, left) < 2:
+        launch.start_mpi()
         work(sweep.points, store, tell)
         return
-    command = [sys.executable, "-m", "fiberbend", "sweep", str(path), "--out", str(store.path)]
-    command += ["--worker", *(part for setting in settings for part in ("--set", setting))]
 
     def stop(_number: int, _frame: FrameType | None) -> None:
         raise KeyboardInterrupt
 
     previous = {number: signal.signal(number, stop) for number in (signal.SIGTERM, signal.SIGHUP)}
     try:
-        Crew(command, min(jobs, left), sweep.points, store, tell).run()
+        Crew(sweep.points, store, tell, min(jobs, left)).run()
     finally:
         for number, handler in previous.items():
             signal.signal(number, handler)

@@ -8,7 +8,7 @@ import functools
 import hashlib
 import itertools
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,14 @@ from fiberbend.case.case import Case
 from fiberbend.effects.straight import kept_straight
 from fiberbend.models.choice import choose_model
 from fiberbend.reader.reader import parse_case
-from fiberbend.reader.yaml_file import apply_setting, load_yaml
+from fiberbend.reader.yaml_file import (
+    Source,
+    apply_setting,
+    lines_told,
+    located,
+    read_yaml,
+    setting_path,
+)
 from fiberbend.schema.paths import put, value_at
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.units import parse, show
@@ -98,20 +105,24 @@ def read_sweep(path: Path | str, settings: Iterable[str] = ()) -> Sweep:
         CaseError: everything that is wrong with the file and with its points.
     """
     path = Path(path)
-    data = load_yaml(path)
-    if "case" not in data and "actuator" in data:
+    source = read_yaml(path)
+    if "case" not in source.data and "actuator" in source.data:
         raise CaseError([Problem(str(path), f"this is a case: fiberbend run {path}")])
+    with lines_told(source.lines):
+        return _checked(source, path, list(settings))
+
+
+def _checked(source: Source, path: Path, settings: Sequence[str]) -> Sweep:
     try:
-        file = SweepFile.model_validate(data)
+        file = SweepFile.model_validate(source.data)
     except ValidationError as error:
         raise CaseError(from_pydantic(error, SweepFile)) from None
     problems = list(contradictions(file))
     if problems:
         raise CaseError(problems)
-    base = _base(file, path, settings)
+    base = _base(file, source, path, settings)
     points = list(_settings(file))
-    where = "case" if isinstance(file.case, dict) else file.case
-    cases = _check_all(base, points, file.report, where)
+    cases = _check_all(base, points, file.report)
     names = labels(list(dict.fromkeys(s.path for point in points for s in point)))
     resolved = [case.resolved() for case in cases]
     found_columns = columns(names, resolved)
@@ -123,9 +134,35 @@ def read_sweep(path: Path | str, settings: Iterable[str] = ()) -> Sweep:
     return Sweep(file.title, tuple(result), found_columns, file.report)
 
 
-def _base(file: SweepFile, path: Path, settings: Iterable[str]) -> dict[str, Any]:
-    inline = isinstance(file.case, dict)
-    base = copy.deepcopy(file.case) if inline else load_yaml(path.parent / file.case)
+@dataclasses.dataclass(frozen=True)
+class _Base:
+    """The base case with all that its points share.
+
+    Attributes:
+        source: the case, not yet checked, and its lines in its own file.
+        where: that file, or `case` for one within the sweep file.
+        changed: paths whose values come from elsewhere.
+    """
+
+    source: Source
+    where: str
+    changed: tuple[str, ...]
+
+    def told(self, problem: Problem) -> Problem:
+        """A problem of the base case, as one of a sweep."""
+        found = located(problem, self.source.lines, self.changed)
+        return dataclasses.replace(found, path=f"{self.where}: {found.path}")
+
+
+def _base(file: SweepFile, source: Source, path: Path, settings: Sequence[str]) -> _Base:
+    if isinstance(file.case, dict):
+        begin = "case."
+        lines = source.lines.items()
+        inner = {place.removeprefix(begin): n for place, n in lines if place.startswith(begin)}
+        where, own = "case", Source(copy.deepcopy(file.case), inner)
+    else:
+        where, own = file.case, read_yaml(path.parent / file.case)
+    base = own.data
     problems: list[Problem] = []
     for field, value in file.set.items():
         try:
@@ -139,7 +176,7 @@ def _base(file: SweepFile, path: Path, settings: Iterable[str]) -> dict[str, Any
             problems += error.problems
     if problems:
         raise CaseError(problems)
-    return base
+    return _Base(own, where, (*file.set, *map(setting_path, settings)))
 
 
 def _settings(file: SweepFile) -> Iterator[tuple[_Setting, ...]]:
@@ -166,25 +203,23 @@ def _settings(file: SweepFile) -> Iterator[tuple[_Setting, ...]]:
         yield tuple(setting for part in combination for setting in part)
 
 
-def _check_all(
-    base: dict[str, Any], points: list[tuple[_Setting, ...]], report: Report, where: str
-) -> list[Case]:
+def _check_all(base: _Base, points: list[tuple[_Setting, ...]], report: Report) -> list[Case]:
     """The case of every point, or all their problems."""
     cases: list[Case] = []
     wrong: dict[Problem, list[int]] = {}
     for index, settings in enumerate(points):
         try:
-            cases.append(_case(base, settings, report))
+            cases.append(_case(base.source.data, settings, report))
         except CaseError as error:
             for problem in error.problems:
                 wrong.setdefault(problem, []).append(index)
     if wrong:
-        raise CaseError(_told(wrong, points, where))
+        raise CaseError(_told(wrong, points, base))
     return cases
 
 
 def _told(
-    wrong: dict[Problem, list[int]], points: list[tuple[_Setting, ...]], where: str
+    wrong: dict[Problem, list[int]], points: list[tuple[_Setting, ...]], base: _Base
 ) -> Iterator[Problem]:
     """Problems of points by what they hang on, as few as possible.
 
@@ -207,8 +242,7 @@ def _told(
                 left -= with_origin[origin]
                 yield Problem(spot, problem.text)
         if len(left) == len(points):
-            reported = problem.path.startswith("report.")
-            yield Problem(problem.path if reported else f"{where}: {problem.path}", problem.text)
+            yield problem if problem.path.startswith("report.") else base.told(problem)
         else:
             for index in sorted(left):
                 values = ", ".join(f"{s.path} {s.value}" for s in points[index])

@@ -118,7 +118,8 @@ def test_measurement_must_fit_the_run(tmp_path: Path) -> None:
     data["effects"][0] = {"gravity": {"direction": "-y"}}
     data["materials"]["floor"] = {"name": "combined-base", "density": "1.2 g/cm^3"}
     path.write_text(yaml.safe_dump(data), encoding="utf-8")
-    assert complaint(path) == "output.measured: no effect without pressure, expected no value"
+    text = complaint(path)
+    assert text.startswith("output.measured: no effect without pressure, expected no value (line ")
 
 
 def test_path_must_be_text(tmp_path: Path) -> None:
@@ -126,4 +127,4 @@ def test_path_must_be_text(tmp_path: Path) -> None:
     data = yaml.safe_load(path.read_text(encoding="utf-8"))
     data["output"]["measured"] = 3
     path.write_text(yaml.safe_dump(data), encoding="utf-8")
-    assert complaint(path) == "output.measured: 3, expected text"
+    assert complaint(path).startswith("output.measured: 3, expected text (line ")

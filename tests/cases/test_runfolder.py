@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 from pathlib import Path
 from typing import IO
 
@@ -119,11 +120,19 @@ def test_plain_lines() -> None:
     assert progress.wall_s["mesh"] == 10.0
 
 
+def plain(stream: io.StringIO) -> str:
+    """What a terminal shows, without colours."""
+    return re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", stream.getvalue())
+
+
 def test_a_bar_on_a_terminal() -> None:
     stream = _Terminal()
     _report(stream)
     assert "\x1b[" in stream.getvalue()
     assert "374.0°" in stream.getvalue()
+    # the whole run's time, of the clock of the test, and of what is left once a speed is known
+    assert "12.5°  4 iter. 0:00:30 elapsed, --:-- to go" in plain(stream)
+    assert "374.0°  5 iter. 0:00:30 elapsed, 00:00 to go" in plain(stream)
     assert "step 2 cut back" in stream.getvalue()
 
 

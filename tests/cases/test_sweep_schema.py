@@ -39,12 +39,12 @@ def read(tmp_path: Path) -> Any:
 
 @pytest.fixture
 def complaint(read: Any) -> Any:
-    """The lines that a wrong sweep gets."""
+    """What a wrong sweep is told, without the lines of its file."""
 
     def lines(data: dict[str, Any]) -> list[str]:
         with pytest.raises(CaseError) as error:
             read(data)
-        return str(error.value).splitlines()
+        return [f"{problem.path}: {problem.text}" for problem in error.value.problems]
 
     return lines
 
@@ -248,3 +248,41 @@ def test_missing_files(tmp_path: Path, complaint: Any) -> None:
     assert complaint(grid(case="none.yaml")) == [
         f"{tmp_path / 'none.yaml'}: no such file, expected a case file"
     ]
+
+
+def test_problems_name_the_line_of_their_file(tmp_path: Path) -> None:
+    """Of the sweep file what stands there, of the base case what stands in that."""
+    case = BASELINE.read_text(encoding="utf-8").replace("radius: 8 mm", "radius: 8")
+    (tmp_path / "base.yaml").write_text(case, encoding="utf-8")
+    radius = 1 + next(n for n, line in enumerate(case.splitlines()) if "radius: 8" in line)
+    sweep = """\
+case: base.yaml
+set:
+  actuator.floor: 3
+vary:
+  actuator.wall:
+    - 2 mm
+    - 3
+report:
+  angles: [90]
+"""
+    (tmp_path / "sweep.yaml").write_text(sweep, encoding="utf-8")
+
+    def told() -> list[str]:
+        with pytest.raises(CaseError) as error:
+            read_sweep(tmp_path / "sweep.yaml")
+        return str(error.value).splitlines()
+
+    reported = next(line for line in told() if line.startswith("report.angles.0: 90"))
+    assert reported.endswith(" (line 9)")
+    (tmp_path / "sweep.yaml").write_text(sweep.partition("report")[0], encoding="utf-8")
+    expected = 'expected a length with its unit such as "8 mm"'
+    assert told() == [
+        f"base.yaml: actuator.radius: 8, {expected} (line {radius})",
+        f"base.yaml: actuator.floor: 3, {expected}",
+        f"vary.actuator.wall.1: 3, {expected} (line 7)",
+    ]
+    inner = "".join(f"  {line}\n" for line in case.splitlines())
+    inline = sweep.partition("report")[0].replace("case: base.yaml\n", f"case:\n{inner}")
+    (tmp_path / "sweep.yaml").write_text(inline, encoding="utf-8")
+    assert f"case: actuator.radius: 8, {expected} (line {radius + 1})" in told()

@@ -60,7 +60,8 @@ def run_case(case, out, overwrite=False, progress=None, resume=False):
     from fiberbend.running.folder import RunFolder
     folder = RunFolder.resume(out, case) if resume else RunFolder.create(out, case, overwrite)
     with open(os.environ["FAKE_LOG"], "a") as log:
-        log.write(f"{out.name} {os.getpid()} {'resumed' if resume else 'fresh'}\\n")
+        mpi = "mpi4py.MPI" in sys.modules
+        log.write(f"{out.name} {os.getpid()} {'resumed' if resume else 'fresh'} {mpi}\\n")
     act = ACTS.get(out.name, ACTS.get("all", ""))
     begun = [line.split()[0] for line in open(os.environ["FAKE_LOG"])].count(out.name)
     if act == "hang" or act == "hang-once" and begun == 1:
@@ -187,6 +188,37 @@ def test_workers_import_once(lab: Lab) -> None:
     lab.run("-j", "2", all="slow")
     pids = {pid for name in NAMES for pid in lab.pids(name)}
     assert len(pids) == 2
+
+
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_mpi_is_started_before_the_solver(lab: Lab, jobs: str) -> None:
+    """As runs do, in a quarter of the time that the solver's import would take for it."""
+    lab.run("-j", jobs)
+    assert [line.split()[3] for line in lab.log.read_text().splitlines()] == ["True"] * 6
+
+
+def test_the_first_point_is_alone(lab: Lab) -> None:
+    """It compiles the forms; others would wait for its lock. SIGTERM ends all."""
+    process = lab.start("-j", "2", **{NAMES[0]: "hang"})
+    wait_for(lambda: lab.pids(NAMES[0]))
+    time.sleep(1.5)
+    assert lab.starts() == Counter(NAMES[:1])
+    process.terminate()
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (130, "")
+    assert "6 points: 6 not run" in out
+    assert not alive(lab.pids(NAMES[0])[0])
+
+
+def test_workers_that_cannot_begin_end_the_sweep(lab: Lab) -> None:
+    """The points are not run, nothing hangs, and what is wrong is told."""
+    (lab.site / "sitecustomize.py").write_text(
+        "import sys; sys.modules['fiberbend.running.runner'] = None", encoding="utf-8"
+    )
+    code, out, err = lab.run("-j", "2")
+    assert code == 2
+    assert "6 points: 6 not run" in out
+    assert "fiberbend.running.runner" in err
 
 
 def test_killed_altogether_it_resumes_with_what_was_not_finished(lab: Lab) -> None:
