@@ -79,7 +79,7 @@ class Ramp:
 
 def measure(kind: str, scalar: str) -> str:
     """Name of what is driven: 'control', or the value or the conjugate of a scalar."""
-    return kind if kind == CONTROL else f"{kind} {scalar}"
+    return kind if kind == "control" else f"{kind} {scalar}"
 
 
 @dataclasses.dataclass(frozen=True)
