@@ -157,7 +157,7 @@ def run(
     if overwrite and resume:
         raise CycloptsError(msg="--resume and --overwrite together, expected one of them")
     checked = read_case(case, settings)
-    folder = out or Path("runs") / Path(case).stem
+    folder = out or Path("runs") / case.stem
     progress = Progress(quiet=quiet)
     try:
         launch.start_mpi()

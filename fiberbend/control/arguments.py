@@ -74,7 +74,7 @@ def control(
 
     given = {name: value for name, value in vars(loop).items() if value is not None}
     checked, wanted = read_case(case, settings), read_settings(given)
-    folder = out or Path("runs") / f"{Path(case).stem}_control"
+    folder = out or Path("runs") / f"{case.stem}_control"
     try:
         launch.start_mpi()
         from fiberbend.control.command import run_control

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
-CaseFile = Annotated[str, Parameter(help="Case file, YAML.")]
+CaseFile = Annotated[Path, Parameter(help="Case file, YAML.")]
 Changes = Annotated[
     tuple[str, ...],
     Parameter(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shlex
 import subprocess
 import sys
@@ -138,6 +139,36 @@ def test_completion_names_commands_and_options(
     if shell == "bash":
         done = subprocess.run(["bash", "-n"], input=script, text=True, capture_output=True)
         assert (done.returncode, done.stderr) == (0, "")
+
+
+COMPLETE = """
+source /dev/stdin <<< "$SCRIPT"
+COMP_WORDS=($WORDS "$LAST"); COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
+_fiberbend; printf '%s\\n' "${COMPREPLY[@]}"
+"""
+
+
+@pytest.mark.parametrize(
+    ("words", "last", "expected"),
+    [
+        ("fiberbend", "va", "validate"),
+        ("fiberbend run", "--ov", "--overwrite"),
+        ("fiberbend control --plant", "s", "section"),
+        ("fiberbend run", "cases/section.ya", "cases/section.yaml"),
+        ("fiberbend sweep", "cases/sweeps/radius_len", "cases/sweeps/radius_length_wall.yaml"),
+    ],
+)
+def test_bash_completes(
+    words: str, last: str, expected: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["completion", "bash"]) == 0
+    environment = os.environ | {
+        "SCRIPT": capsys.readouterr().out, "WORDS": words, "LAST": last
+    }  # fmt: skip
+    done = subprocess.run(
+        ["bash", "-c", COMPLETE], env=environment, cwd=ROOT, capture_output=True, text=True
+    )
+    assert (done.stdout.split(), done.stderr) == ([expected], "")
 
 
 @pytest.mark.parametrize("command", ["validate", "plan", "run", "control"])
