@@ -108,12 +108,16 @@ class Body(MeshedModel):
 
     def size(self, case: Case) -> Size:
         """Of a body from the block layout, which is that of gmsh's hexahedra."""
-        from geometry.bodies.extrude import swept_body
+        from geometry.bodies.extrude import hexahedral_body
         from geometry.mesh.tets import to_tetrahedra
 
         actuator = convert.dimensions(case.actuator)
         size = self.fineness(case, self.half(case)[0])
-        mesh, kind, pressures = swept_body(actuator, size, tip_strips(case.effects)), "hexahedra", 4
+        mesh, kind, pressures = (
+            hexahedral_body(actuator, size, tip_strips(case.effects)),
+            "hexahedra",
+            4,
+        )
         if case.mesh.element == "tetrahedron":
             mesh, kind, pressures = to_tetrahedra(mesh), "tetrahedra", 0
         layers = actuator.total_length / case.mesh.axial

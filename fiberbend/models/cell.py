@@ -66,11 +66,11 @@ class Cell(UniformModel):
 
     def mesh(self, case: Case, msh: Path | None = None) -> MeshData:
         """Hexahedra from the block layout."""
-        from geometry.bodies.extrude import swept_slice
+        from geometry.bodies.extrude import hexahedral_slice
 
         half, _ = self.half(case)
         actuator, size = convert.dimensions(case.actuator), self.fineness(case, half)
-        return swept_slice(actuator, size, *self.slice(case, half))
+        return hexahedral_slice(actuator, size, *self.slice(case, half))
 
     def kinematics(self, case: Case) -> Make:
         """Three components of the displacement."""

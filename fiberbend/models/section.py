@@ -57,10 +57,10 @@ class Section(UniformModel):
 
     def mesh(self, case: Case, msh: Path | None = None) -> MeshData:
         """Quadrilaterals from the block layout."""
-        from geometry.bodies.extrude import swept_section
+        from geometry.bodies.extrude import section_quadrilaterals
 
         size = self.fineness(case, self.half(case)[0])
-        return swept_section(convert.dimensions(case.actuator), size)
+        return section_quadrilaterals(convert.dimensions(case.actuator), size)
 
     def kinematics(self, case: Case) -> Make:
         """Two components of the displacement, three where the winding twists."""

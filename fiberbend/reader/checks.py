@@ -98,10 +98,10 @@ def check(parts: Parts) -> Iterator[Problem]:
 
 
 def _section(parts: Parts) -> Iterator[Problem]:
-    from geometry.sections.table import misfits
+    from geometry.sections.table import inconsistencies
 
     if parts.actuator is not None:
-        for name, text in misfits(dict(parts.actuator)):
+        for name, text in inconsistencies(dict(parts.actuator)):
             yield Problem(f"actuator.{name}", text)
 
 

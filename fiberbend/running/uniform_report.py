@@ -15,13 +15,13 @@ from fiberbend.states.recovery import NodalFields, recover
 from fiberbend.states.snapshot import Scenery, Snapshot, Write
 from fiberbend.states.stack import (
     Stack,
+    extruded,
     repeated,
     split_alike,
-    swept,
 )
 
 _LAYER = 4.0
-"""Length in mm of the elements of a swept section."""
+"""Length in mm of the elements of an extruded section."""
 
 
 def draw_states(
@@ -141,7 +141,7 @@ def _whole(case: Case, scenery: Scenery, snapshots: Sequence[Snapshot]) -> Stack
     if not _is_section(scenery):
         return repeated(scenery, max(1, round(length / scenery.mesh.nodes[-1, 2])))
     warps = snapshots[0].displacement.shape[1] == 3
-    return swept(scenery, length, math.ceil(length / _LAYER), turned=warps)
+    return extruded(scenery, length, math.ceil(length / _LAYER), turned=warps)
 
 
 def _slices_a_pitch(scenery: Scenery) -> int:

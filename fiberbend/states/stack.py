@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from fiberbend.states.bend import Bend, in_frame
 from fiberbend.states.recovery import NodalFields, SplitNodes, split_nodes
 from fiberbend.states.snapshot import Scenery, Snapshot
-from geometry.bodies.extrude import sweep
+from geometry.bodies.extrude import extrude
 from geometry.bodies.stations import slice_stations
 from geometry.mesh.data import Floats, Ints, MeshData
 from geometry.winding.segments import EmbeddedFibers
@@ -102,8 +102,8 @@ class Stack:
         return values[self.cell[:, None], self.order]
 
 
-def swept(scenery: Scenery, length: float, number: int, turned: bool = False) -> Stack:
-    """A section swept along z.
+def extruded(scenery: Scenery, length: float, number: int, turned: bool = False) -> Stack:
+    """A section extruded along z.
 
     Args:
         scenery: of the section.
@@ -117,7 +117,7 @@ def swept(scenery: Scenery, length: float, number: int, turned: bool = False) ->
     sign, order = np.ones((len(node), 3)), np.tile(np.arange(9), (len(cell), 1))
     if turned:
         section, node, sign, cell, order = _both_halves(section)
-    mesh = sweep(section, slice_stations(length, number))
+    mesh = extrude(section, slice_stations(length, number))
     planes = 2 * number + 1
     return Stack(
         scenery=_solid(scenery, mesh, None),
@@ -143,7 +143,7 @@ def repeated(scenery: Scenery, number: int) -> Stack:
     section = root_section(slab)
     quads, nodes = len(section.cells), len(section.nodes)
     layers, extent = len(slab.cells) // quads, float(slab.nodes[-1, 2])
-    mesh = sweep(section, slice_stations(number * extent, number * layers))
+    mesh = extrude(section, slice_stations(number * extent, number * layers))
 
     tile, plane = np.divmod(np.arange(len(mesh.nodes)) // nodes, 2 * layers)
     flipped = slab.half & (tile % 2 == 1)

@@ -1,1 +1,1 @@
-"""Solids swept from a section, by arrays or by gmsh."""
+"""Solids extruded from a section, by arrays or by gmsh."""

@@ -1,4 +1,4 @@
-"""Sections swept along z into order-2 hexahedra."""
+"""Sections extruded along z into order-2 hexahedra."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from geometry.sections.table import section_layout
 _BOTTOM, _TOP = 0, 5
 
 
-def sweep(section: MeshData, stations: Stations, fill: Ints | None = None) -> MeshData:
-    """Sweep a section of quadrilaterals along z.
+def extrude(section: MeshData, stations: Stations, fill: Ints | None = None) -> MeshData:
+    """Extrude a section of quadrilaterals along z.
 
     Args:
         section: two-dimensional mesh.
@@ -94,32 +94,36 @@ def _name_planes(
             layer += stations.segments[i].divisions
 
 
-def swept_section(actuator: ShapedActuator, size: MeshSize) -> MeshData:
+def section_quadrilaterals(actuator: ShapedActuator, size: MeshSize) -> MeshData:
     """Two-dimensional mesh of an actuator's section between its caps.
 
     Raises:
-        ValueError: dimensions that this mesh cannot hold.
+        ValueError: dimensions that this mesh cannot resolve.
     """
     return section_mesh(section_layout(actuator, size).without_fill())
 
 
-def swept_slice(actuator: ShapedActuator, size: MeshSize, length: float, number: int) -> MeshData:
+def hexahedral_slice(
+    actuator: ShapedActuator, size: MeshSize, length: float, number: int
+) -> MeshData:
     """Hexahedra of a slice between the caps, 0 ≤ z ≤ `length` (mm), `number` layers.
 
     Raises:
-        ValueError: dimensions that this mesh cannot hold.
+        ValueError: dimensions that this mesh cannot resolve.
     """
-    return sweep(swept_section(actuator, size), slice_stations(length, number))
+    return extrude(section_quadrilaterals(actuator, size), slice_stations(length, number))
 
 
-def swept_body(actuator: ShapedActuator, size: MeshSize, strips: Strips | None = None) -> MeshData:
+def hexahedral_body(
+    actuator: ShapedActuator, size: MeshSize, strips: Strips | None = None
+) -> MeshData:
     """Hexahedra of the whole body, from the block map alone.
 
     Raises:
-        ValueError: dimensions that this mesh cannot hold.
+        ValueError: dimensions that this mesh cannot resolve.
     """
     layout = section_layout(actuator, size, strips)
     counts = [block.divisions[0] * block.divisions[1] for block in layout.blocks]
     is_fill = np.repeat([block.fill for block in layout.blocks], counts)
     stations = body_stations(actuator, size, strips)
-    return sweep(section_mesh(layout), stations, np.flatnonzero(is_fill))
+    return extrude(section_mesh(layout), stations, np.flatnonzero(is_fill))

@@ -42,7 +42,7 @@ def build_body(
         time_limit: seconds after which gmsh is killed.
 
     Raises:
-        ValueError: dimensions that this mesh cannot hold.
+        ValueError: dimensions that this mesh cannot resolve.
         MeshError: gmsh failed or did not end in time.
     """
     check_size(actuator, size, strips)

@@ -28,7 +28,7 @@ Edge = tuple[int, int]
 _HXT = 10
 
 
-class BodyModel:
+class GmshBody:
     """The body as gmsh entities of the built-in kernel.
 
     Attributes:
@@ -187,7 +187,7 @@ def mesh_body(spec: dict[str, Any], out: Path) -> None:
     size = coarse if size.element == "tetrahedron" else size
     layout = section_layout(actuator, size, strips)
     stations = body_stations(actuator, size, strips)
-    body = BodyModel(layout, stations, size)
+    body = GmshBody(layout, stations, size)
     geo.synchronize()
     body.add_groups()
     # the default algorithm leaves slivers in the thin walls (Jacobians of 1e-4 mm³)

@@ -1,4 +1,4 @@
-"""Where a section is swept along z, and what its faces are called there."""
+"""Planes between which a section is extruded along z, and the names of its faces there."""
 
 from __future__ import annotations
 

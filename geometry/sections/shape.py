@@ -53,8 +53,8 @@ class ShapedActuator(Actuator):
         yield from ()
 
     @classmethod
-    def misfits(cls, given: Mapping[str, float | None]) -> Iterator[tuple[str, str]]:
-        """What this shape misses, has no use for, or cannot have together.
+    def inconsistencies(cls, given: Mapping[str, float | None]) -> Iterator[tuple[str, str]]:
+        """Dimensions that are missing, without effect on this shape, or contradict each other.
 
         Args:
             given: dimensions by name, valid one by one; None where one is absent.

@@ -1,4 +1,4 @@
-"""How fine a mesh is, and whether it can hold the dimensions of an actuator."""
+"""How fine a mesh is, and whether it can resolve the dimensions of an actuator."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class MeshSize:
 
 @dataclasses.dataclass(frozen=True)
 class Strips:
-    """Strips of the outer surface on which a blocked tip is held; lengths in mm.
+    """Strips of the outer surface on which a blocked tip is fixed; lengths in mm.
 
     Attributes:
         roof_half_width: the roof is |x| ≤ this on the top of the outer surface, 0 ≤ z ≤ L.
@@ -89,7 +89,7 @@ def check_size(actuator: Actuator, size: MeshSize, strips: Strips | None = None)
     """Refuse a mesh whose elements would be too flat, or strips that do not fit.
 
     Raises:
-        ValueError: says which dimension, and the least value it can have with this mesh.
+        ValueError: names the dimension, and the least value it can have with this mesh.
     """
     for name, text in too_thin(actuator, size):
         raise ValueError(f"{name} {text}")

@@ -28,8 +28,8 @@ def _shape(given: Mapping[str, Any]) -> tuple[type[ShapedActuator], dict[str, fl
     return SECTIONS[section], {name: value for name, value in given.items() if name != "section"}
 
 
-def misfits(given: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """What does not go together in dimensions that are valid one by one.
+def inconsistencies(given: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Contradictions between dimensions that are valid one by one.
 
     Args:
         given: "section", and the dimensions of an actuator by name; None where one is absent.
@@ -41,7 +41,7 @@ def misfits(given: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         ValueError: an unknown section.
     """
     shape, dimensions = _shape(given)
-    yield from shape.misfits(dimensions)
+    yield from shape.inconsistencies(dimensions)
 
 
 def make_actuator(given: Mapping[str, Any]) -> ShapedActuator:
@@ -54,7 +54,7 @@ def make_actuator(given: Mapping[str, Any]) -> ShapedActuator:
         ValueError: an unknown section, or dimensions without meaning or that it cannot have.
     """
     shape, dimensions = _shape(given)
-    for name, text in shape.misfits(dimensions):
+    for name, text in shape.inconsistencies(dimensions):
         raise ValueError(f"{name}: {text}")
     return shape(**{name: value for name, value in dimensions.items() if value is not None})
 
@@ -71,7 +71,7 @@ def section_layout(
     comes first.
 
     Raises:
-        ValueError: dimensions that this mesh cannot hold.
+        ValueError: dimensions that this mesh cannot resolve.
     """
     check_size(actuator, size, strips)
     layout = actuator.layout(size, strips)

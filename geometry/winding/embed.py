@@ -85,7 +85,7 @@ def embed(mesh: MeshData, actuator: Actuator, winding: Winding, q: int = 3) -> E
         ValueError: a section, which has no z for a fiber to rise in.
     """
     if mesh.cell_type == "quadrilateral":
-        raise ValueError("a section holds smeared windings only")
+        raise ValueError("a section can have smeared windings only")
     facets = develop(mesh, actuator)
     n = winding.lines_per_fiber
     rows = []

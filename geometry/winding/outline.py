@@ -97,7 +97,7 @@ def _frame(actuator: Actuator, s: Floats) -> tuple[Floats, Floats]:
     for i, piece in enumerate(along_half):
         here = number == i
         xy[here], along[here] = piece.frame(half[here] - (ends[i] - piece.length))
-    # the way back mirrors x and runs the other way: t = (t_x, −t_y)
+    # the half x < 0 mirrors x and runs upward: t = (t_x, −t_y)
     xy[back, 0] *= -1
     along[back, 1] *= -1
     return xy, along

@@ -86,7 +86,7 @@ def develop(mesh: MeshData, actuator: Actuator) -> Facets:
 
         X(ξ) = X0 + A ξ,   A = [X1 − X0, X2 − X0],
 
-    with ξ in the unit square or triangle: exact on a body swept along z, where facets are
+    with ξ in the unit square or triangle: exact on a body extruded along z, where facets are
     rectangles of (s, z) or halves of these. The edge of a section has X = s alone. X, A in mm.
     """
     pairs = mesh.facets["winding"]

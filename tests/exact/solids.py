@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from geometry.bodies.extrude import sweep
+from geometry.bodies.extrude import extrude
 from geometry.bodies.quads import section_mesh
 from geometry.bodies.stations import Segment, Stations
 from geometry.mesh.data import MeshData
@@ -26,7 +26,7 @@ def prism(layout: Layout, length: float, number: int) -> MeshData:
     stations = Stations(
         (Segment(0.0, length, number, names, False),), (("bottom", None), ("top", None))
     )
-    return sweep(section_mesh(layout), stations)
+    return extrude(section_mesh(layout), stations)
 
 
 def box(size: tuple[float, float, float], divisions: tuple[int, int, int]) -> MeshData:
@@ -154,7 +154,7 @@ def sphere_octant(inner: float, outer: float, divisions: tuple[int, int]) -> Mes
     stations = Stations(
         (Segment(inner, outer, divisions[0], sides, False),), (("inner", None), ("outer", None))
     )
-    flat = sweep(section_mesh(layout), stations)
+    flat = extrude(section_mesh(layout), stations)
     plane = flat.nodes[:, :2] @ across
     cube = plane + (1.0 - plane.max(axis=1, keepdims=True))
     cube = np.tan(math.pi / 4 * cube)  # nearly equal elements

@@ -16,14 +16,14 @@ from fem.march.selfcontact import BodyRod, clearance
 from fem.results.diagnosis import Diagnosis
 from fem.solver.bordered import SideCondition
 from fem.solver.newton import Outcome
-from geometry.bodies.extrude import swept_body
+from geometry.bodies.extrude import hexahedral_body
 from geometry.sections.size import MeshSize
 from tests.fem.parts import SHORT, Bender, Floats, bender
 
 
 def short(comm: MPI.Comm, rules: Rules | None = None) -> Bender:
     """The short actuator with caps and a sheath."""
-    mesh = swept_body(SHORT, MeshSize(axial=6, section=1, half=True))
+    mesh = hexahedral_body(SHORT, MeshSize(axial=6, section=1, half=True))
     return bender(rules, domain=Domain(mesh, comm))
 
 

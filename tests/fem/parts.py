@@ -32,7 +32,7 @@ from fem.results.measures import BendingAngle, Tip
 from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome, Settings
 from geometry.actuator import Actuator
-from geometry.bodies.extrude import swept_body
+from geometry.bodies.extrude import hexahedral_body
 from geometry.mesh.data import MeshData
 from geometry.mesh.tets import to_tetrahedra
 from geometry.sections.hemicircle import HemicircleActuator
@@ -60,7 +60,7 @@ def _as(cell: str, mesh: MeshData) -> MeshData:
 @functools.cache
 def stub(cell: str, half: bool = False) -> Domain:
     """A whole closed chamber, 80 hexahedra or 480 tetrahedra."""
-    return Domain(_as(cell, swept_body(STUB, MeshSize(axial=8, section=1, half=half))))
+    return Domain(_as(cell, hexahedral_body(STUB, MeshSize(axial=8, section=1, half=half))))
 
 
 @functools.cache
@@ -119,7 +119,7 @@ def set_positions(scene: Scene, x: Floats) -> None:
 @functools.cache
 def short_domain() -> Domain:
     """Half of the short actuator, 124 hexahedra."""
-    return Domain(swept_body(SHORT, MeshSize(axial=6, section=1, half=True)))
+    return Domain(hexahedral_body(SHORT, MeshSize(axial=6, section=1, half=True)))
 
 
 def actuator_effects(domain: Domain) -> list[Effect]:

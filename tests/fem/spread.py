@@ -9,7 +9,7 @@ from mpi4py import MPI
 
 from fem.kinematics.domain import Domain
 from fem.march.march import Ramp
-from geometry.bodies.extrude import swept_body
+from geometry.bodies.extrude import hexahedral_body
 from geometry.sections.size import MeshSize
 from tests.fem.parts import SHORT, bender
 
@@ -18,7 +18,7 @@ ANGLE = np.deg2rad(4.0)
 
 def measure(comm: MPI.Comm) -> dict[str, float]:
     """Bend the short actuator to an angle and by a pressure."""
-    domain = Domain(swept_body(SHORT, MeshSize(axial=6, section=1, half=True)), comm)
+    domain = Domain(hexahedral_body(SHORT, MeshSize(axial=6, section=1, half=True)), comm)
     body = bender(domain=domain)
     report = body.run([Ramp("pressure", 0.03, largest=0.01, at=(ANGLE,))])
     assert report.status == "converged", report.reason

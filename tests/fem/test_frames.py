@@ -9,7 +9,7 @@ from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
 from fem.march.frames import Frames
 from fem.results.measures import BendingAngle, Tip
-from geometry.bodies.extrude import swept_body
+from geometry.bodies.extrude import hexahedral_body
 from geometry.mesh.reference import area_vectors
 from geometry.sections.size import MeshSize
 from tests.fem.parts import SHORT, Floats, short_domain
@@ -52,7 +52,7 @@ def test_weights_of_one_return_the_state(body: Body) -> None:
 def test_long_elements_leave_no_station_empty() -> None:
     # planes of nodes 12 mm apart: stations in between had no nodes to fit, and the run crashed
     size = MeshSize(axial=24, section=1, half=True)
-    body = Body(Domain(swept_body(SHORT, size)), ["u"])
+    body = Body(Domain(hexahedral_body(SHORT, size)), ["u"])
     frames = Frames(body)
     u = _arc(body, np.deg2rad(20))
     assert frames.rebuild(frames.fit(u)) == pytest.approx(u, abs=1e-12)

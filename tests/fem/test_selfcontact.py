@@ -21,7 +21,7 @@ from fem.march.selfcontact import (
     first_contact,
 )
 from fem.scene import Scene
-from geometry.bodies.extrude import swept_body, swept_section
+from geometry.bodies.extrude import hexahedral_body, section_quadrilaterals
 from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize
 from tests.fem.parts import set_positions
@@ -77,7 +77,7 @@ def test_a_straight_body_is_clear() -> None:
 
 
 def _uniform_states(turns: float) -> tuple[UniformRod, State, State]:
-    mesh = swept_section(ACTUATOR, MeshSize(axial=4, section=1, half=True))
+    mesh = section_quadrilaterals(ACTUATOR, MeshSize(axial=4, section=1, half=True))
     scene = Scene(
         Domain(mesh),
         [Elastic("neo-hooke", {name: {"mu": 1.0} for name in mesh.regions})],
@@ -115,7 +115,7 @@ def test_a_short_increment_before_the_contact_is_clear() -> None:
 @pytest.mark.parametrize("half", [True, False])
 def test_first_contact_of_a_body(half: bool) -> None:
     # the same arc as a body that is bent in one go: stations turn by more than half a turn
-    domain = Domain(swept_body(ACTUATOR, MeshSize(axial=8, section=1, half=half)))
+    domain = Domain(hexahedral_body(ACTUATOR, MeshSize(axial=8, section=1, half=half)))
     scene = Scene(
         domain, [Elastic("neo-hooke", {name: {"mu": 1.0} for name in domain.data.regions})]
     )

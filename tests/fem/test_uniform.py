@@ -19,7 +19,7 @@ from fem.kinematics.kinematics import Kinematics
 from fem.kinematics.section import Section
 from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
 from fem.scene import Scene
-from geometry.bodies.extrude import swept_section, swept_slice
+from geometry.bodies.extrude import hexahedral_slice, section_quadrilaterals
 from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
@@ -38,8 +38,8 @@ Make = Callable[[Domain, Iterable[str]], Kinematics]
 def _domain(model: str) -> Domain:
     size = MeshSize(section=1, half=True)
     if model == "section":
-        return Domain(swept_section(SHORT, size))
-    return Domain(swept_slice(SHORT, size, PITCH / 2, 1))
+        return Domain(section_quadrilaterals(SHORT, size))
+    return Domain(hexahedral_slice(SHORT, size, PITCH / 2, 1))
 
 
 def _effects(domain: Domain, name: str) -> list[Effect]:

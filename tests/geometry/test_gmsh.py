@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.bodies.extrude import swept_body
+from geometry.bodies.extrude import hexahedral_body
 from geometry.bodies.gmsh_body import build_body
 from geometry.checks import check, region_volumes, surface_area
 from geometry.mesh.data import MeshData
@@ -24,7 +24,7 @@ STRIPS = Strips(2.0, 2.0)
 def test_hexahedra_equal_the_block_map(half: bool) -> None:
     # two independent ways to the same mesh: node places, names and regions must agree
     size = MeshSize(axial=4, half=half)
-    ours, theirs = swept_body(SHORT, size, STRIPS), build_body(SHORT, size, STRIPS)
+    ours, theirs = hexahedral_body(SHORT, size, STRIPS), build_body(SHORT, size, STRIPS)
     assert _as_set(theirs.nodes) == _as_set(ours.nodes)
     assert region_volumes(theirs) == pytest.approx(region_volumes(ours), rel=1e-8)
     assert set(theirs.facets) == set(ours.facets)
@@ -39,7 +39,7 @@ def test_tetrahedra_are_the_actuator(half: bool) -> None:
     # unstructured: only integrals can be compared
     mesh = build_body(SHORT, MeshSize(axial=3, element="tetrahedron", half=half), STRIPS)
     check(mesh, SHORT, Winding("double-helix", 3, 0.38))
-    ours = swept_body(SHORT, MeshSize(axial=3, section=2, half=half), STRIPS)
+    ours = hexahedral_body(SHORT, MeshSize(axial=3, section=2, half=half), STRIPS)
     for name in ours.facets:
         assert surface_area(mesh, name) == pytest.approx(surface_area(ours, name), rel=1e-4)
 
@@ -54,7 +54,7 @@ def test_msh_shows_body_and_winding(tmp_path: Path) -> None:
     for name in (*mesh.facets, *mesh.regions):
         assert f'"{name}"' in head
     assert "1 " in head.split('"winding"')[0].splitlines()[-1]
-    assert len(mesh.nodes) == len(swept_body(SHORT, MeshSize(axial=8), STRIPS).nodes)
+    assert len(mesh.nodes) == len(hexahedral_body(SHORT, MeshSize(axial=8), STRIPS).nodes)
 
 
 def test_time_limit_stops_gmsh() -> None:
@@ -68,7 +68,7 @@ def test_failure_of_gmsh_carries_its_message(tmp_path: Path) -> None:
 
 
 def test_mesh_survives_its_file(tmp_path: Path) -> None:
-    mesh = swept_body(SHORT, MeshSize(axial=8), STRIPS)
+    mesh = hexahedral_body(SHORT, MeshSize(axial=8), STRIPS)
     mesh.save(tmp_path / "mesh.npz")
     again = MeshData.load(tmp_path / "mesh.npz")
     assert np.array_equal(again.cells, mesh.cells)

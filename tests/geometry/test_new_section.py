@@ -11,13 +11,13 @@ import pytest
 
 import geometry
 from geometry.actuator import Profile, Side
-from geometry.bodies.extrude import swept_body
+from geometry.bodies.extrude import hexahedral_body
 from geometry.checks import check
 from geometry.sections.blocks import Layout
 from geometry.sections.rectangle import RectangleActuator
 from geometry.sections.shape import ShapedActuator
 from geometry.sections.size import MeshSize, Strips
-from geometry.sections.table import SECTIONS, make_actuator, misfits
+from geometry.sections.table import SECTIONS, inconsistencies, make_actuator
 from geometry.winding.helix import Winding
 
 GIVEN = {
@@ -62,15 +62,15 @@ def test_a_new_shape_needs_its_class_and_its_line(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setitem(SECTIONS, SquareActuator.section, SquareActuator)
     square = make_actuator(GIVEN)
     assert square.region_areas() == pytest.approx({"wall": 2 * 2 * 9 + 13 * 2, "floor": 13 * 3})
-    mesh = swept_body(square, MeshSize(axial=4), Strips(2.0, 3.0))
+    mesh = hexahedral_body(square, MeshSize(axial=4), Strips(2.0, 3.0))
     report = check(mesh, square, Winding("double-helix", 3, 0.38))
     assert all(abs(row["error"]) < 1e-9 for row in report.values() if "error" in row)
 
 
 def test_a_new_shape_tells_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(SECTIONS, SquareActuator.section, SquareActuator)
-    assert not list(misfits(GIVEN))
-    assert dict(misfits(GIVEN | {"side": None, "radius": 8.0, "layer": 0.5})) == {
+    assert not list(inconsistencies(GIVEN))
+    assert dict(inconsistencies(GIVEN | {"side": None, "radius": 8.0, "layer": 0.5})) == {
         "side": "missing, expected the side of a square",
         "radius": "no effect on a square, expected no value",
         "layer": "no effect on a square, expected no value",

@@ -6,7 +6,7 @@ import basix
 import numpy as np
 import pytest
 
-from geometry.bodies.extrude import swept_body, swept_section
+from geometry.bodies.extrude import hexahedral_body, section_quadrilaterals
 from geometry.checks import surface_area
 from geometry.mesh.data import (
     FACET_VERTICES,
@@ -44,8 +44,8 @@ def _basix(cell: str, points: Floats) -> tuple[Floats, Floats]:
 def _mesh(cell: str) -> MeshData:
     size = MeshSize(axial=4, section=1, half=True)
     if cell == "quadrilateral":
-        return swept_section(STUB, size)
-    mesh = swept_body(STUB, size)
+        return section_quadrilaterals(STUB, size)
+    mesh = hexahedral_body(STUB, size)
     return to_tetrahedra(mesh) if cell == "tetrahedron" else mesh
 
 

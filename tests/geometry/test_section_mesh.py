@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.bodies.extrude import swept_body, swept_section, swept_slice
+from geometry.bodies.extrude import hexahedral_body, hexahedral_slice, section_quadrilaterals
 from geometry.checks import chamber_gap, chamber_volume, surface_area
 from geometry.mesh.data import MeshData
 from geometry.mesh.reference import jacobians
@@ -28,8 +28,13 @@ DOUBLE = Winding("double-helix", 3, 0.38)
 def test_the_pin_is_named_in_every_mesh(half: bool, tmp_path: Path) -> None:
     # uniform bending measures curvature and stretch there; a wrong node would go unnoticed
     size = MeshSize(axial=4, half=half)
-    body = swept_body(BODY, size)
-    meshes = [swept_section(BODY, size), swept_slice(BODY, size, 1.5, 2), body, to_tetrahedra(body)]
+    body = hexahedral_body(BODY, size)
+    meshes = [
+        section_quadrilaterals(BODY, size),
+        hexahedral_slice(BODY, size, 1.5, 2),
+        body,
+        to_tetrahedra(body),
+    ]
     for mesh in meshes:
         assert mesh.nodes[mesh.points["pin"]] == pytest.approx(0, abs=1e-15)
     body.save(tmp_path / "mesh.npz")
@@ -39,7 +44,7 @@ def test_the_pin_is_named_in_every_mesh(half: bool, tmp_path: Path) -> None:
 @pytest.mark.parametrize("half", [True, False])
 def test_edges_of_a_section_have_lengths_and_normals(half: bool) -> None:
     # the section's chamber is measured by the same boundary integral as the body's
-    mesh = swept_section(BODY, MeshSize(section=3, half=half))
+    mesh = section_quadrilaterals(BODY, MeshSize(section=3, half=half))
     part = 0.5 if half else 1.0
     assert chamber_volume(mesh) == pytest.approx(part * BODY.chamber_area, rel=1e-5)
     assert chamber_gap(mesh) < 1e-12
@@ -59,7 +64,7 @@ def test_smeared_section_has_the_length_of_its_helices(pattern: str) -> None:
     # per mm of z a helix of pitch p around the perimeter S has √(S² + p²)/p of fiber
     winding = Winding(pattern, 7, 0.38)
     for half in (True, False):
-        mesh = swept_section(BODY, MeshSize(section=2, half=half))
+        mesh = section_quadrilaterals(BODY, MeshSize(section=2, half=half))
         fibers = smear(mesh, BODY, winding)
         per_helix = winding.turn_length(BODY) / winding.pitch * (0.5 if half else 1)
         for helix in range(len(winding.hands)):
@@ -72,7 +77,7 @@ def test_smeared_section_has_the_length_of_its_helices(pattern: str) -> None:
 
 def test_smeared_section_runs_along_the_right_hand() -> None:
     # the sign of the twist of a single helix hangs on this: right-handed is −s while z grows
-    mesh = swept_section(BODY, MeshSize(section=2, half=False))
+    mesh = section_quadrilaterals(BODY, MeshSize(section=2, half=False))
     fibers = smear(mesh, BODY, DOUBLE)
     x = jacobians(mesh, fibers.cell, fibers.points)[0][:, 0]
     s = arc_length(BODY, x, x[:, 0] < 0)
@@ -89,7 +94,7 @@ def test_smeared_section_runs_along_the_right_hand() -> None:
 def test_smeared_section_is_the_smeared_slice() -> None:
     # both models integrate the same density: one layer of 1 mm against the section
     size = MeshSize()
-    section, thin = swept_section(BODY, size), swept_slice(BODY, size, 1.0, 1)
+    section, thin = section_quadrilaterals(BODY, size), hexahedral_slice(BODY, size, 1.0, 1)
     flat, solid = smear(section, BODY, DOUBLE), smear(thin, BODY, DOUBLE)
     assert flat.length.sum() == pytest.approx(solid.length.sum(), rel=1e-12)
     sums = [
@@ -108,4 +113,4 @@ def test_smeared_section_is_the_smeared_slice() -> None:
 
 def test_a_section_holds_no_discrete_fibers() -> None:
     with pytest.raises(ValueError, match="smeared windings only"):
-        embed(swept_section(BODY, MeshSize()), BODY, DOUBLE)
+        embed(section_quadrilaterals(BODY, MeshSize()), BODY, DOUBLE)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fiberbend.case import case
-from geometry.bodies.extrude import swept_body, swept_section, swept_slice
+from geometry.bodies.extrude import hexahedral_body, hexahedral_slice, section_quadrilaterals
 from geometry.bodies.gmsh_body import build_body
 from geometry.checks import (
     chamber_volume,
@@ -124,7 +124,7 @@ def test_body_is_the_actuator(
     body: ShapedActuator, half: bool, section: int, strips: Strips | None
 ) -> None:
     # volumes, chamber, winding, closedness and Jacobians at once, for every layout variant
-    mesh = swept_body(body, MeshSize(axial=4, section=section, half=half), strips)
+    mesh = hexahedral_body(body, MeshSize(axial=4, section=section, half=half), strips)
     report = check(mesh, body, DOUBLE)
     limit = 2e-4 if section == 1 else 1e-5
     assert all(abs(row["error"]) < limit for row in report.values() if "error" in row)
@@ -132,17 +132,17 @@ def test_body_is_the_actuator(
 
 def test_straight_sections_have_no_geometry_error() -> None:
     # the allowance for arcs must not hide an error where there are none
-    mesh = swept_body(RECTANGLE, MeshSize(axial=4))
+    mesh = hexahedral_body(RECTANGLE, MeshSize(axial=4))
     assert geometry_error(mesh) < 1.1e-9
     arc = math.pi / 8
-    round_mesh = swept_body(TUBE, MeshSize(axial=4))
+    round_mesh = hexahedral_body(TUBE, MeshSize(axial=4))
     assert geometry_error(round_mesh) == pytest.approx(3 * (arc / 2) ** 4 / 30, rel=0.1)
 
 
 @every_body
 def test_named_facets_have_the_areas_of_their_surfaces(body: ShapedActuator) -> None:
     # a facet too many, too few or double would shift a boundary condition silently
-    mesh = swept_body(body, MeshSize(axial=4, section=2, half=False), Strips(2.0, 3.0))
+    mesh = hexahedral_body(body, MeshSize(axial=4, section=2, half=False), Strips(2.0, 3.0))
     solid = sum(body.region_areas().values())
     face = body.profile.outer_area
     outer = body.outer_half_width
@@ -175,8 +175,8 @@ def test_named_facets_have_the_areas_of_their_surfaces(body: ShapedActuator) -> 
 @every_body
 def test_half_is_half_of_full(body: ShapedActuator) -> None:
     # the solver compares half and full bodies to 1e-6: the meshes must be mirror images
-    half = swept_body(body, MeshSize(axial=8), Strips(2.0, 2.0))
-    full = swept_body(body, MeshSize(axial=8, half=False), Strips(2.0, 2.0))
+    half = hexahedral_body(body, MeshSize(axial=8), Strips(2.0, 2.0))
+    full = hexahedral_body(body, MeshSize(axial=8, half=False), Strips(2.0, 2.0))
     assert len(full.cells) == 2 * len(half.cells)
     assert _as_set(np.vstack([half.nodes, half.nodes * [-1, 1, 1]])) == _as_set(full.nodes)
     for name in set(half.facets) - {"symmetry"}:
@@ -191,11 +191,11 @@ def test_half_is_half_of_full(body: ShapedActuator) -> None:
 @every_body
 def test_heights_of_centroids_are_those_of_the_mesh(body: ShapedActuator) -> None:
     # the tip is reported at the face's centroid, and κ is the torque of the pressure
-    mesh = swept_body(body, MeshSize(axial=8, section=2))
+    mesh = hexahedral_body(body, MeshSize(axial=8, section=2))
     x, normal = area_vectors(mesh, "tip")
     area = np.linalg.norm(normal, axis=2)
     assert (area * x[..., 1]).sum() / area.sum() == pytest.approx(body.face_height, rel=1e-5)
-    x, normal = area_vectors(swept_section(body, MeshSize(section=2)), "chamber")
+    x, normal = area_vectors(section_quadrilaterals(body, MeshSize(section=2)), "chamber")
     moment = -2 * (x[..., 0] * x[..., 1] * normal[..., 0]).sum()
     assert moment == pytest.approx(body.chamber_moment, rel=1e-5)
 
@@ -203,18 +203,18 @@ def test_heights_of_centroids_are_those_of_the_mesh(body: ShapedActuator) -> Non
 def test_the_floor_of_a_circle_lies_within_45_degrees() -> None:
     # where the stiff strip sits decides how the circle bends
     for body in (CIRCLE, INLAY):
-        mesh = swept_section(body, MeshSize(section=2, half=False))
+        mesh = section_quadrilaterals(body, MeshSize(section=2, half=False))
         cells = np.flatnonzero(mesh.cell_region == mesh.regions["floor"])
         x = jacobians(mesh, cells, cell_rule(mesh.cell_type)[0])[0].reshape(-1, 2) - [0, 8]
         assert np.hypot(*x.T).min() > 8 - (body.floor or 0.0)
         angle = np.abs(np.arctan2(x[:, 0], -x[:, 1]))
         assert angle.max() < math.pi / 4 + 1e-3
-    assert set(swept_section(TUBE, MeshSize()).regions) == {"wall"}
+    assert set(section_quadrilaterals(TUBE, MeshSize()).regions) == {"wall"}
 
 
 def test_a_tube_is_concentric() -> None:
     # exact solutions of tubes hold for this section only if it is one
-    mesh = swept_section(TUBE, MeshSize(section=2, half=False))
+    mesh = section_quadrilaterals(TUBE, MeshSize(section=2, half=False))
     for name, radius in (("chamber", 6), ("winding", 8), ("outer", 8)):
         nodes = mesh.nodes[mesh.facet_nodes(name)]
         assert np.hypot(nodes[..., 0], nodes[..., 1] - 8) == pytest.approx(radius, abs=1e-12)
@@ -225,7 +225,7 @@ def test_a_tube_is_concentric() -> None:
 def test_section_slice_and_body_belong_together(body: ShapedActuator, half: bool) -> None:
     # the models are compared with each other: same areas, same names, same pin
     size = MeshSize(axial=4, half=half)
-    section, thin = swept_section(body, size), swept_slice(body, size, 1.5, 2)
+    section, thin = section_quadrilaterals(body, size), hexahedral_slice(body, size, 1.5, 2)
     part = 0.5 if half else 1.0
     areas = {name: part * area for name, area in body.region_areas().items()}
     assert determinants(section).min() > 0
@@ -236,7 +236,7 @@ def test_section_slice_and_body_belong_together(body: ShapedActuator, half: bool
     sides = {"chamber", "winding", "outer"} | ({"symmetry"} if half else set())
     assert set(section.facets) == sides
     assert set(thin.facets) == sides | {"section_root", "section_tip"}
-    for mesh in (section, thin, swept_body(body, size)):
+    for mesh in (section, thin, hexahedral_body(body, size)):
         assert np.all(mesh.nodes[mesh.points["pin"]] == 0)
 
 
@@ -265,7 +265,7 @@ def test_outline_runs_around_once(body: ShapedActuator) -> None:
 def test_windings_have_their_length(body: ShapedActuator, pattern: str) -> None:
     # exact: L/p √(S² + p²) a helix, embedded or smeared, on any full mesh
     winding = Winding(pattern, 7, 0.38)
-    hexes = swept_body(body, MeshSize(axial=4, section=2, half=False))
+    hexes = hexahedral_body(body, MeshSize(axial=4, section=2, half=False))
     for mesh in (hexes, to_tetrahedra(hexes)):
         expected = winding.curve_length(body)
         fibers = embed(mesh, body, winding)
@@ -274,7 +274,7 @@ def test_windings_have_their_length(body: ShapedActuator, pattern: str) -> None:
             assert fibers.length[of_curve].sum() == pytest.approx(expected, rel=2e-5)
         total = len(winding.hands) * expected
         assert smear(mesh, body, winding).length.sum() == pytest.approx(total, rel=2e-5)
-    section = swept_section(body, MeshSize(section=2, half=False))
+    section = section_quadrilaterals(body, MeshSize(section=2, half=False))
     per_mm = len(winding.hands) * winding.turn_length(body) / 7
     assert smear(section, body, winding).length.sum() == pytest.approx(per_mm, rel=2e-5)
 
@@ -284,8 +284,8 @@ def test_smeared_windings_follow_the_helix(body: ShapedActuator) -> None:
     # right-handed: −s while z grows, on the section and on the body
     around, up = body.winding_perimeter, DOUBLE.pitch
     for mesh in (
-        swept_section(body, MeshSize(section=2, half=False)),
-        swept_slice(body, MeshSize(section=2, half=False), 3.0, 2),
+        section_quadrilaterals(body, MeshSize(section=2, half=False)),
+        hexahedral_slice(body, MeshSize(section=2, half=False), 3.0, 2),
     ):
         fibers = smear(mesh, body, DOUBLE)
         x, jacobian = jacobians(mesh, fibers.cell, fibers.points)
@@ -302,7 +302,7 @@ def test_smeared_windings_follow_the_helix(body: ShapedActuator) -> None:
 @every_body
 def test_half_a_pitch_holds_one_pass(body: ShapedActuator) -> None:
     # the cell model: one pass of one fiber from the top to the bottom
-    mesh = swept_slice(body, MeshSize(section=2), 1.5, 2)
+    mesh = hexahedral_slice(body, MeshSize(section=2), 1.5, 2)
     fibers = embed(mesh, body, Winding("double-helix", 3, 0.0))
     expected = math.hypot(body.winding_perimeter, 3) / 2
     assert fibers.length.sum() == pytest.approx(expected, rel=2e-5)
@@ -312,7 +312,7 @@ def test_half_a_pitch_holds_one_pass(body: ShapedActuator) -> None:
 def test_gmsh_makes_the_same_mesh(body: ShapedActuator) -> None:
     # two independent ways to the same mesh: node places and names must agree
     size, strips = MeshSize(axial=4), Strips(2.0, 2.0)
-    ours, theirs = swept_body(body, size, strips), build_body(body, size, strips)
+    ours, theirs = hexahedral_body(body, size, strips), build_body(body, size, strips)
     assert _as_set(theirs.nodes.round(6)) == _as_set(ours.nodes.round(6))
     assert set(theirs.facets) == set(ours.facets)
     for name in ours.facets:

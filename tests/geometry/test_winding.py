@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from geometry.bodies.extrude import swept_body, swept_slice
+from geometry.bodies.extrude import hexahedral_body, hexahedral_slice
 from geometry.mesh.data import MeshData
 from geometry.mesh.reference import jacobians
 from geometry.mesh.tets import to_tetrahedra
@@ -26,8 +26,8 @@ SINGLES = [Winding("single-helix-right", 3, 0.38), Winding("single-helix-left", 
 
 
 def _meshes(half: bool) -> list[MeshData]:
-    hexes = swept_body(BODY, MeshSize(axial=4, section=1, half=half))
-    fine = swept_body(BODY, MeshSize(axial=1.3, section=2, half=half))
+    hexes = hexahedral_body(BODY, MeshSize(axial=4, section=1, half=half))
+    fine = hexahedral_body(BODY, MeshSize(axial=1.3, section=2, half=half))
     return [hexes, fine, to_tetrahedra(hexes)]
 
 
@@ -112,7 +112,7 @@ def test_segments_follow_each_other() -> None:
 
 def test_a_line_along_a_border_of_tetrahedra_counts_once() -> None:
     # the measure-zero case: a helix that runs exactly along the diagonals of the facets
-    hexes = swept_body(BODY, MeshSize(axial=4, section=1, half=False))
+    hexes = hexahedral_body(BODY, MeshSize(axial=4, section=1, half=False))
     tets = to_tetrahedra(hexes)
     side = (BODY.profile.bottom - BODY.outline_bottom) / 2
     nodes = tets.nodes[tets.facet_nodes("winding")]
@@ -138,7 +138,7 @@ def test_smeared_length_is_the_discrete_one() -> None:
 
 def test_slice_of_half_a_pitch_holds_one_pass() -> None:
     # the cell model: one pass of one fiber from the top to the bottom
-    mesh = swept_slice(BODY, MeshSize(), 1.5, 2)
+    mesh = hexahedral_slice(BODY, MeshSize(), 1.5, 2)
     fibers = embed(mesh, BODY, Winding("double-helix", 3, 0.0))
     assert fibers.length.sum() == pytest.approx(math.hypot(BODY.winding_perimeter, 3) / 2, rel=2e-5)
     assert len(set(fibers.curve.tolist())) == 1

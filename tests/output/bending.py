@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fiberbend.states.snapshot import Scenery, Snapshot
-from geometry.bodies.extrude import swept_body
+from geometry.bodies.extrude import hexahedral_body
 from geometry.mesh.data import Floats
 from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize
@@ -32,7 +32,7 @@ def scenery(
     """The actuator with its double helix at a pitch of 3 mm."""
     from geometry.mesh.tets import to_tetrahedra
 
-    mesh = swept_body(actuator, MeshSize(axial=axial, half=half))
+    mesh = hexahedral_body(actuator, MeshSize(axial=axial, half=half))
     if element == "tetrahedron":
         mesh = to_tetrahedra(mesh)
     fibers = embed(mesh, actuator, Winding("double-helix", 3.0, width))

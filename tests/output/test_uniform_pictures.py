@@ -22,8 +22,8 @@ from fiberbend.running.uniform_report import draw_states
 from fiberbend.states.bend import Bend
 from fiberbend.states.recovery import cauchy_stress, recover
 from fiberbend.states.snapshot import Scenery
-from fiberbend.states.stack import repeated, split_alike, swept
-from geometry.bodies.extrude import swept_section
+from fiberbend.states.stack import extruded, repeated, split_alike
+from geometry.bodies.extrude import section_quadrilaterals
 from geometry.checks import region_volumes
 from geometry.mesh.data import Floats, MeshData
 from geometry.sections.circle import CircleActuator
@@ -181,7 +181,7 @@ def test_swept_section_recovers_alike() -> None:
     scene = section()
     bent = state(scene, 90.0, 0.98)
     nodes = split_alike(scene.mesh)
-    stack = swept(scene, SHORT.length, 24)
+    stack = extruded(scene, SHORT.length, 24)
     spread = stack.fields(nodes, recover(scene, bent, nodes), bent)
     direct = recover(stack.scenery, stack.snapshot(scene, bent))
     assert spread.stretches == pytest.approx(direct.stretches, rel=2e-3)
@@ -191,10 +191,10 @@ def test_swept_section_recovers_alike() -> None:
 def test_turned_half_completes_a_twisted_section() -> None:
     scene = section()
     twisted = state(scene, 90.0, move=warp, twist=-0.01)
-    stack = swept(scene, SHORT.length, 8, turned=True)
+    stack = extruded(scene, SHORT.length, 8, turned=True)
     mesh = stack.scenery.mesh
     assert not mesh.half
-    half = swept(scene, SHORT.length, 8).scenery.mesh
+    half = extruded(scene, SHORT.length, 8).scenery.mesh
     volumes = region_volumes(half)
     assert region_volumes(mesh) == pytest.approx({name: 2 * v for name, v in volumes.items()})
     placed = mesh.nodes + stack.snapshot(scene, twisted).displacement
@@ -276,7 +276,7 @@ def test_floor_bulge_is_read_between_middle_and_edge() -> None:
     # the edge of the winding lies at x = a + t = 10
     assert Crosscut(scene).bulge(state(scene, move=sag)) == pytest.approx(0.7)
     round_one = CircleActuator(radius=8, length=24, wall=2, cap=4)
-    mesh = swept_section(round_one, MeshSize(axial=PITCH))
+    mesh = section_quadrilaterals(round_one, MeshSize(axial=PITCH))
     tube = Scenery(mesh, MATERIALS, None, smeared=False, title="", uniform=True)
     still = dataclasses.replace(
         state(scene),

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fiberbend.states.snapshot import Scenery, Snapshot
-from geometry.bodies.extrude import swept_section, swept_slice
+from geometry.bodies.extrude import hexahedral_slice, section_quadrilaterals
 from geometry.mesh.data import Floats
 from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
@@ -20,14 +20,14 @@ DOUBLE = Winding("double-helix", PITCH, 0.38)
 
 
 def section(half: bool = True) -> Scenery:
-    mesh = swept_section(SHORT, MeshSize(axial=PITCH, half=half))
+    mesh = section_quadrilaterals(SHORT, MeshSize(axial=PITCH, half=half))
     fibers = smear(mesh, SHORT, DOUBLE)
     return Scenery(mesh, MATERIALS, fibers, smeared=True, title="Section", uniform=True)
 
 
 def cell(half: bool = True, fineness: int = 1) -> Scenery:
     extent = PITCH / 2 if half else PITCH
-    mesh = swept_slice(SHORT, MeshSize(axial=PITCH, section=fineness, half=half), extent, 2)
+    mesh = hexahedral_slice(SHORT, MeshSize(axial=PITCH, section=fineness, half=half), extent, 2)
     fibers = embed(mesh, SHORT, DOUBLE)
     return Scenery(mesh, MATERIALS, fibers, smeared=False, title="Cell", uniform=True)
 

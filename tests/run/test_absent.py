@@ -13,7 +13,7 @@ from fiberbend.effects.effect import tip_strips
 from fiberbend.models.choice import meshed
 from fiberbend.models.parts import build
 from fiberbend.reader.reader import as_case
-from geometry.bodies.extrude import swept_body
+from geometry.bodies.extrude import hexahedral_body
 from geometry.mesh.data import MeshData
 from tests.run.conftest import small
 
@@ -40,7 +40,7 @@ CLASSES = {
 def mesh() -> MeshData:
     """A coarse body that has every surface an effect may ask for."""
     case = as_case(small(effects=[{"pressure": {"to": "1 kPa"}}, {"blocked-tip": {}}]))
-    return swept_body(
+    return hexahedral_body(
         convert.dimensions(case.actuator),
         convert.mesh_size(case.mesh, True),
         tip_strips(case.effects),

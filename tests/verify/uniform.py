@@ -22,7 +22,7 @@ from fem.march.march import March
 from fem.march.records import Ramp, Rules, State
 from fem.scene import Scene
 from fem.solver.newton import Newton, Settings
-from geometry.bodies.extrude import swept_section
+from geometry.bodies.extrude import section_quadrilaterals
 from geometry.sections.shape import ShapedActuator
 from geometry.sections.size import MeshSize
 
@@ -72,7 +72,9 @@ class Held(Effect):
 
 def domain(actuator: ShapedActuator, refinement: int) -> Domain:
     """Half a section."""
-    return Domain(swept_section(actuator, MeshSize(section=refinement, half=True)), MPI.COMM_SELF)
+    return Domain(
+        section_quadrilaterals(actuator, MeshSize(section=refinement, half=True)), MPI.COMM_SELF
+    )
 
 
 def rubber(laws: dict[str, Law], bulk: float | None = None) -> list[Effect]:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from geometry.bodies.extrude import swept_body, swept_section, swept_slice
+from geometry.bodies.extrude import hexahedral_body, hexahedral_slice, section_quadrilaterals
 from geometry.checks import chamber_gap, check, determinants, region_volumes, surface_area
 from geometry.mesh.data import MeshData
 from geometry.mesh.errors import MeshError
@@ -31,7 +31,7 @@ def test_body_is_the_actuator(
     actuator: HemicircleActuator, half: bool, section: int, strips: Strips | None
 ) -> None:
     # volumes, chamber, closedness and Jacobians at once, for every layout variant
-    mesh = swept_body(actuator, MeshSize(axial=4, section=section, half=half), strips)
+    mesh = hexahedral_body(actuator, MeshSize(axial=4, section=section, half=half), strips)
     report = check(mesh, actuator)
     limit = 1.5e-4 if section == 1 else 1e-5
     assert all(abs(row["error"]) < limit for row in report.values() if "error" in row)
@@ -40,7 +40,7 @@ def test_body_is_the_actuator(
 def test_named_facets_have_the_areas_of_their_surfaces() -> None:
     # a facet too many, too few or double would shift a boundary condition silently
     a = BASELINE
-    mesh = swept_body(a, MeshSize(axial=4, section=2, half=False), Strips(2.0, 3.0))
+    mesh = hexahedral_body(a, MeshSize(axial=4, section=2, half=False), Strips(2.0, 3.0))
     solid = sum(a.region_areas().values())
     radius, outer = a.profile.half_width, a.outer_half_width
     perimeter = math.pi * outer + 2 * (a.profile.bottom - a.outer_bottom) + 2 * outer
@@ -62,8 +62,8 @@ def test_named_facets_have_the_areas_of_their_surfaces() -> None:
 
 def test_half_is_half_of_full() -> None:
     # the solver compares half and full bodies to 1e-6: the meshes must be mirror images
-    half = swept_body(BASELINE, MeshSize(axial=8), Strips(2.0, 2.0))
-    full = swept_body(BASELINE, MeshSize(axial=8, half=False), Strips(2.0, 2.0))
+    half = hexahedral_body(BASELINE, MeshSize(axial=8), Strips(2.0, 2.0))
+    full = hexahedral_body(BASELINE, MeshSize(axial=8, half=False), Strips(2.0, 2.0))
     assert len(full.cells) == 2 * len(half.cells)
     mirrored = np.vstack([half.nodes, half.nodes * [-1, 1, 1]])
     assert _as_set(mirrored) == _as_set(full.nodes)
@@ -78,7 +78,7 @@ def test_half_is_half_of_full() -> None:
 
 def test_tetrahedra_conform_and_keep_names() -> None:
     # an edge cut two ways would leave gaps: every inner facet must have exactly two cells
-    mesh = swept_body(BASELINE, MeshSize(axial=8, half=False), Strips(2.0, 2.0))
+    mesh = hexahedral_body(BASELINE, MeshSize(axial=8, half=False), Strips(2.0, 2.0))
     tets = to_tetrahedra(mesh)
     assert determinants(tets).min() > 0
     assert region_volumes(tets) == pytest.approx(region_volumes(mesh), rel=1e-12)
@@ -95,12 +95,12 @@ def test_tetrahedra_conform_and_keep_names() -> None:
 def test_section_and_slice_share_the_body_section() -> None:
     # section and cell models are compared with the body: same regions, same areas
     size = MeshSize(section=1)
-    section = swept_section(BASELINE, size)
+    section = section_quadrilaterals(BASELINE, size)
     assert len(section.cells) == 18
     assert determinants(section).min() > 0
     areas = {name: area / 2 for name, area in BASELINE.region_areas().items()}
     assert region_volumes(section) == pytest.approx(areas, rel=1e-4)
-    thin = swept_slice(BASELINE, size, 1.5, 2)
+    thin = hexahedral_slice(BASELINE, size, 1.5, 2)
     volumes = {name: 1.5 * area for name, area in region_volumes(section).items()}
     assert region_volumes(thin) == pytest.approx(volumes)
     assert set(thin.facets) == {
@@ -110,7 +110,7 @@ def test_section_and_slice_share_the_body_section() -> None:
 
 def test_inner_facets_are_listed_from_the_lower_cell() -> None:
     # the host cell of a fiber must not depend on who built the mesh
-    mesh = swept_body(BASELINE, MeshSize(axial=8))
+    mesh = hexahedral_body(BASELINE, MeshSize(axial=8))
     everyone = mesh.cells[:, _VERTICES]
     for name in ("winding", "section_root", "section_tip"):
         pairs = mesh.facets[name]
@@ -123,7 +123,7 @@ def test_inner_facets_are_listed_from_the_lower_cell() -> None:
 
 def test_a_wrong_mesh_is_reported() -> None:
     # the check must bite: a mesh of another actuator, and one with an inverted cell
-    mesh = swept_body(BASELINE, MeshSize(axial=8))
+    mesh = hexahedral_body(BASELINE, MeshSize(axial=8))
     other = HemicircleActuator(radius=8, length=160, wall=2.01, floor=2, sheath=1, cap=15)
     with pytest.raises(MeshError, match="volume wall"):
         check(mesh, other)
