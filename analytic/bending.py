@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from analytic.inverse import MonotoneInverse, angle_range
-from analytic.layers import Layer, rectangle, ring
+from analytic.section_parts import SectionPart, rectangle, ring
 from analytic.stress import Floats, Stress, effective
 
 
@@ -96,7 +96,7 @@ class Hemicircle:
         return (4 * a**3 + 3 * math.pi * a**2 * b) / 6
 
     @functools.cached_property
-    def _layers(self) -> list[tuple[Layer, Stress]]:
+    def _section_parts(self) -> list[tuple[SectionPart, Stress]]:
         """Every part of the section with its stress."""
         a, b, outer, s = self.radius, self.floor, self.radius + self.wall, self.sheath
         wall, floor = ring(b, a, outer, 0.0), rectangle(2 * outer, 0.0, b)
@@ -129,7 +129,7 @@ class Hemicircle:
         return MonotoneInverse(pressure, *self.angles)
 
     def _moment(self, angle: Floats) -> Floats:
-        total = sum(part.moment(angle, self.length, stress) for part, stress in self._layers)
+        total = sum(part.moment(angle, self.length, stress) for part, stress in self._section_parts)
         return np.asarray(self.length * total if self.paper else total)
 
     def pressure_moment(self, pressure: Floats | float) -> Floats:
@@ -155,7 +155,7 @@ class Hemicircle:
         return self._moment(angle)
 
     def pressure(self, angle: Floats | float) -> Floats:
-        """Eq. (19): pressure P(θ) that holds bending angles of any shape (rad), MPa."""
+        """Eq. (19): pressure P(θ) in MPa at bending angles in rad, of any shape."""
         return self.moment(angle) / self.kappa
 
     def angle(self, pressure: Floats | float) -> Floats:
@@ -175,7 +175,7 @@ class Hemicircle:
         return self._inverse(np.asarray(pressure, dtype=float))
 
     def force(self, pressure: Floats | float, cap_length: float) -> Floats:
-        """Eq. (20): contact force F = κ P/L_f of the actuator held straight.
+        """Eq. (20): contact force F = κ P/L_f in N of the actuator kept straight.
 
         Args:
             pressure: pressures of any shape, MPa.

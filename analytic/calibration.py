@@ -16,7 +16,7 @@ from analytic.inverse import FORWARD
 from analytic.stress import Floats, effective
 
 FEWEST = 3
-"""Points that bend: one fixes μ̄, and a scatter of fewer than two others says nothing."""
+"""Points that bend: one fixes μ̄, and a scatter needs two others at least."""
 GREATEST_SCATTER = 0.25
 """Of the pressures about the fit, relative to their size; the paper's stay within 0.109."""
 

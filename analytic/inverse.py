@@ -12,7 +12,7 @@ from analytic.stress import Floats
 
 BACKWARD = -math.pi / 2
 FORWARD = 4 * math.pi
-"""Greatest angles either way for which θ(P) is looked for, rad."""
+"""Greatest angles in each direction for which θ(P) is looked for, rad."""
 
 _INTERVALS = 400
 _GRID = 181
@@ -33,7 +33,7 @@ def angle_range(length: float, roof: float, below: float = 0.0) -> tuple[float, 
     return max(BACKWARD, -length / roof / 2), forward
 
 
-class Found(NamedTuple):
+class FoundAngle(NamedTuple):
     """An angle that `first_angle` found."""
 
     angle: float
@@ -41,17 +41,17 @@ class Found(NamedTuple):
     pressure: float
     """P there, MPa, without sign."""
     end: Literal["", "peak", "limit", "bound"]
-    """Nothing where θ holds the pressure; else why it is not reached: P has its greatest value at
+    """Nothing where P(θ) is the target; else why it is not reached: P has its greatest value at
     θ, the rubber meets its limiting stretch beyond θ, or θ is the bound."""
 
 
-def first_angle(pressure: Callable[[Floats], Floats], target: float, bound: float) -> Found:
-    """The first angle from 0 on that a pressure holds, or the last one before P falls or θ ends.
+def first_angle(pressure: Callable[[Floats], Floats], target: float, bound: float) -> FoundAngle:
+    """The first angle from 0 on at a pressure, or the last one before P falls or θ ends.
 
     Args:
         pressure: P(θ) in MPa, elementwise, P(0) = 0.
         target: P wanted, MPa, of the sign of P(bound).
-        bound: where the search ends, rad, either way.
+        bound: where the search ends, rad, of either sign.
     """
     from scipy.optimize import brentq
 
@@ -63,11 +63,11 @@ def first_angle(pressure: Callable[[Floats], Floats], target: float, bound: floa
     if len(beyond):
         first = int(beyond[0])
         angle = brentq(lambda x: float(pressure(x)) - target, angles[first - 1], angles[first])
-        return Found(float(angle), abs(target), "")
+        return FoundAngle(float(angle), abs(target), "")
     end: Literal["peak", "limit", "bound"] = "bound"
     if len(falls):
         end = "peak" if np.isfinite(values[last + 1]) else "limit"
-    return Found(float(angles[last]), float(values[last]), end)
+    return FoundAngle(float(angles[last]), float(values[last]), end)
 
 
 class MonotoneInverse:
@@ -87,7 +87,7 @@ class MonotoneInverse:
             high: greatest θ, rad.
 
         Raises:
-            ValueError: P does not rise with θ all the way.
+            ValueError: P does not rise with θ everywhere.
         """
         # a fifth of a second to import, and many a curve is never inverted
         from scipy.interpolate import CubicSpline

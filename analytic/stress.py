@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Stress = Callable[[Floats], Floats]
 """Nominal axial stress s in MPa, elementwise, as a function of the axial stretch λ > 0."""
-Law = Callable[[Floats, Floats, Floats], tuple[Floats, Floats, Floats]]
+PrincipalStresses = Callable[[Floats, Floats, Floats], tuple[Floats, Floats, Floats]]
 """λi ∂W/∂λi in MPa of principal stretches with the product 1, elementwise: the principal Cauchy
 stresses but for a pressure that they share."""
 
@@ -45,13 +45,13 @@ def effective(modulus: float = CALIBRATED_MODULUS) -> Stress:
     return stress
 
 
-def wound(law: Law) -> Stress:
+def wound(law: PrincipalStresses) -> Stress:
     """Eqs. (6)–(11) for any law, so that measured materials replace the fitted μ̄.
 
     The stretches λ, 1, 1/λ with s3 = 0 leave s1 = (σ1 − σ3)/λ.
 
     Args:
-        law: the rubber.
+        law: λi ∂W/∂λi of the rubber, MPa.
     """
 
     def stress(stretch: Floats) -> Floats:

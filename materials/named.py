@@ -31,7 +31,7 @@ def named_material(name: str) -> Material:
     """The material of a name.
 
     Raises:
-        ValueError: an unknown name; says which there are.
+        ValueError: an unknown name; lists those that there are.
     """
     if name not in NAMED:
         raise ValueError(f"material {name!r} is unknown: expected one of {', '.join(NAMED)}")

@@ -2,7 +2,7 @@
 
 S(a) = λ1^a + λ2^a + λ3^a with λ1 λ2 λ3 = 1 is symmetric in the stretches, hence a smooth function
 of I1 and I2, also where stretches are equal; there the stretches themselves are not. Its value and
-its derivatives up to the second come from here by way of the invariants of the logarithmic strain,
+its derivatives up to the second come from here through the invariants of the logarithmic strain,
 
     hi = ln λi,   J2 = −(h1 h2 + h2 h3 + h3 h1),   J3 = h1 h2 h3,   h³ = J2 h + J3,
 
@@ -88,7 +88,7 @@ class PowerSums:
         """S(a) − 3 and its derivatives by I1 and I2."""
         s = self._pair(exponent, HALVINGS)[0]
         first, second = (row[0] * s[1] + row[1] * s[2] for row in self._rows)
-        # what ∂²S/∂J² holds beyond the curvature of I1 and I2 themselves
+        # ∂²S/∂J² less the curvature of I1 and I2 themselves
         a, b, c = (s[k] - first * self._i1[k] - second * self._i2[k] for k in (3, 4, 5))
 
         def curvature(u: tuple[Any, Any], v: tuple[Any, Any]) -> Any:

@@ -41,7 +41,7 @@ class AngleFilter:
     """θ(P), the inverse of eq. (19) or of any tabulated curve, for one sample at a time.
 
     Beyond its table it stays at the table's end: a controller must get a number for every sample,
-    and the end value drives the valves the right way.
+    and the end value drives the valves in the right direction.
 
     Attributes:
         low: least pressure of the table, MPa.
@@ -68,7 +68,7 @@ class AngleFilter:
         """Invert eq. (19) from half the angle that closes the section backward to 720°.
 
         Raises:
-            ValueError: P does not rise with θ all the way, or the table misses `TOLERANCE`.
+            ValueError: P does not rise with θ everywhere, or the table misses `TOLERANCE`.
         """
         angle = np.linspace(*actuator.angles, _INTERVALS + 1)
         pressure = actuator.pressure(angle)
@@ -90,7 +90,7 @@ class AngleFilter:
 
         Raises:
             ValueError: fewer than two points, arrays of different shapes, or a curve that does not
-                rise all the way: there one pressure has several angles.
+                rise everywhere: there one pressure has several angles.
         """
         pressure, angle = np.asarray(pressure, dtype=float), np.asarray(angle, dtype=float)
         if pressure.ndim != 1 or pressure.shape != angle.shape or len(pressure) < 2:
@@ -117,15 +117,15 @@ class AngleFilter:
         return self._table.values(np.asarray(pressure, dtype=float))
 
     def pressure(self, angle: float) -> float:
-        """Pressure in MPa at which the filter says an angle in rad.
+        """Pressure in MPa at which the filter gives an angle in rad.
 
         Raises:
-            ValueError: the filter never says this angle.
+            ValueError: the filter never gives this angle.
         """
         if not self._back.low <= angle <= self._back.high:
             low, high = math.degrees(self._back.low), math.degrees(self._back.high)
             raise ValueError(
-                f"filter: it knows angles from {low:.4g} to {high:.4g}°, "
+                f"filter: it gives angles from {low:.4g} to {high:.4g}°, "
                 f"not {math.degrees(angle):.4g}°"
             )
         return self._back(angle)

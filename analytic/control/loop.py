@@ -98,7 +98,7 @@ class Sine:
 
     @property
     def levels(self) -> list[float]:
-        """Angles on the way, rad."""
+        """Angles from the lowest to the highest, rad."""
         levels: list[float] = np.linspace(self.low, self.high, 9).tolist()
         return levels
 
@@ -221,7 +221,7 @@ def check(
 
     Raises:
         ValueError: a supply below the pressure that the upper angle needs, a curve that ends below
-            it, a reference that the filter never reaches, or a rate that is too low; says which.
+            it, a reference that the filter never reaches, or a rate that is too low.
     """
     highest = reference.levels[-1]
     needed = angle_filter.pressure(highest)

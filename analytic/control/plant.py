@@ -2,7 +2,7 @@
 
 mm, N, MPa, s, rad; air is counted as pressure times volume, MPa mm³ = mJ.
 
-* Supply: a regulator that holds its pressure whatever the flow.
+* Supply: a regulator that keeps its pressure at any flow.
 * Valves: ISO 6358, each by its sonic conductance C and critical pressure ratio b,
       q = p0 C p_up ψ(p_down/p_up),  ψ(r) = 1 for r <= b, sqrt(1 − ((r − b)/(1 − b))²) above it,
   linear in p_up − p_down for r > 0.999 where the square root has an infinite slope, as simulators

@@ -1,6 +1,6 @@
 """What a law is: one strain energy of an isochoric deformation, and its parameters.
 
-A law's file holds a function `energy(state, …)` and the table `LAW` of its parameters. The same
+A law's file has a function `energy(state, …)` and the table `LAW` of its parameters. The same
 function takes numbers, numpy arrays (real or complex) and ufl expressions: it uses arithmetic and
 what `Deformation` offers. Stresses, tangents, checks and the keys of a case all follow from it.
 """
@@ -50,7 +50,7 @@ class Parameter:
         default: value where it is left out; None: it must be given, or belongs to a term.
         term: coefficient of the term that it belongs to, where the law can do without the term;
             where that coefficient is zero or left out, the energy is not given the parameter.
-        elsewhere: value in the regions of other laws, for one form holds all regions: with these
+        elsewhere: value in the regions of other laws, for one form covers all regions: with these
             values the energy and its derivatives are zero, whatever the deformation. None: 0 MPa,
             or 1.
     """

@@ -100,7 +100,7 @@ def test_curves_without_an_inverse_are_refused(
 
 
 def test_angles_that_it_never_says_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"filter: it knows angles from -90 to 720°, not 900°"):
+    with pytest.raises(ValueError, match=r"filter: it gives angles from -90 to 720°, not 900°"):
         FILTER.pressure(math.radians(900))
 
 

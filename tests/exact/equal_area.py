@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 
-from analytic.layers import Layer, rectangle, ring
+from analytic.section_parts import SectionPart, rectangle, ring
 from analytic.stress import Floats, Stress, effective
 
 Shape = Literal["rectangle", "hemicircle", "circle"]
@@ -100,7 +100,7 @@ class EqualArea:
         return printed * a**3 if self.paper else exact
 
     @functools.cached_property
-    def _layers(self) -> dict[Shape, Layer]:
+    def _layers(self) -> dict[Shape, SectionPart]:
         """Walls and floor of each shape, as (A12), (A13) and (A15) integrate them."""
         a, t, v, (half, full) = self.side, self.wall, self.aspect, self.radii
         top = t + a / v
@@ -112,7 +112,7 @@ class EqualArea:
             "circle": self._exchanged() if self.paper else ring(full + t, full, full + t),
         }
 
-    def _exchanged(self) -> Layer:
+    def _exchanged(self) -> SectionPart:
         """(A15) read literally: c from 0 to π mm, and φ, which starts at the floor, to t rad."""
         full, t = self.radii[1], self.wall
         return ring(full + t, full, full + math.pi, -math.pi / 2, t - math.pi / 2)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 
-from analytic.stress import Law
+from analytic.stress import PrincipalStresses
 
 Floats = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ class Tube:
         outside: pressure on the outer surface, MPa.
     """
 
-    law: Law
+    law: PrincipalStresses
     inner: float
     outer: float
     deformed_inner: float
@@ -98,7 +98,7 @@ class Tube:
         return self.radial_stress(R) - across + (across + around + along) / 3
 
 
-def closed_tube(law: Law, inner: float, outer: float, deformed_inner: float) -> Tube:
+def closed_tube(law: PrincipalStresses, inner: float, outer: float, deformed_inner: float) -> Tube:
     """A tube whose closed ends are free: λz follows from the thrust."""
 
     def force(stretch: float) -> float:
@@ -109,7 +109,7 @@ def closed_tube(law: Law, inner: float, outer: float, deformed_inner: float) -> 
 
 
 def wound_tube(
-    law: Law, inner: float, outer: float, stretch: float, stiffness: float = math.inf
+    law: PrincipalStresses, inner: float, outer: float, stretch: float, stiffness: float = math.inf
 ) -> Tube:
     """A tube with closed free ends and hoops on its outer surface.
 
@@ -149,7 +149,7 @@ class Torsion:
         twist: ψ, rad/mm.
     """
 
-    law: Law
+    law: PrincipalStresses
     outer: float
     twist: float
 
@@ -218,7 +218,7 @@ class Flexure:
         length_per_angle: α, mm/rad.
     """
 
-    law: Law
+    law: PrincipalStresses
     thickness: float
     length_per_angle: float
 
@@ -268,7 +268,9 @@ class Flexure:
         return self._radial_stress(r) - across + (across + around + along) / 3
 
 
-def sphere_pressure(law: Law, inner: float, outer: float, deformed_inner: float) -> float:
+def sphere_pressure(
+    law: PrincipalStresses, inner: float, outer: float, deformed_inner: float
+) -> float:
     """Pressure in MPa inside a thick sphere of radii A, B (mm) whose inner radius is a."""
 
     def rate(R: Floats) -> Floats:
@@ -280,7 +282,7 @@ def sphere_pressure(law: Law, inner: float, outer: float, deformed_inner: float)
     return float(_integral(rate, inner, outer))
 
 
-def sphere_limit(law: Law, inner: float, outer: float) -> tuple[float, float]:
+def sphere_limit(law: PrincipalStresses, inner: float, outer: float) -> tuple[float, float]:
     """Limit point of a thick sphere: a/A and the greatest pressure in MPa, 1 ≤ a/A ≤ 2."""
     best = minimize_scalar(
         lambda ratio: -sphere_pressure(law, inner, outer, ratio * inner),

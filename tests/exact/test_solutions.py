@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 import pytest
 
-from analytic.stress import Law
+from analytic.stress import PrincipalStresses
 from materials.material import Material
 from tests.exact.solutions import (
     Flexure,
@@ -93,7 +93,7 @@ class Solution(Protocol):
     """Fields of an exact solution."""
 
     @property
-    def law(self) -> Law:
+    def law(self) -> PrincipalStresses:
         """The rubber."""
 
     def displacement(self, X: Floats) -> Floats:

@@ -26,7 +26,7 @@ def _gauss(low: float, high: float, count: int) -> tuple[Floats, Floats]:
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Layer:
+class SectionPart:
     """Part of a cross-section.
 
     Attributes:
@@ -37,9 +37,9 @@ class Layer:
     height: Floats
     area: Floats
 
-    def __add__(self, other: Layer) -> Layer:
+    def __add__(self, other: SectionPart) -> SectionPart:
         """Both parts as one."""
-        return Layer(
+        return SectionPart(
             np.concatenate([self.height, other.height]), np.concatenate([self.area, other.area])
         )
 
@@ -64,10 +64,10 @@ class Layer:
         return result
 
 
-def rectangle(width: float, low: float, high: float) -> Layer:
+def rectangle(width: float, low: float, high: float) -> SectionPart:
     """Rectangle of a width from y = `low` to `high`, mm."""
     height, weight = _gauss(low, high, _STRAIGHT)
-    return Layer(height, width * weight)
+    return SectionPart(height, width * weight)
 
 
 def ring(
@@ -76,7 +76,7 @@ def ring(
     outer: float,
     start: float = -math.pi / 2,
     stop: float = math.pi / 2,
-) -> Layer:
+) -> SectionPart:
     """Part of a ring that is symmetric about the y axis.
 
     Args:
@@ -90,4 +90,4 @@ def ring(
     polar, around = _gauss(start, stop, _AROUND)
     height = centre + radius[:, None] * np.sin(polar)
     area = 2 * (radius * across)[:, None] * around
-    return Layer(height.ravel(), area.ravel())
+    return SectionPart(height.ravel(), area.ravel())
