@@ -129,7 +129,7 @@ def carried(name: str, way: str, kpa: int) -> dict[str, float]:
         held[scene.fixed(name)] = scene.residual()[0][scene.fixed(name)]
         return body.symmetry_factor * held[up]
 
-    frames, shape = built.reading.frames, built.march.states[-1].shape
+    frames, shape = built.observables.frames, built.march.states[-1].shape
     assert frames is not None
     assert shape is not None
     roof, both = push("roof"), push("roof") + push("post")

@@ -107,7 +107,7 @@ class Driven(Hook):
         mesh = mesh or meshed(self.case).mesh(self.case)
         self.built = assemble(self.case, mesh, MPI.COMM_SELF)
         self.scene, self.newton, self.march = self.built.scene, self.built.newton, self.built.march
-        self.recorder = Recorder(self.scene, self.built.reading.gauge(), model, self.march.rest)
+        self.recorder = Recorder(self.scene, self.built.observables.gauge(), model, self.march.rest)
         self.extra: list[Floats] = []
         self.tip = Tip(self.scene.body) if model == "body" else None
         self._note()

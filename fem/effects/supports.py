@@ -65,7 +65,7 @@ class TwofoldAxis(Effect):
         return tuple(Constraint("symmetry", self.surface, i) for i in (0, 2))
 
 
-class HeldStraight(Effect):
+class StraightAxis(Effect):
     """Uniform bending with the curvature fixed at zero, and the stretch at one if wanted.
 
     Args:

@@ -1,1 +1,1 @@
-"""What a case says."""
+"""A case as objects."""

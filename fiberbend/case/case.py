@@ -1,7 +1,7 @@
-"""What a case says, as frozen models with floats in mm, N, MPa, rad, t/mm³ and mm/s².
+"""A case as frozen objects, with floats in mm, N, MPa, rad, t/mm³ and mm/s².
 
-The models check single values. `fiberbend.reader.reader.parse_case` is the way in: it also checks
-what several values say together, and reports every problem at once.
+The classes check single values. `fiberbend.reader.reader.parse_case` makes a case: it also checks
+values against each other, and reports every problem at once.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from fiberbend.schema.quantities import (
     Angle,
     Density,
     Length,
-    Model,
+    LengthOrZero,
     Modulus,
     Pressure,
-    Width,
+    SignedPressure,
+    Spec,
 )
-from fiberbend.schema.quantities import SignedPressure as AnyPressure
 from materials.laws.table import LAWS
 
 E = TypeVar("E", bound=Effect)
@@ -43,7 +43,7 @@ else:
     AnyEffect = Annotated[EffectEntry, AfterValidator(unwrap)]
 
 
-class Actuator(Model):
+class ActuatorSpec(Spec):
     """Dimensions of the actuator."""
 
     section: Literal["hemicircle", "rectangle", "circle"] = "hemicircle"
@@ -60,13 +60,13 @@ class Actuator(Model):
     """Thickness of the wall around the chamber."""
     floor: Length | None = None
     """Thickness of the floor under the chamber; of a circle the outer part of the wall's thickness
-    over the lowest quarter, none unless said."""
-    sheath: Width | None = None
-    """Thickness of the sheath around everything; none unless said."""
+    over the lowest quarter, none by default."""
+    sheath: LengthOrZero | None = None
+    """Thickness of the sheath around everything; none by default."""
     cap: Length = 15.0
     """Length of each of the two solid end caps."""
-    layer: Width | None = None
-    """Thickness of a separate strain-limiting layer under a flat floor; none unless said."""
+    layer: LengthOrZero | None = None
+    """Thickness of a separate strain-limiting layer under a flat floor; none by default."""
 
     @field_validator("sheath", "layer")
     @classmethod
@@ -75,17 +75,17 @@ class Actuator(Model):
         return value or None
 
 
-class _Source(Model):
+class _Source(Spec):
     """Where a material's behaviour comes from."""
 
     name: str | None = None
-    """A named material; written alone where nothing else is said, `wall: elastosil-m4601`."""
+    """A named material; written alone where nothing else is given, `wall: elastosil-m4601`."""
     law: LawName | None = None
     """Law of a material that has no name here."""
 
 
 _COEFFICIENTS = coefficient_fields()
-"""Keys of the laws' parameters; `materials.laws.table.LAWS` says which law has which."""
+"""Keys of the laws' parameters; `materials.laws.table.LAWS` lists those of each law."""
 
 if TYPE_CHECKING:
     _Coefficients = _Source
@@ -93,13 +93,13 @@ else:
     _Coefficients = create_model("_Coefficients", __base__=_Source, **_COEFFICIENTS)
 
 
-class Material(_Coefficients):
+class MaterialSpec(_Coefficients):
     """A material by name, or a law with its coefficients."""
 
     density: Density | None = None
     """Density; gravity needs it."""
     bulk: Modulus | None = None
-    """Bulk modulus of a nearly incompressible material; exactly incompressible unless said."""
+    """Bulk modulus of a nearly incompressible material; exactly incompressible by default."""
 
     @property
     def coefficients(self) -> dict[str, float]:
@@ -122,20 +122,20 @@ class Material(_Coefficients):
         return {"anyOf": [{"type": "string"}, handler.resolve_ref_schema(handler(schema))]}
 
 
-class Materials(Model):
+class Materials(Spec):
     """Material of each part."""
 
-    wall: Material
+    wall: MaterialSpec
     """Wall and end caps."""
-    floor: Material | None = None
+    floor: MaterialSpec | None = None
     """Floor under the chamber, where the actuator has one."""
-    sheath: Material | None = None
+    sheath: MaterialSpec | None = None
     """Sheath, where the actuator has one."""
-    layer: Material | None = None
+    layer: MaterialSpec | None = None
     """Strain-limiting layer, where the actuator has one."""
 
 
-class Mesh(Model):
+class Mesh(Spec):
     """Fineness and shape of the elements."""
 
     element: Literal["hexahedron", "tetrahedron"] = "hexahedron"
@@ -148,28 +148,28 @@ class Mesh(Model):
     """Half the body where everything is mirror-symmetric, or as said."""
 
 
-class Solver(Model):
+class Solver(Spec):
     """Steps and tolerance of the solution."""
 
     first_step: Pressure | None = None
-    """First step of the pressure, from the linear response unless said; under pressure control
+    """First step of the pressure, by default from the linear response; under pressure control
     only."""
     max_step: Pressure | None = None
-    """Greatest step of the pressure; without limit unless said; under pressure control only."""
+    """Greatest step of the pressure; without limit by default; under pressure control only."""
     max_turn: Angle | None = None
-    """Greatest change of the bending angle in a step; by the model unless said."""
+    """Greatest change of the bending angle in a step; by default that of the model."""
     max_cutbacks: int = Field(default=8, ge=0, le=100)
     """How often in a row a step is cut before the run gives up."""
     tolerance: float = Field(default=1e-8, gt=0, le=1e-2)
     """Residual forces and volumes, each in units of its own internal force."""
 
 
-class Output(Model):
+class Output(Spec):
     """What a run leaves beyond its curves."""
 
     at_angles: tuple[Angle, ...] = Field(default=(), strict=False)
     """Bending angles that are hit exactly, with pictures and fields."""
-    at_pressures: tuple[AnyPressure, ...] = Field(default=(), strict=False)
+    at_pressures: tuple[SignedPressure, ...] = Field(default=(), strict=False)
     """Pressures that are hit exactly, with pictures and fields."""
     stop_at_angle: Angle | None = None
     """The run ends at this bending angle, before the load's end."""
@@ -183,21 +183,21 @@ class Output(Model):
     """Write fields for ParaView."""
 
 
-class Case(Model):
+class Case(Spec):
     """A whole case."""
 
     title: str = ""
     """A line for the reader."""
-    actuator: Actuator
+    actuator: ActuatorSpec
     """Dimensions."""
     materials: Materials
     """Material of each part."""
     effects: tuple[AnyEffect, ...] = Field(strict=False)
-    """What acts on the body; loads are applied in this order, earlier ones held."""
+    """What acts on the body; loads are applied in this order, earlier ones kept."""
     support: Literal["clamped-root"] = "clamped-root"
-    """How the body is held."""
+    """How the body is supported."""
     model: Literal["analytic", "section", "cell", "body", "auto"] = "auto"
-    """Model to solve; auto takes the cheapest that holds every effect."""
+    """Model to solve; auto takes the cheapest that supports every effect."""
     mesh: Mesh = Mesh()
     """Elements."""
     solver: Solver = Solver()

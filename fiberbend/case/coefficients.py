@@ -17,10 +17,10 @@ from materials.laws.table import LAWS
 
 @dataclasses.dataclass(frozen=True)
 class Number:
-    """Annotation of a float that a case holds as a bare number.
+    """Annotation of a float that a case gives as a bare number.
 
     Attributes:
-        parameter: says which values are allowed.
+        parameter: has the values that are allowed.
     """
 
     parameter: Parameter
@@ -28,7 +28,7 @@ class Number:
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler
     ) -> core_schema.CoreSchema:
-        """A float, held against what is allowed."""
+        """A float, checked against what is allowed."""
         return core_schema.no_info_after_validator_function(self._read, handler(source))
 
     def __get_pydantic_json_schema__(

@@ -20,7 +20,7 @@ _KG_PER_M3 = 1e12
 """kg/m³ in one t/mm³."""
 
 
-def dimensions(actuator: case.Actuator) -> ShapedActuator:
+def dimensions(actuator: case.ActuatorSpec) -> ShapedActuator:
     """The dimensions as the geometry takes them."""
     from geometry.sections.table import make_actuator
 
@@ -34,7 +34,7 @@ def mesh_size(mesh: case.Mesh, half: bool) -> MeshSize:
     return MeshSize(axial=mesh.axial, section=mesh.section, element=mesh.element, half=half)
 
 
-def material(spec: case.Material) -> Material:
+def material(spec: case.MaterialSpec) -> Material:
     """The material that a case names or describes.
 
     Raises:

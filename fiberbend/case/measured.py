@@ -1,7 +1,7 @@
 """A user's measured points: pressure with bending angle, or pressure with tip force.
 
-A case names the CSV file; with the case is checked that the file holds what the run can be
-compared with. numpy is imported where it is used: a case that is wrong fails without it.
+A case names the CSV file; with the case is checked that the run can be compared with what is
+in the file. numpy is imported where it is used: a case that is wrong fails without it.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ class Measured:
 
 
 def expected_quantity(blocked: bool) -> str:
-    """What a measurement has to hold beside pressure_kPa."""
+    """The column that a measurement needs beside pressure_kPa."""
     return col.TIP_FORCE if blocked else col.ANGLE
 
 
@@ -53,7 +53,7 @@ def what_is_wrong(file: str, blocked: bool) -> str | None:
 
     Args:
         file: its path.
-        blocked: the tip is held, so that forces were measured and not angles.
+        blocked: the tip is blocked, so that forces were measured and not angles.
 
     Returns:
         What was found and what was expected, or None.
@@ -75,7 +75,7 @@ def read_measured(case: Case) -> Measured | None:
     """The measured points that a checked case names, or None.
 
     Raises:
-        ValueError: the file has changed since and holds no points any more.
+        ValueError: the file has changed since and has no points any more.
         OSError: the file is gone.
     """
     import numpy as np

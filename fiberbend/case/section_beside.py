@@ -18,7 +18,7 @@ def as_section(case: Case, load: Effect) -> Case:
         load: of the chamber.
 
     Raises:
-        CaseError: an effect says why there is no section beside it.
+        CaseError: a section cannot have an effect of the case.
     """
     problems = [
         Problem(f"effects.{index}.{effect.name}", reason)

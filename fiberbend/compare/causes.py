@@ -102,7 +102,7 @@ def _ends(model: ModelKind, row: Row, other: Other) -> list[Cause]:
 
 
 def _fibers(case: Case, model: ModelKind, row: Row) -> list[Cause]:
-    turns, part = case.turns, model.resolved(case)
+    turns, part = case.turns, model.resolved_bulging(case)
     if turns is None or part == 0:
         return []
     percent = part * bulging(turns.pitch, row[col.ANGLE])

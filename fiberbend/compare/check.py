@@ -243,7 +243,7 @@ def band(case: Case, model: ModelKind) -> float:
     other pitches in proportion to `bulging`.
     """
     turns = case.turns
-    if turns is None or model.resolved(case) == 0:
+    if turns is None or model.resolved_bulging(case) == 0:
         return model.agreement
     scale = bulging(turns.pitch, 360.0) / bulging(BULGING_PITCH, 360.0)
     return round(max(model.agreement, _SMEARED + _BULGING * scale), 2)
@@ -263,7 +263,7 @@ def _unresolved(
     if turns is None or not turns.discrete or not model.ends:
         return []
     greatest = max(abs(row[col.ANGLE]) for row in rows)
-    lost = (1 - model.resolved(case)) * bulging(turns.pitch, greatest)
+    lost = (1 - model.resolved_bulging(case)) * bulging(turns.pitch, greatest)
     if "section" not in others or lost < _LEAST_LOSS:
         return []
     return [

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
 from fiberbend.schema.problems import CaseError, Problem
-from fiberbend.schema.quantities import Model, Quantity
+from fiberbend.schema.quantities import Quantity, Spec
 from fiberbend.schema.validation import from_pydantic
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def _option(text: Any) -> Any:
     return Field(default=text, strict=False)
 
 
-class Options(Model):
+class Options(Spec):
     """The options of a loop; text into numbers in mm, N, MPa, s and rad."""
 
     model_config = ConfigDict(

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 class BlockedTipEffect(Effect):
-    """Roof along the top and post under the tip, held in y: the paper's test of the tip force."""
+    """Roof along the top and post under the tip, v = 0: the paper's test of the tip force."""
 
     name = "blocked-tip"
 
     roof_width: Length = 4.0
-    """Width of the strip along the crown on which the roof holds the body."""
+    """Width of the strip along the crown on which the roof fixes the body."""
     post_length: Length = 2.0
     """Length of the strip at the end of the tip cap's underside that rests on the post."""
 
@@ -32,7 +32,7 @@ class BlockedTipEffect(Effect):
     def wants(self) -> dict[str, str]:
         """Roof and post as surfaces."""
         return {
-            STRIPS: "in closed forms the tip is held rigidly, without roof, post and sheath",
+            STRIPS: "in closed forms the tip is fixed rigidly, without roof, post and sheath",
         }
 
     def mirror_breaker(self) -> str:
@@ -78,7 +78,7 @@ def tip_force_summary(site: Site, strips: Strips, row: Mapping[str, Any]) -> dic
     Args:
         site: κ is its chamber's first moment about y = 0.
         strips: L_f reaches from z = L to the middle of the post.
-        row: the last row of the history; nothing is said of one without a load.
+        row: the last row of the history; without a load the summary is empty.
     """
     if col.TIP_FORCE not in row:
         return {}

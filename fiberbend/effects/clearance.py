@@ -6,7 +6,7 @@ import itertools
 import math
 from typing import TYPE_CHECKING
 
-from fiberbend.effects.obstacles import Cylinder, Plane
+from fiberbend.effects.obstacles import CylinderSpec, PlaneSpec
 
 if TYPE_CHECKING:
     from geometry.actuator import Actuator
@@ -22,7 +22,7 @@ def _box(actuator: Actuator) -> tuple[tuple[float, float], ...]:
     )
 
 
-def over_plane(actuator: Actuator, plane: Plane) -> float:
+def over_plane(actuator: Actuator, plane: PlaneSpec) -> float:
     """Least distance of the corners of the body's box from a plane, mm; negative behind it."""
     length = math.hypot(*plane.normal)
     return min(
@@ -31,7 +31,7 @@ def over_plane(actuator: Actuator, plane: Plane) -> float:
     )
 
 
-def from_bar(actuator: Actuator, bar: Cylinder) -> float:
+def from_bar(actuator: Actuator, bar: CylinderSpec) -> float:
     """Distance of the body, seen from the side, from a bar, mm; negative inside it."""
     beside = [
         max(low - center, 0.0, center - high)

@@ -11,13 +11,13 @@ from fiberbend import columns as col
 from fiberbend.effects.blocked_tip import tip_force_summary
 from fiberbend.effects.clearance import from_bar, over_plane
 from fiberbend.effects.effect import SPACE, Built, Draft, Effect, Requests, Site
-from fiberbend.effects.obstacles import Cylinder, Obstacle, Plane, Post, Roof
+from fiberbend.effects.obstacles import CylinderSpec, ObstacleSpec, PlaneSpec, PostSpec, RoofSpec
 from fiberbend.schema.problems import Problem
-from fiberbend.schema.quantities import Bedding
+from fiberbend.schema.quantities import PenaltyStiffness
 from fiberbend.schema.units import show
 
 if TYPE_CHECKING:
-    from fem.effects.contact import Obstacle as Placed
+    from fem.effects.contact import Obstacle
     from fem.march.records import Rules
     from fem.solver.newton import Settings
     from geometry.actuator import Actuator
@@ -37,7 +37,7 @@ _REACH = 0.5
 _ROUNDING = 1e-9
 
 
-def placed_obstacles(effects: Iterable[Effect], actuator: Actuator) -> dict[str, Placed]:
+def placed_obstacles(effects: Iterable[Effect], actuator: Actuator) -> dict[str, Obstacle]:
     """The rigid bodies of a case by their names, in space, beside an actuator at rest."""
     return {
         name: item.placed(actuator)
@@ -52,22 +52,22 @@ class ContactEffect(Effect):
 
     name = "contact"
 
-    roof: Roof | None = None
+    roof: RoofSpec | None = None
     """A straight roof over the chamber; with a post, the paper's test of the tip force."""
-    post: Post | None = None
+    post: PostSpec | None = None
     """A post under the tip."""
-    plane: Plane | None = None
+    plane: PlaneSpec | None = None
     """A plane anywhere."""
-    cylinder: Cylinder | None = None
+    cylinder: CylinderSpec | None = None
     """A round bar to be grasped."""
-    stiffness: Bedding | None = None
-    """Pressure per depth with which the obstacles yield; unless said a hundred times the modulus by
-    the thickness of what touches, between roof and post with the wall's modulus."""
+    stiffness: PenaltyStiffness | None = None
+    """Pressure per depth with which the obstacles yield; by default a hundred times the modulus
+    over the thickness of what touches, between roof and post with the wall's modulus."""
 
     @property
-    def obstacles(self) -> dict[str, Obstacle]:
+    def obstacles(self) -> dict[str, ObstacleSpec]:
         """Those that the case names."""
-        all_of_them: dict[str, Obstacle | None] = {
+        all_of_them: dict[str, ObstacleSpec | None] = {
             "roof": self.roof,
             "post": self.post,
             "plane": self.plane,
@@ -80,9 +80,9 @@ class ContactEffect(Effect):
         return {SPACE: "obstacles need a body in space (effect straight: the blocked uniform bend)"}
 
     def mirror_breaker(self) -> str:
-        """A plane that leans."""
-        leans = self.plane is not None and self.plane.normal[0] != 0
-        return "a plane that leans sideways pushes to one side" if leans else ""
+        """A plane whose normal has an x component."""
+        tilted = self.plane is not None and self.plane.normal[0] != 0
+        return "a plane that is tilted sideways pushes to one side" if tilted else ""
 
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
         """A second roof or post, nothing to touch, no room."""
@@ -91,7 +91,7 @@ class ContactEffect(Effect):
                 continue
             for name in ("roof", "post"):
                 if getattr(self, name) is not None:
-                    text = f"{other} holds it already, expected one of them"
+                    text = f"{other} has it already, expected one of them"
                     yield Problem(f"{path}.{name}", text)
         if not self.obstacles:
             yield Problem(path, "nothing to touch, expected roof, post, plane or cylinder")
@@ -124,7 +124,7 @@ class ContactEffect(Effect):
 
         if self.roof is None and self.post is None:
             return None
-        roof, post = self.roof or Roof(), self.post or Post()
+        roof, post = self.roof or RoofSpec(), self.post or PostSpec()
         return Strips(roof_half_width=roof.width / 2, post_length=post.length)
 
     def uncertainties(self, straight: bool) -> Iterator[str]:
@@ -153,20 +153,21 @@ class ContactEffect(Effect):
         return self.cylinder.radius / (_REACH * length + cap)
 
     def settings(self, usual: Settings) -> Settings:
-        """More iterations where points of a surface have to find out whether they touch.
+        """More iterations for the active set, and a sharper tolerance.
 
-        Forces of contact are small beside those in the fibers, on which the tolerance is measured.
+        Contact forces are small against those in the fibers, which scale the tolerance.
         """
         return dataclasses.replace(
             usual, iterations=ITERATIONS, tolerance=SHARPER * usual.tolerance
         )
 
     def rules(self, usual: Rules, straight: bool) -> Rules:
-        """The pace along obstacles.
+        """Increment control along obstacles.
 
-        What touches is found in some six iterations however short the step is: they do not shorten
-        it. A body that is kept straight hardly turns from the start, and its steps may grow fast.
-        Touch bends every curve: two states point better than three, and no volume is unexpected.
+        The active set takes some six iterations however short the step is: they do not shorten it.
+        A body that is kept straight hardly turns at first, and its steps may grow fast. Contact
+        kinks every curve: extrapolation from two states is better than from three, and a jump
+        of the volume is no sign of another branch.
         """
         first, grow = (BLOCKED_TURN, BLOCKED_GROWTH) if straight else (usual.turn, usual.grow)
         return dataclasses.replace(

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from fiberbend.schema.problems import Problem
-from fiberbend.schema.quantities import Model
+from fiberbend.schema.quantities import Spec
 
 if TYPE_CHECKING:
     from fem.effects.effect import Effect as Term
@@ -25,7 +25,7 @@ ARC = "arc"
 SPACE = "space"
 """A model is a whole body in space, with everything that can act on one."""
 ENDS = "ends"
-"""A model knows what a support of the tip does."""
+"""A model gives the force of a support of the tip."""
 STRIPS = "strips"
 """Roof and post are surfaces of the model, sheath and cap under them yield."""
 VOLUME = "volume"
@@ -37,7 +37,7 @@ THREAD = "thread"
 TURNS = "turns"
 """Every turn of a winding lies where it is wound."""
 HOOPS = "hoops"
-"""A circumference can be held rigidly."""
+"""A circumference can be fixed."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -104,7 +104,7 @@ class Site:
 
 @dataclasses.dataclass(frozen=True)
 class Requests:
-    """What a case asks of a load's way to its end.
+    """What a case asks of the path of a load.
 
     Attributes:
         first: first step, MPa, or None.
@@ -138,30 +138,29 @@ class Built:
     smeared: bool = False
 
 
-class Effect(Model):
-    """One effect of a case: its settings, and all that the program must know of it.
+class Effect(Spec):
+    """One effect of a case: its settings, and all that the program asks of it.
 
-    A phase of the program asks these questions of every effect and knows none by name. Whoever
-    adds an effect answers those that concern it; the answers given here are for an effect of which
-    nothing is known: only a body in space can have it, without symmetry, without a cheaper model
-    beside it.
+    A phase of the program asks these questions of every effect and names none. Whoever adds
+    an effect answers those that concern it. The answers given here refuse: only a body in space
+    can have the effect, without symmetry, without a cheaper model beside it.
     """
 
     name: ClassVar[str]
     """The key under which a case lists it."""
     load: ClassVar[bool] = False
     """True where the march has something to ramp."""
-    weighs: ClassVar[bool] = False
+    needs_density: ClassVar[bool] = False
     """True where it needs the density of every material."""
 
-    # --- which model holds it ------------------------------------------------------------------
+    # --- which model supports it ---------------------------------------------------------------
 
     def needs(self) -> dict[str, str]:
-        """What a model must offer to hold this effect, and why one that does not cannot."""
-        return {SPACE: f"only a body in space is known to hold {self.name}"}
+        """What a model must offer to support this effect, each with why it is needed."""
+        return {SPACE: f"only a body in space is known to support {self.name}"}
 
     def wants(self) -> dict[str, str]:
-        """What a model must offer to hold it in full, and what one that does not leaves out."""
+        """What a model must offer to support it in full, each with what is left out otherwise."""
         return {}
 
     def mirror_breaker(self) -> str:
@@ -197,12 +196,12 @@ class Effect(Model):
         """The thread that it winds around the body; None where it winds none."""
         return None
 
-    def holds_circumference(self) -> bool:
-        """Whether it keeps the circumference of the section, as the closed form expects."""
+    def fixes_circumference(self) -> bool:
+        """Whether it fixes the circumference of the section, as the closed form assumes."""
         return False
 
     def assumed(self) -> Iterator[str]:
-        """What the closed form takes for granted of it, one sentence each."""
+        """What the closed form assumes of it, one sentence each."""
         yield from ()
 
     def keeps_straight(self) -> bool:
@@ -214,7 +213,7 @@ class Effect(Model):
         return None
 
     def fixed_scalars(self) -> tuple[str, ...]:
-        """Global unknowns of uniform bending that it holds."""
+        """Global unknowns of uniform bending that it fixes."""
         return ()
 
     def uncertainties(self, straight: bool) -> Iterator[str]:
@@ -229,7 +228,7 @@ class Effect(Model):
         """Polylines in space, (n, 3), mm, that are to be seen in the mesh file."""
         return []
 
-    def steers(self) -> bool:
+    def follows_section(self) -> bool:
         """Whether a body with it bends, between its ends, as the section solved beside it."""
         return False
 
@@ -245,18 +244,23 @@ class Effect(Model):
         """What acts on the run and on no model beside it, in words; empty where nothing does."""
         return f"{self.name} acts"
 
-    # --- how a march goes about it ---------------------------------------------------------------
+    # --- increment control ---------------------------------------------------------------------
 
     def steps(self) -> int | None:
-        """Load steps that it takes beside those of the chamber's load; None: cannot be foreseen."""
+        """Load steps that it adds to those of the chamber's load; None: cannot be predicted."""
         return None
 
     def touches(self) -> bool:
-        """Whether surfaces come to touch something on the way: the march then stops there."""
+        """Whether surfaces come into contact during the march, which then ends a step there."""
         return False
 
     def largest_turn(self, length: float, cap: float) -> float:
-        """Greatest change of the angle in a step, rad, of a chamber and caps so long, mm."""
+        """Greatest change of the bending angle in a step, rad.
+
+        Args:
+            length: of the chamber, mm.
+            cap: length of each cap, mm.
+        """
         return math.inf
 
     def settings(self, usual: Settings) -> Settings:
@@ -270,10 +274,15 @@ class Effect(Model):
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
         """The effect on a mesh.
 
+        Args:
+            site: the actuator, with the materials of its parts.
+            mesh: the mesh of the model.
+            requests: steps and stops that the case asks for.
+
         Raises:
-            NotImplementedError: the effect does not say how.
+            NotImplementedError: the effect cannot be built.
         """
-        raise NotImplementedError(f"effect {self.name} does not say how it is built")
+        raise NotImplementedError(f"effect {self.name} cannot be built")
 
     def summary(self, site: Site, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         """Entries of run.json on a body with it, from the rows of its history; may be empty."""

@@ -16,12 +16,12 @@ class GravityEffect(Effect):
 
     name = "gravity"
     load = True
-    weighs = True
+    needs_density = True
 
     direction: Literal["-y", "+y", "+x", "-x", "+z", "-z"]
     """Where the weight points; -y is from the crown to the floor, +z from the root to the tip."""
     acceleration: Acceleration = 9810.0
-    """Standard gravity unless said."""
+    """Standard gravity by default."""
 
     def needs(self) -> dict[str, str]:
         """A body in space."""
@@ -31,7 +31,7 @@ class GravityEffect(Effect):
         """A pull along x."""
         return "gravity along x pulls to one side" if self.direction.endswith("x") else ""
 
-    def steers(self) -> bool:
+    def follows_section(self) -> bool:
         """It bends a body little beside the pressure."""
         return True
 

@@ -14,7 +14,7 @@ class HoopsEffect(Effect):
     name = "hoops"
 
     def needs(self) -> dict[str, str]:
-        """A circumference that can be held."""
+        """A circumference that can be fixed."""
         return {
             HOOPS: "hoops that cannot stretch are in closed forms only (winding: a real thread)"
         }
@@ -26,11 +26,11 @@ class HoopsEffect(Effect):
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
         """One winding is enough."""
         for other, effect in draft.effects.items():
-            if effect is not self and effect.holds_circumference():
-                text = f"{other} holds the circumference already, expected one of them"
+            if effect is not self and effect.fixes_circumference():
+                text = f"{other} fixes the circumference already, expected one of them"
                 yield Problem(path, text)
 
-    def holds_circumference(self) -> bool:
+    def fixes_circumference(self) -> bool:
         """That is all they do."""
         return True
 

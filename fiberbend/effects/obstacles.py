@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field
 
-from fiberbend.schema.quantities import Length, Model, Position, Width
+from fiberbend.schema.quantities import Coordinate, Length, LengthOrZero, Spec
 
 if TYPE_CHECKING:
-    from fem.effects.contact import Obstacle as Placed
+    from fem.effects.contact import Obstacle
     from geometry.actuator import Actuator
 
 EVERYWHERE = ("outer", "tip")
 """Surfaces that may touch an obstacle anywhere in space."""
 
 
-class Obstacle(Model):
+class ObstacleSpec(Spec):
     """Anything rigid that a body may touch."""
 
     @property
@@ -26,14 +26,14 @@ class Obstacle(Model):
         return EVERYWHERE
 
     @abstractmethod
-    def placed(self, actuator: Actuator) -> Placed:
+    def placed(self, actuator: Actuator) -> Obstacle:
         """The obstacle in space, beside an actuator at rest."""
 
 
-class Roof(Obstacle):
+class RoofSpec(ObstacleSpec):
     """A rigid, straight bar over the chamber."""
 
-    gap: Width = 0.0
+    gap: LengthOrZero = 0.0
     """Clearance at rest over the highest line of the body."""
     width: Length = 4.0
     """Width of the strip along the crown that may touch it."""
@@ -43,17 +43,17 @@ class Roof(Obstacle):
         """The strip along the crown."""
         return ("roof",)
 
-    def placed(self, actuator: Actuator) -> Placed:
+    def placed(self, actuator: Actuator) -> Obstacle:
         """A plane above the crown."""
-        from fem.effects.contact import Plane as Face
+        from fem.effects.contact import Plane
 
-        return Face((0.0, actuator.outer_top + self.gap, 0.0), (0.0, -1.0, 0.0))
+        return Plane((0.0, actuator.outer_top + self.gap, 0.0), (0.0, -1.0, 0.0))
 
 
-class Post(Obstacle):
+class PostSpec(ObstacleSpec):
     """A rigid plane under the end of the tip cap."""
 
-    gap: Width = 0.0
+    gap: LengthOrZero = 0.0
     """Clearance at rest under the cap."""
     length: Length = 2.0
     """Length of the strip at the end of the tip cap's underside that may rest on it."""
@@ -63,39 +63,39 @@ class Post(Obstacle):
         """The strip at the end of the tip cap."""
         return ("post",)
 
-    def placed(self, actuator: Actuator) -> Placed:
+    def placed(self, actuator: Actuator) -> Obstacle:
         """A plane under the cap."""
-        from fem.effects.contact import Plane as Face
+        from fem.effects.contact import Plane
 
-        return Face((0.0, actuator.outer_bottom - self.gap, 0.0), (0.0, 1.0, 0.0))
+        return Plane((0.0, actuator.outer_bottom - self.gap, 0.0), (0.0, 1.0, 0.0))
 
 
-class Plane(Obstacle):
+class PlaneSpec(ObstacleSpec):
     """A rigid plane; the body stays on the side to which its normal points."""
 
-    point: tuple[Position, Position, Position] = Field(strict=False)
+    point: tuple[Coordinate, Coordinate, Coordinate] = Field(strict=False)
     """x, y and z of one of its points; z = 0 is the root end of the chamber, y = 0 the lower face
     of the floor, and the body bends toward -y."""
     normal: tuple[float, float, float] = Field(strict=False)
     """Direction out of the obstacle, of any length; [0, 1, 0] is a table under the body."""
 
-    def placed(self, actuator: Actuator) -> Placed:
+    def placed(self, actuator: Actuator) -> Obstacle:
         """The plane."""
-        from fem.effects.contact import Plane as Face
+        from fem.effects.contact import Plane
 
-        return Face(self.point, self.normal)
+        return Plane(self.point, self.normal)
 
 
-class Cylinder(Obstacle):
+class CylinderSpec(ObstacleSpec):
     """A rigid round bar across the body, along x."""
 
-    center: tuple[Position, Position] = Field(strict=False)
+    center: tuple[Coordinate, Coordinate] = Field(strict=False)
     """y and z of its axis."""
     radius: Length
     """Radius of the bar."""
 
-    def placed(self, actuator: Actuator) -> Placed:
+    def placed(self, actuator: Actuator) -> Obstacle:
         """The bar."""
-        from fem.effects.contact import Cylinder as Bar
+        from fem.effects.contact import Cylinder
 
-        return Bar(self.center, self.radius)
+        return Cylinder(self.center, self.radius)

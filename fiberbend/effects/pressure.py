@@ -1,4 +1,4 @@
-"""Pressure in the chamber: by its value, by the volume or by the bend that it holds."""
+"""Pressure in the chamber: by its value, the chamber's volume or the bending angle."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class PressureEffect(Effect):
-    """Pressure in the closed chamber: by its value, by the volume or by the bend that it holds."""
+    """Pressure in the closed chamber: by its value, the chamber's volume or the bending angle."""
 
     name = "pressure"
     load = True
@@ -45,10 +45,10 @@ class PressureEffect(Effect):
             yield Problem(f"{path}.{key}", f"{given[0]} is given too, expected one of them")
 
     def inflation(self) -> Inflation:
-        """As the case says."""
+        """As the case gives it."""
         return Inflation(self.to, self.volume, self.angle)
 
-    def steers(self) -> bool:
+    def follows_section(self) -> bool:
         """The section is solved under it."""
         return True
 
@@ -61,7 +61,7 @@ class PressureEffect(Effect):
         return 0
 
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
-        """−P V with the load's way to its end."""
+        """−P V, with the path of the load."""
         from fem.effects.chamber_pressure import ChamberPressure
         from fem.march.records import Ramp
 
@@ -86,5 +86,5 @@ class PressureEffect(Effect):
 
 
 def inflate(*, to: float | None = None, angle: float | None = None) -> PressureEffect:
-    """A pressure by its value in MPa or by the bending angle in rad that it holds."""
+    """A pressure by its value in MPa or by the bending angle in rad."""
     return PressureEffect.model_construct(to=to, angle=angle)

@@ -12,16 +12,16 @@ if TYPE_CHECKING:
 
 
 class StraightEffect(Effect):
-    """The body held straight, zero curvature: the blocked state of uniform bending."""
+    """The body kept straight, zero curvature: the blocked state of uniform bending."""
 
     name = "straight"
 
     stretch: Literal["free", "held"] = "free"
-    """Whether the axis may stretch, or is held in length as well."""
+    """Whether the axis may stretch, or is fixed in length as well (held)."""
 
     def needs(self) -> dict[str, str]:
         """A uniform bend."""
-        return {ARC: "only a uniform bend is held straight all along (effect blocked-tip)"}
+        return {ARC: "only a uniform bend is kept straight all along (effect blocked-tip)"}
 
     def mirror_breaker(self) -> str:
         """None: straight is symmetric."""
@@ -32,7 +32,7 @@ class StraightEffect(Effect):
         return True
 
     def fixed_scalars(self) -> tuple[str, ...]:
-        """Curvature, and stretch where that is held."""
+        """Curvature, and stretch where that is fixed."""
         return ("curvature",) if self.stretch == "free" else ("curvature", "stretch")
 
     def alone(self) -> str:
@@ -44,10 +44,10 @@ class StraightEffect(Effect):
         return 0
 
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
-        """No curvature, and no stretch where that is held."""
-        from fem.effects.supports import HeldStraight
+        """No curvature, and no stretch where that is fixed."""
+        from fem.effects.supports import StraightAxis
 
-        return Built((HeldStraight(self.stretch == "held"),))
+        return Built((StraightAxis(self.stretch == "held"),))
 
 
 def straight_of(effects: Iterable[Effect]) -> Effect:

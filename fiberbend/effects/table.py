@@ -15,7 +15,7 @@ from fiberbend.effects.hoops import HoopsEffect
 from fiberbend.effects.pressure import PressureEffect
 from fiberbend.effects.straight import StraightEffect
 from fiberbend.effects.winding import WindingEffect
-from fiberbend.schema.quantities import Model
+from fiberbend.schema.quantities import Spec
 
 EFFECTS: dict[str, type[Effect]] = {
     effect.name: effect
@@ -32,7 +32,7 @@ EFFECTS: dict[str, type[Effect]] = {
 """Each at most once in a case."""
 
 
-class _OneEffect(Model):
+class _OneEffect(Spec):
     model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
 
     @model_validator(mode="after")

@@ -20,20 +20,20 @@ from fiberbend.effects.effect import (
     Turns,
 )
 from fiberbend.schema.problems import Problem, found, meant
-from fiberbend.schema.quantities import Length, Model, Modulus, Width
+from fiberbend.schema.quantities import Length, LengthOrZero, Modulus, Spec
 from fiberbend.schema.units import show
 
 if TYPE_CHECKING:
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
     from geometry.winding.helix import Winding
-    from materials.fiber import Fiber as Thread
+    from materials.fiber import Fiber
 
 DEFAULT_LINES = 5
 _POINTS_A_TURN = 24
 
 
-class Fiber(Model):
+class FiberSpec(Spec):
     """The thread of a winding: a name, or modulus and diameter."""
 
     name: str | None = None
@@ -43,7 +43,7 @@ class Fiber(Model):
     diameter: Length | None = None
     """Diameter of the thread."""
     radius_factor: float | None = Field(default=None, gt=0, le=1)
-    """Part of the radius that carries; 0.5 where the paper halves it, 1 unless said."""
+    """Part of the radius that carries; 0.5 where the paper halves it, 1 by default."""
 
     @model_validator(mode="before")
     @classmethod
@@ -59,14 +59,13 @@ class Fiber(Model):
         """A name alone is allowed too."""
         return {"anyOf": [{"type": "string"}, handler.resolve_ref_schema(handler(schema))]}
 
-    def thread(self) -> Thread:
+    def thread(self) -> Fiber:
         """The thread as the geometry takes it; a described one carries with all of its radius.
 
         Raises:
             ValueError: an unknown name, or one without modulus and diameter.
         """
-        from materials.fiber import FIBERS
-        from materials.fiber import Fiber as Thread
+        from materials.fiber import FIBERS, Fiber
 
         if self.name is not None:
             if self.name not in FIBERS:
@@ -76,7 +75,7 @@ class Fiber(Model):
         if self.modulus is None or self.diameter is None:
             raise ValueError("a fiber without a name needs modulus and diameter")
         factor = 1.0 if self.radius_factor is None else self.radius_factor
-        return Thread(self.modulus, self.diameter, factor, source="the case")
+        return Fiber(self.modulus, self.diameter, factor, source="the case")
 
     def problems(self, path: str) -> Iterator[Problem]:
         """What is missing, unknown or without effect."""
@@ -107,16 +106,16 @@ class WindingEffect(Effect):
     """Double helix: one right-handed and one left-handed, crossing on the plane of symmetry."""
     pitch: Length
     """Length along the axis of one turn."""
-    fiber: Fiber
+    fiber: FiberSpec
     """A named fiber or its modulus and diameter."""
     representation: Literal["discrete", "smeared"] | None = Field(default=None, alias="as")
-    """Every turn by itself, or the same thread spread over its surface. Unless said, every turn
+    """Every turn by itself, or the same thread spread over its surface. By default every turn
     where the model has turns, and spread in the models section and analytic."""
-    width: Width | None = None
-    """Width of the ribbon that stands for the thread, its diameter unless said; discrete only.
+    width: LengthOrZero | None = None
+    """Width of the ribbon that stands for the thread, its diameter by default; discrete only.
     "0 mm" makes it a line, under which the pressure drifts with the mesh."""
     lines: int | None = Field(default=None, ge=1)
-    """Parallel curves across the ribbon, 5 unless said; discrete only."""
+    """Parallel curves across the ribbon, 5 by default; discrete only."""
     tension_only: bool = False
     """The thread goes slack instead of carrying compression."""
 
@@ -132,7 +131,7 @@ class WindingEffect(Effect):
                 "only cell and body have turns (as: smeared, or leave `as` to the model)"
             )
         if self._twists:
-            needed[TWIST] = "the closed form knows no twist"
+            needed[TWIST] = "the closed form has no twist"
         return needed
 
     def wants(self) -> dict[str, str]:
@@ -182,13 +181,13 @@ class WindingEffect(Effect):
         discrete = self.representation != "smeared"
         return Turns(self.pitch, discrete, self._twists, self.fiber.thread().stiffness)
 
-    def holds_circumference(self) -> bool:
+    def fixes_circumference(self) -> bool:
         """Its thread hardly stretches."""
         return True
 
     def assumed(self) -> Iterator[str]:
         """Rigid, without pitch and twist."""
-        yield "the winding holds the circumference rigidly; its pitch does not enter"
+        yield "the winding fixes the circumference; its pitch does not enter"
         if self._twists:
             yield "the twist of a single helix is not in it"
 
@@ -198,7 +197,7 @@ class WindingEffect(Effect):
         count = turns * _POINTS_A_TURN
         return [helix.points(actuator, curve, count)[0] for curve in range(helix.curves)]
 
-    def steers(self) -> bool:
+    def follows_section(self) -> bool:
         """A body that twists leaves the plane of its section."""
         return not self._twists
 

@@ -33,7 +33,7 @@ class Analytic(ModelKind):
             return
         reason = no_analytic(case)
         if reason:
-            wound = any(effect.holds_circumference() for effect in case.effects)
+            wound = any(effect.fixes_circumference() for effect in case.effects)
             yield "materials.floor" if wound else "effects", reason
 
     def leaves_out(self, case: Case) -> Iterator[Objection]:
@@ -58,7 +58,7 @@ class Analytic(ModelKind):
     def errors(self, case: Case) -> Iterator[str]:
         """Against the section model, and the paper's against its experiments."""
         if case.straight:
-            yield "κP/L_f: 42 % below the section held straight on the baseline (54 to 94 N mm)"
+            yield "κP/L_f: 42 % below the section kept straight on the baseline (54 to 94 N mm)"
             return
         yield (
             "closed form: pressure for an angle 33 % (90°) to 13 % (360°) above the section model "

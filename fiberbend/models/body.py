@@ -19,12 +19,19 @@ from fiberbend.effects.effect import (
     VOLUME,
     tip_strips,
 )
-from fiberbend.models.model import ENDS_BEND, MeshedModel, Reading, Size, count, found_pressure
+from fiberbend.models.model import (
+    ENDS_BEND,
+    MeshedModel,
+    Observables,
+    ProblemSize,
+    count,
+    found_pressure,
+)
 
 if TYPE_CHECKING:
     from fem.effects.effect import Effect as Term
     from fem.scene import Scene
-    from fiberbend.models.model import Make
+    from fiberbend.models.model import KinematicsFactory
     from geometry.mesh.data import MeshData
     from geometry.sections.size import MeshSize
 
@@ -43,7 +50,7 @@ class Body(MeshedModel):
     offers = frozenset({SPACE, ENDS, STRIPS, VOLUME, TWIST, THREAD, TURNS})
     shared = True
     resumes = True
-    takes_mesh_as_said = True
+    takes_mesh_as_given = True
     ends = True
     agreement = 2.0
     turn = math.radians(60)
@@ -55,8 +62,8 @@ class Body(MeshedModel):
     pictures_s = (5.0, 2.0)
     fields_s = 1.0
 
-    def fineness(self, case: Case, half: bool) -> MeshSize:
-        """As the case says."""
+    def mesh_size(self, case: Case, half: bool) -> MeshSize:
+        """As the case gives it."""
         return convert.mesh_size(case.mesh, half)
 
     def mesh(self, case: Case, msh: Path | None = None) -> MeshData:
@@ -64,11 +71,11 @@ class Body(MeshedModel):
         from geometry.bodies.gmsh_body import build_body
 
         actuator = convert.dimensions(case.actuator)
-        size = self.fineness(case, self.half(case)[0])
+        size = self.mesh_size(case, self.half(case)[0])
         curves = [curve for effect in case.effects for curve in effect.curves(actuator)]
         return build_body(actuator, size, tip_strips(case.effects), curves or None, msh)
 
-    def kinematics(self, case: Case) -> Make:
+    def kinematics(self, case: Case) -> KinematicsFactory:
         """x = X + u."""
         from fem.kinematics.body import Body as InSpace
 
@@ -81,7 +88,7 @@ class Body(MeshedModel):
         named = {"clamped-root": Clamp}
         return [named[case.support](), *([Symmetry()] if mesh.half else [])]
 
-    def reading(self, case: Case, scene: Scene) -> Reading:
+    def observables(self, case: Case, scene: Scene) -> Observables:
         """Angles by rod frames."""
         from fem.march.frames import Frames
         from fem.march.selfcontact import BodyRod
@@ -89,14 +96,14 @@ class Body(MeshedModel):
         from fiberbend.models.gauges import BodyGauge
 
         frames = Frames(scene.body)
-        return Reading(
+        return Observables(
             frames,
             BendingAngle(scene.body, frames),
             lambda: BodyGauge(scene, frames),
             BodyRod(scene.body, frames),
         )
 
-    def resolved(self, case: Case) -> float:
+    def resolved_bulging(self, case: Case) -> float:
         """By the length of its elements."""
         import numpy as np
 
@@ -106,13 +113,13 @@ class Body(MeshedModel):
         sizes, parts = zip(*_RESOLVED, strict=True)
         return float(np.interp(case.mesh.axial / turns.pitch, sizes, parts, right=0.0))
 
-    def size(self, case: Case) -> Size:
+    def size(self, case: Case) -> ProblemSize:
         """Of a body from the block layout, which is that of gmsh's hexahedra."""
         from geometry.bodies.extrude import hexahedral_body
         from geometry.mesh.tets import to_tetrahedra
 
         actuator = convert.dimensions(case.actuator)
-        size = self.fineness(case, self.half(case)[0])
+        size = self.mesh_size(case, self.half(case)[0])
         mesh, kind, pressures = (
             hexahedral_body(actuator, size, tip_strips(case.effects)),
             "hexahedra",
@@ -122,9 +129,9 @@ class Body(MeshedModel):
             mesh, kind, pressures = to_tetrahedra(mesh), "tetrahedra", 0
         layers = actuator.total_length / case.mesh.axial
         unknowns = count(mesh, 3, pressures)
-        return Size(len(mesh.cells), kind, unknowns, found_pressure(case), layers)
+        return ProblemSize(len(mesh.cells), kind, unknowns, found_pressure(case), layers)
 
-    def step_seconds(self, case: Case, size: Size) -> float:
+    def step_seconds(self, case: Case, size: ProblemSize) -> float:
         """Tangent by elements, factor by layers and by unknowns a layer.
 
         As nested dissection of a long body has it, fitted to sections refined once and twice and to
@@ -136,7 +143,7 @@ class Body(MeshedModel):
         touching = any(e.touches() or e.strips() is not None for e in case.effects)
         return iteration * (_TOUCHING_ITERATIONS if touching else _ITERATIONS)
 
-    def memory_mb(self, size: Size) -> float:
+    def memory_mb(self, size: ProblemSize) -> float:
         """Mostly the factor."""
         return 200 + 1e-3 * size.unknowns * (size.unknowns / size.layers) ** 0.3
 

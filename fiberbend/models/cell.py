@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.effect import ARC, THREAD, TURNS, TWIST, VOLUME
-from fiberbend.models.model import Size, completed_mesh, count
+from fiberbend.models.model import ProblemSize, completed_mesh, count
 from fiberbend.models.uniform import UniformModel, twists
 
 if TYPE_CHECKING:
     from fem.effects.effect import Effect as Term
-    from fiberbend.models.model import Make
+    from fiberbend.models.model import KinematicsFactory
     from geometry.mesh.data import MeshData
     from geometry.sections.size import MeshSize
 
@@ -59,7 +59,7 @@ class Cell(UniformModel):
         extent = pitch / 2 if half else pitch
         return extent, divisions(extent, case.mesh.axial)
 
-    def fineness(self, case: Case, half: bool) -> MeshSize:
+    def mesh_size(self, case: Case, half: bool) -> MeshSize:
         """Elements along the axis are never longer than the slice."""
         extent, layers = self.slice(case, half)
         return dataclasses.replace(convert.mesh_size(case.mesh, half), axial=extent / layers)
@@ -69,10 +69,10 @@ class Cell(UniformModel):
         from geometry.bodies.extrude import hexahedral_slice
 
         half, _ = self.half(case)
-        actuator, size = convert.dimensions(case.actuator), self.fineness(case, half)
+        actuator, size = convert.dimensions(case.actuator), self.mesh_size(case, half)
         return hexahedral_slice(actuator, size, *self.slice(case, half))
 
-    def kinematics(self, case: Case) -> Make:
+    def kinematics(self, case: Case) -> KinematicsFactory:
         """Three components of the displacement."""
         from fem.kinematics.cell import Cell as Bending
 
@@ -86,18 +86,18 @@ class Cell(UniformModel):
             return []
         return [Symmetry(), Symmetry("section_root", 2), Symmetry("section_tip", 2)]
 
-    def resolved(self, case: Case) -> float:
+    def resolved_bulging(self, case: Case) -> float:
         """All of it, where every turn lies by itself."""
         turns = case.turns
         return 1.0 if turns is not None and turns.discrete else 0.0
 
-    def size(self, case: Case) -> Size:
+    def size(self, case: Case) -> ProblemSize:
         """Of the mesh itself."""
         mesh, layers = self.mesh(case), self.slice(case, self.half(case)[0])[1]
         unknowns = count(mesh, 3, 4)
-        return Size(len(mesh.cells), "hexahedra", unknowns, self.scalars(case), layers)
+        return ProblemSize(len(mesh.cells), "hexahedra", unknowns, self.scalars(case), layers)
 
-    def step_seconds(self, case: Case, size: Size) -> float:
+    def step_seconds(self, case: Case, size: ProblemSize) -> float:
         """By unknowns."""
         return _ITERATIONS * 0.069 * (size.unknowns / 3285) ** 1.15
 

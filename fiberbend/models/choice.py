@@ -1,4 +1,4 @@
-"""The models in order of cost, and the cheapest that holds a case."""
+"""The models in order of cost, and the cheapest that supports a case."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ def choose_model(case: Case) -> tuple[ModelKind, str]:
         The model and the reason.
     """
     if case.model != "auto":
-        return MODELS[case.model], "as the case says"
+        return MODELS[case.model], "given in the case"
     for model in MODELS.values():
         if objection(case, model) is None:
-            return model, "the cheapest that holds everything"
-    return model, "no model holds everything"
+            return model, "the cheapest that supports everything"
+    return model, "no model supports everything"
 
 
 def meshed(case: Case) -> MeshedModel:
@@ -46,14 +46,14 @@ def meshed(case: Case) -> MeshedModel:
 
 
 def problems(case: Case) -> Iterator[Objection]:
-    """What the model of a case, said or chosen, has against the case.
+    """What the model of a case, given or chosen, has against the case.
 
     Yields:
         Paths and messages.
     """
     if case.model != "auto":
         for path, reason in MODELS[case.model].refuses(case):
-            yield path, f"model {case.model} cannot hold it: {reason}"
+            yield path, f"model {case.model} does not support it: {reason}"
         return
     reasons = []
     for name, model in MODELS.items():
@@ -61,9 +61,9 @@ def problems(case: Case) -> Iterator[Objection]:
         if found is None:
             return
         reasons.append(f"{name} not {found[0]} ({found[1]})")
-    yield "model", f'"auto", expected effects that one model holds: {"; ".join(reasons)}'
+    yield "model", f'"auto", expected effects that one model supports: {"; ".join(reasons)}'
 
 
 def objection(case: Case, model: ModelKind) -> Objection | None:
-    """The first reason why a model does not hold a case in full, or None where it does."""
+    """The first reason why a model does not support a case in full, or None where it does."""
     return next(itertools.chain(model.leaves_out(case), model.refuses(case)), None)

@@ -7,8 +7,7 @@ from typing import Any
 from analytic.bending import Hemicircle
 from analytic.stress import Stress, wound
 from fiberbend.case import convert
-from fiberbend.case.case import Case
-from fiberbend.case.case import Material as MaterialSpec
+from fiberbend.case.case import Case, MaterialSpec
 from fiberbend.effects.effect import tip_strips
 
 SHAPE = "hemicircle"
@@ -23,8 +22,8 @@ def no_analytic(case: Case) -> str | None:
     section = case.actuator.section
     if section != SHAPE:
         return f"the closed form of bending is for a {SHAPE}, not for a {section}"
-    if not any(effect.holds_circumference() for effect in case.effects):
-        return "no winding holds the circumference, which the closed form keeps fixed"
+    if not any(effect.fixes_circumference() for effect in case.effects):
+        return "no winding fixes the circumference, as the closed form assumes"
     stiffness = _stiffness(case)
     share = (stiffness["floor"] + stiffness.get("layer", 0.0)) / stiffness["wall"]
     if share < LIMITING:
@@ -36,14 +35,14 @@ def no_analytic(case: Case) -> str | None:
 
 
 def analytic_curves(case: Case) -> dict[str, Hemicircle]:
-    """The analytical models of a case; none where `no_analytic` says why.
+    """The analytical models of a case; none where `no_analytic` has a reason.
 
     Returns:
         'zero-fit': eq. (19) with the wall's own law and the sheath, nothing fitted;
         'winding': the same with the pressure acting on all inside the winding;
         'paper': eq. (19) without its extra L and with the paper's μ̄, whatever the case's rubber.
         A floor that limits the stretch by itself enters as the wall's rubber: its own stiffness
-        is what holds the line y = 0. Any other floor has its own law.
+        is what keeps the length of y = 0. Any other floor has its own law.
     """
     if no_analytic(case) is not None:
         return {}
@@ -88,7 +87,7 @@ def dimensions(case: Case) -> tuple[float, float, float, float]:
 
 
 def _stress(spec: MaterialSpec) -> Stress:
-    """Axial stress of a material whose circumference is held."""
+    """Axial stress of a material whose circumference is fixed."""
     return wound(convert.material(spec).principal)
 
 

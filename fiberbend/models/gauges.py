@@ -46,7 +46,7 @@ class BodyGauge:
         return {col.UNIFORM_ANGLE: float(np.rad2deg(self._uniform.value(state.shape)))}
 
     def last_columns(self, state: State) -> dict[str, float]:
-        """What holds the body, and what it touches."""
+        """Forces of supports and obstacles on the body, and what it touches."""
         if not self._guided and not self._probes:
             return {}
         found = balance(self._scene)
@@ -89,7 +89,7 @@ class UniformGauge:
 
     def __init__(self, scene: Scene, actuator: Actuator) -> None:
         self._scene, self._actuator = scene, actuator
-        # held straight, its moment is of interest
+        # kept straight, its moment is of interest
         self._straight = CURVATURE not in scene.natural
         nodes = scene.domain.data.nodes
         self._crown = int(np.argmax(nodes[:, 1]))
@@ -117,7 +117,7 @@ class UniformGauge:
         return row
 
     def last_columns(self, state: State) -> dict[str, float]:
-        """Moment and force that hold the body straight, and the tip force they stand for."""
+        """Moment and force that keep the body straight, and the tip force that the moment makes."""
         if not self._straight:
             return {}
         moment = self._per_length * state.measures[f"conjugate {CURVATURE}"]

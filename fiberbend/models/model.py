@@ -1,4 +1,4 @@
-"""What every model answers for itself: what it holds, what it makes of a case, what it costs."""
+"""What every model answers for itself: what it supports, what it makes of a case, what it costs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from geometry.mesh.data import MeshData
     from geometry.sections.size import MeshSize
 
-    Make = Callable[[Domain, Iterable[str]], Kinematics]
+    KinematicsFactory = Callable[[Domain, Iterable[str]], Kinematics]
 
 MACHINE = "two 2 GHz Xeon cores"
 """Where seconds and memory of all models were measured: Debian 12, dolfinx 0.5, MUMPS with METIS,
@@ -48,7 +48,7 @@ class Gauge(Protocol):
 
 
 @dataclasses.dataclass(frozen=True)
-class Reading:
+class Observables:
     """What is read off the states of a scene.
 
     Attributes:
@@ -65,13 +65,13 @@ class Reading:
 
 
 @dataclasses.dataclass(frozen=True)
-class Size:
+class ProblemSize:
     """How large a problem is.
 
     Attributes:
         elements: number of elements.
         kind: what they are.
-        unknowns: displacements and pressures, before any are held.
+        unknowns: displacements and pressures, before any are fixed.
         scalars: global unknowns beside them.
         layers: elements along the axis.
     """
@@ -91,14 +91,14 @@ class ModelKind(ABC):
     offers: ClassVar[frozenset[str]]
     """What effects may ask for, see `fiberbend.effects.effect`."""
     ends: ClassVar[bool] = False
-    """It knows the caps and what they do to the bend near them."""
-    is_kept_straight: ClassVar[bool] = False
+    """It has the caps, and the bend near them."""
+    gives_blocked_force: ClassVar[bool] = False
     """Kept straight, it gives a tip force that bending freely it does not."""
     agreement: ClassVar[float]
     """Percent of the pressure for an angle within which it agrees with the section model, apart
     from what rubber does between the turns of a winding."""
     start_s: ClassVar[float]
-    """Seconds to import, to mesh, to load compiled kernels, and for what steers it."""
+    """Seconds to import, to mesh, to load compiled kernels, and for the section that guides it."""
     pictures_s: ClassVar[tuple[float, float]]
     """Seconds to draw: in all, and for each state that is asked for."""
     fields_s: ClassVar[float] = 0.0
@@ -108,10 +108,10 @@ class ModelKind(ABC):
         """The model where it is one of finite elements; None for a closed form."""
         return None
 
-    # --- what it holds -------------------------------------------------------------------------
+    # --- what it supports ----------------------------------------------------------------------
 
     def refuses(self, case: Case) -> Iterator[Objection]:
-        """What of a case it cannot hold: paths within the case and reasons."""
+        """What of a case it does not support: paths within the case and reasons."""
         for index, effect in enumerate(case.effects):
             reasons = (why for what, why in effect.needs().items() if what not in self.offers)
             for reason in reasons:
@@ -120,11 +120,11 @@ class ModelKind(ABC):
         yield from self.limits(case)
 
     def limits(self, case: Case) -> Iterator[Objection]:
-        """What it cannot hold beside effects."""
+        """What it does not support, apart from effects."""
         yield from ()
 
     def leaves_out(self, case: Case) -> Iterator[Objection]:
-        """What it leaves out of what it can hold: no reason to refuse, but not to choose it."""
+        """What it leaves out of what it supports: a reason not to choose it, none to refuse."""
         for index, effect in enumerate(case.effects):
             if not self.offers.issuperset(effect.needs()):
                 continue
@@ -141,7 +141,7 @@ class ModelKind(ABC):
     def half(self, case: Case) -> tuple[bool, str]:
         """Whether half the section, x ≥ 0, stands for the whole, and the reason."""
         if case.mesh.symmetry != "auto":
-            return case.mesh.symmetry == "half", "as the case says"
+            return case.mesh.symmetry == "half", "given in the case"
         breakers = list(mirror_breakers(case.effects))
         if breakers:
             return False, "; ".join(breakers)
@@ -151,7 +151,7 @@ class ModelKind(ABC):
         """Settings that the case gives and the model has no use for, by part of the case."""
         return {}
 
-    def resolved(self, case: Case) -> float:
+    def resolved_bulging(self, case: Case) -> float:
         """Part of the bulging between the turns of a winding that it gives: 1 all, 0 nothing."""
         return 0.0
 
@@ -167,8 +167,8 @@ class MeshedModel(ModelKind):
     """All ranks solve it together; else one rank does."""
     resumes: ClassVar[bool] = False
     """Its runs leave a checkpoint after every step."""
-    takes_mesh_as_said: ClassVar[bool] = False
-    """Its elements are those that `mesh` names, whatever else the case says."""
+    takes_mesh_as_given: ClassVar[bool] = False
+    """Its elements are those that `mesh` names, whatever else the case has."""
     turn: ClassVar[float]
     """Greatest change of the angle in a step, rad: fine curves where steps are cheap."""
     first_turn: ClassVar[float]
@@ -185,7 +185,7 @@ class MeshedModel(ModelKind):
         return self
 
     @abstractmethod
-    def fineness(self, case: Case, half: bool) -> MeshSize:
+    def mesh_size(self, case: Case, half: bool) -> MeshSize:
         """Fineness of its mesh, of x ≥ 0 only or of all."""
 
     @abstractmethod
@@ -197,27 +197,27 @@ class MeshedModel(ModelKind):
         """
 
     @abstractmethod
-    def kinematics(self, case: Case) -> Make:
+    def kinematics(self, case: Case) -> KinematicsFactory:
         """Its kinematics, to be made from a domain and the names of the fields."""
 
     @abstractmethod
     def supports(self, case: Case, mesh: MeshData) -> list[Term]:
-        """What holds it by its nature: the clamp of a body, planes and axes of symmetry."""
+        """Its supports: the clamp of a body, planes and axes of symmetry."""
 
     @abstractmethod
-    def reading(self, case: Case, scene: Scene) -> Reading:
+    def observables(self, case: Case, scene: Scene) -> Observables:
         """What is read off the states of its scene."""
 
     @abstractmethod
-    def size(self, case: Case) -> Size:
+    def size(self, case: Case) -> ProblemSize:
         """How large its problem is, from the block layout: neither gmsh nor a solver starts."""
 
     @abstractmethod
-    def step_seconds(self, case: Case, size: Size) -> float:
+    def step_seconds(self, case: Case, size: ProblemSize) -> float:
         """Seconds a step on one rank."""
 
     @abstractmethod
-    def memory_mb(self, size: Size) -> float:
+    def memory_mb(self, size: ProblemSize) -> float:
         """Greatest memory on one rank, MB."""
 
     def largest_turn(self, case: Case) -> float:
@@ -228,7 +228,7 @@ class MeshedModel(ModelKind):
 
 
 def completed_mesh(mesh: Mesh, **defaults: Any) -> Mesh:
-    """Mesh settings with defaults where the case says nothing."""
+    """Mesh settings with defaults where the case has no value."""
     new = {name: value for name, value in defaults.items() if name not in mesh.model_fields_set}
     return mesh.model_copy(update=new)
 

@@ -17,7 +17,7 @@ from materials.material import Material
 
 
 @dataclasses.dataclass(frozen=True)
-class Parts:
+class SceneParts:
     """What a scene is assembled from.
 
     Attributes:
@@ -34,17 +34,21 @@ class Parts:
     fibers: EmbeddedFibers | None
     smeared: bool
 
-    def ramps(self, copies: float) -> list[Ramp]:
-        """The loads for a model of which the whole actuator is so many copies."""
+    def ramps(self, symmetry_factor: float) -> list[Ramp]:
+        """The loads of the modelled part.
+
+        Args:
+            symmetry_factor: number of such parts that make up the whole actuator.
+        """
         return [
-            dataclasses.replace(ramp, target=ramp.target / copies)
+            dataclasses.replace(ramp, target=ramp.target / symmetry_factor)
             if ramp.drive == "conjugate"
             else ramp
             for ramp in self.loads
         ]
 
 
-def build(case: Case, mesh: MeshData, model: MeshedModel) -> Parts:
+def build(case: Case, mesh: MeshData, model: MeshedModel) -> SceneParts:
     """Effects and loads of a case on a mesh; what the case does not list does not exist.
 
     Args:
@@ -60,7 +64,7 @@ def build(case: Case, mesh: MeshData, model: MeshedModel) -> Parts:
     bulk = {region: m.bulk for region, m in materials.items() if m.bulk is not None}
     built = [effect.build(site, mesh, requests) for effect in case.effects]
     wound = next((item for item in built if item.fibers is not None), None)
-    return Parts(
+    return SceneParts(
         effects=[
             *model.supports(case, mesh),
             *(Elastic(law, regions) for law, regions in laws.items()),

@@ -39,7 +39,7 @@ def lost_pressure(case: Case, model: ModelKind) -> Iterator[str]:
     turns = case.turns
     if turns is None or case.inflation is None or case.straight or not model.elements():
         return
-    missing = 1 - model.resolved(case)
+    missing = 1 - model.resolved_bulging(case)
     low, high = (missing * bulging(turns.pitch, angle) for angle in (90.0, 360.0))
     if high >= 0.05:
         scaled = "" if turns.pitch == BULGING_PITCH else f", scaled from {BULGING_PITCH:g} mm"
@@ -60,7 +60,7 @@ def winding_remark(case: Case) -> str | None:
     turns, model = case.turns, choose_model(case)[0].elements()
     if turns is None or not turns.discrete or model is None:
         return None
-    axial, most = model.fineness(case, model.half(case)[0]).axial, turns.pitch / 2
+    axial, most = model.mesh_size(case, model.half(case)[0]).axial, turns.pitch / 2
     turn = f"a pitch of {show(turns.pitch, 'length')}"
     if axial <= most * (1 + 1e-9):
         return f"resolved (elements of {show(axial, 'length')}, {turn})"

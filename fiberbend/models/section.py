@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.effect import ARC, THREAD, TWIST, VOLUME, mirror_breakers
-from fiberbend.models.model import Size, completed_mesh, count
+from fiberbend.models.model import ProblemSize, completed_mesh, count
 from fiberbend.models.uniform import UniformModel, twists
 
 if TYPE_CHECKING:
     from fem.effects.effect import Effect as Term
-    from fiberbend.models.model import Make
+    from fiberbend.models.model import KinematicsFactory
     from geometry.mesh.data import MeshData
     from geometry.sections.size import MeshSize
 
@@ -51,18 +51,18 @@ class Section(UniformModel):
         """What concerns the axis and the other half."""
         return {"mesh": case.mesh.model_fields_set & {"axial", "symmetry"}}
 
-    def fineness(self, case: Case, half: bool) -> MeshSize:
-        """As the case says across the section."""
+    def mesh_size(self, case: Case, half: bool) -> MeshSize:
+        """As the case gives it across the section."""
         return dataclasses.replace(convert.mesh_size(case.mesh, half), axial=_FLAT)
 
     def mesh(self, case: Case, msh: Path | None = None) -> MeshData:
         """Quadrilaterals from the block layout."""
         from geometry.bodies.extrude import section_quadrilaterals
 
-        size = self.fineness(case, self.half(case)[0])
+        size = self.mesh_size(case, self.half(case)[0])
         return section_quadrilaterals(convert.dimensions(case.actuator), size)
 
-    def kinematics(self, case: Case) -> Make:
+    def kinematics(self, case: Case) -> KinematicsFactory:
         """Two components of the displacement, three where the winding twists."""
         from fem.kinematics.section import Section as Bending
 
@@ -74,14 +74,14 @@ class Section(UniformModel):
 
         return [TwofoldAxis() if twists(case) else Symmetry()]
 
-    def size(self, case: Case) -> Size:
+    def size(self, case: Case) -> ProblemSize:
         """Of the mesh itself."""
         mesh = self.mesh(case)
         components = 3 if any(mirror_breakers(case.effects)) else 2
         unknowns = count(mesh, components, 3)
-        return Size(len(mesh.cells), "quadrilaterals", unknowns, self.scalars(case), 1.0)
+        return ProblemSize(len(mesh.cells), "quadrilaterals", unknowns, self.scalars(case), 1.0)
 
-    def step_seconds(self, case: Case, size: Size) -> float:
+    def step_seconds(self, case: Case, size: ProblemSize) -> float:
         """Two iterations."""
         return 0.015 + 9e-6 * size.unknowns
 

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.models.model import ENDS_BEND, MeshedModel, Objection, Reading, Size, found_pressure
+from fiberbend.models.model import (
+    ENDS_BEND,
+    MeshedModel,
+    Objection,
+    Observables,
+    ProblemSize,
+    found_pressure,
+)
 
 if TYPE_CHECKING:
     from fem.scene import Scene
@@ -17,7 +24,7 @@ if TYPE_CHECKING:
 class UniformModel(MeshedModel):
     """Curvature and stretch, and twist where the winding has a hand, are global unknowns."""
 
-    is_kept_straight = True
+    gives_blocked_force = True
     agreement = 0.5
     straight_start = 1 / 20
 
@@ -25,7 +32,7 @@ class UniformModel(MeshedModel):
         """No uniform bend."""
         yield from not_uniform(case)
 
-    def reading(self, case: Case, scene: Scene) -> Reading:
+    def observables(self, case: Case, scene: Scene) -> Observables:
         """Angle, stretch and twist are scalars."""
         from fem.kinematics.uniform import CurvatureAngle, Uniform
         from fem.march.selfcontact import UniformRod
@@ -33,22 +40,22 @@ class UniformModel(MeshedModel):
 
         body, actuator = scene.body, convert.dimensions(case.actuator)
         assert isinstance(body, Uniform)
-        return Reading(
+        return Observables(
             None,
             CurvatureAngle(body),
             lambda: UniformGauge(scene, actuator),
             UniformRod(body, case.actuator.cap),
         )
 
-    def memory_mb(self, size: Size) -> float:
+    def memory_mb(self, size: ProblemSize) -> float:
         """Little beside the libraries."""
         return 130 + 7e-3 * size.unknowns
 
     def scalars(self, case: Case) -> tuple[str, ...]:
-        """Global unknowns: those of uniform bending that nothing holds, and a pressure found."""
-        held = {name for effect in case.effects for name in effect.fixed_scalars()}
+        """Global unknowns: those of uniform bending that no effect fixes, and a pressure found."""
+        fixed = {name for effect in case.effects for name in effect.fixed_scalars()}
         names = ["curvature", "stretch", *(["twist"] if twists(case) else [])]
-        return (*(name for name in names if name not in held), *found_pressure(case))
+        return (*(name for name in names if name not in fixed), *found_pressure(case))
 
     @abstractmethod
     def mesh_error(self, case: Case) -> float:

@@ -11,7 +11,7 @@ import os
 from pathlib import Path
 
 from fiberbend.case.case import Case
-from fiberbend.models.model import MACHINE, MeshedModel, ModelKind, Size
+from fiberbend.models.model import MACHINE, MeshedModel, ModelKind, ProblemSize
 
 _GROWTH = 1.5
 _NEAR = 0.2
@@ -23,7 +23,7 @@ class Cost:
     """What a run is expected to take.
 
     Attributes:
-        steps: load steps; None where the bending angle at the end cannot be foreseen.
+        steps: load steps; None where the bending angle at the end cannot be predicted.
         step_s: seconds a step on one rank.
         start_s: seconds before the first step, kernels compiled.
         compile_s: seconds more where they are not.
@@ -39,12 +39,12 @@ class Cost:
     def rows(self, case: Case, model: MeshedModel) -> dict[str, list[str]]:
         """Steps, time and memory in words."""
         turn = math.degrees(model.largest_turn(case))
-        pace = f"at most {turn:.3g}° each"
+        each = f"at most {turn:.3g}° each"
         whole = self.seconds()
         if self.steps is None or whole is None:
-            steps, time = pace, f"about {_rounded(self.step_s)} s a step"
+            steps, time = each, f"about {_rounded(self.step_s)} s a step"
         else:
-            steps = f"about {self.steps}" + ("" if case.straight else f", {pace}")
+            steps = f"about {self.steps}" + ("" if case.straight else f", {each}")
             time = f"about {_rounded(whole)} s"
             if model.shared:
                 time += f" on one rank, {_rounded(self.seconds(2) or whole)} s on two"
@@ -59,13 +59,13 @@ class Cost:
         return {"steps": [steps], "time": [time, *more], "memory": [memory]}
 
     def seconds(self, ranks: int = 1) -> float | None:
-        """Seconds of the whole run with compiled kernels, where its steps can be foreseen."""
+        """Seconds of the whole run with compiled kernels, where its steps can be predicted."""
         if self.steps is None:
             return None
         return self.start_s + self.steps * self.step_s * (_TWO_RANKS if ranks > 1 else 1.0)
 
 
-def cost_of(case: Case, model: MeshedModel, size: Size) -> Cost:
+def cost_of(case: Case, model: MeshedModel, size: ProblemSize) -> Cost:
     """What the run of a finite-element model is expected to take."""
     return Cost(
         steps=steps_of(case, model),
@@ -104,7 +104,7 @@ def cold() -> bool:
 
 
 def steps_of(case: Case, model: MeshedModel) -> int | None:
-    """Load steps of a run, or None where they cannot be foreseen."""
+    """Load steps of a run, or None where they cannot be predicted."""
     others = [effect.steps() for effect in case.effects]
     if None in others:
         return None

@@ -1,4 +1,4 @@
-"""What a run would do, told without doing it."""
+"""What a run would do."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ class Plan:
 
     Attributes:
         model: name of the model.
-        rows: what is said about it: a heading and one or more sentences each.
+        rows: a heading and one or more sentences each.
         elements: number of elements; none in a closed form.
-        unknowns: displacements and pressures, before any are held.
-        steps: load steps, where they can be foreseen.
+        unknowns: displacements and pressures, before any are fixed.
+        steps: load steps, where they can be predicted.
     """
 
     model: str
@@ -50,7 +50,7 @@ class Plan:
 
 
 def make_plan(case: Case) -> Plan:
-    """Say what a run of a case would do; takes the mesh from the block layout, without gmsh."""
+    """The plan of a case; takes the mesh from the block layout, without gmsh."""
     model, why = choose_model(case)
     head = {
         "effects": [", ".join(effect.name for effect in case.effects)],
@@ -123,15 +123,15 @@ def _cheaper(case: Case, model: ModelKind) -> Iterator[str]:
             return
         against = objection(case, other)
         if against is None:
-            yield f"{name} holds everything too: auto would take it"
+            yield f"{name} supports everything too: auto would take it"
             return
         refusal = next(other.refuses(case), None)
         path, text = refusal or against
-        yield f"{name} {'cannot hold' if refusal else 'leaves out'} {path}: {text}"
+        yield f"{name} {'does not support' if refusal else 'leaves out'} {path}: {text}"
 
 
 def unused(case: Case, model: ModelKind) -> Iterator[str]:
-    """Settings that are said and that the model has no use for.
+    """Settings that the case gives and the model has no use for.
 
     One case file is for several models: what another model needs is no error.
     """

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 from fiberbend.case import convert
 from fiberbend.case.case import (
-    Actuator,
+    ActuatorSpec,
     Case,
-    Material,
     Materials,
+    MaterialSpec,
     Mesh,
     Output,
     Solver,
@@ -35,10 +35,10 @@ if TYPE_CHECKING:
 
 
 @dataclasses.dataclass
-class Parts:
+class ValidParts:
     """The parts of a case that are valid by themselves; the others are None or absent."""
 
-    actuator: Actuator | None = None
+    actuator: ActuatorSpec | None = None
     materials: Materials | None = None
     mesh: Mesh | None = None
     solver: Solver | None = None
@@ -48,7 +48,7 @@ class Parts:
     broken_effects: bool = False
 
     @classmethod
-    def of(cls, case: Case) -> Parts:
+    def of(cls, case: Case) -> ValidParts:
         """All parts of a case."""
         return cls(
             case.actuator,
@@ -62,14 +62,14 @@ class Parts:
 
     @property
     def inflation(self) -> Inflation | None:
-        """How the chamber is loaded, by the first effect that says so."""
+        """How the chamber is loaded, by the first effect that loads it."""
         found = (effect.inflation() for effect in self.effects.values())
         return next((load for load in found if load is not None), None)
 
     def draft(self) -> Draft:
-        """What effects may know when they are checked."""
+        """What effects are given when they are checked."""
         actuator = self.actuator
-        fits = actuator is not None and not any(_section(self))
+        fits = actuator is not None and not any(_dimensions(self))
         return Draft(
             actuator=convert.dimensions(actuator) if actuator is not None and fits else None,
             length=None if actuator is None else actuator.length,
@@ -79,13 +79,13 @@ class Parts:
         )
 
 
-def check(parts: Parts) -> Iterator[Problem]:
+def check(parts: ValidParts) -> Iterator[Problem]:
     """Every problem that lies in several values together.
 
     Args:
         parts: what is valid by itself.
     """
-    yield from _section(parts)
+    yield from _dimensions(parts)
     yield from _effects(parts)
     draft = parts.draft()
     for path, effect in draft.effects.items():
@@ -97,7 +97,7 @@ def check(parts: Parts) -> Iterator[Problem]:
     yield from _output(parts)
 
 
-def _section(parts: Parts) -> Iterator[Problem]:
+def _dimensions(parts: ValidParts) -> Iterator[Problem]:
     from geometry.sections.table import inconsistencies
 
     if parts.actuator is not None:
@@ -105,7 +105,7 @@ def _section(parts: Parts) -> Iterator[Problem]:
             yield Problem(f"actuator.{name}", text)
 
 
-def _effects(parts: Parts) -> Iterator[Problem]:
+def _effects(parts: ValidParts) -> Iterator[Problem]:
     first: dict[str, int] = {}
     for index, effect in parts.effects.items():
         if effect.name in first:
@@ -118,7 +118,7 @@ def _effects(parts: Parts) -> Iterator[Problem]:
         yield Problem("effects", "no load, expected pressure or gravity")
 
 
-def _materials(parts: Parts) -> Iterator[Problem]:
+def _materials(parts: ValidParts) -> Iterator[Problem]:
     if parts.materials is None:
         return
     for part in ("wall", "floor", "sheath", "layer"):
@@ -133,7 +133,7 @@ def _materials(parts: Parts) -> Iterator[Problem]:
                 yield Problem(path, f"no effect without actuator.{part}, expected no value")
 
 
-def _material(path: str, material: Material) -> Iterator[Problem]:
+def _material(path: str, material: MaterialSpec) -> Iterator[Problem]:
     from materials.named import NAMED
 
     given = material.coefficients
@@ -163,16 +163,16 @@ def _material(path: str, material: Material) -> Iterator[Problem]:
             yield Problem(path, str(error))
 
 
-def _density(parts: Parts) -> Iterator[Problem]:
+def _density(parts: ValidParts) -> Iterator[Problem]:
     if parts.materials is None or parts.broken_effects:
         return
-    weighing = [effect.name for effect in parts.effects.values() if effect.weighs]
+    weighing = [effect.name for effect in parts.effects.values() if effect.needs_density]
     for part in ("wall", "floor", "sheath", "layer"):
         path, material = f"materials.{part}", getattr(parts.materials, part)
         if material is None:
             continue
         if not weighing and material.density is not None:
-            names = " or ".join(name for name, effect in EFFECTS.items() if effect.weighs)
+            names = " or ".join(name for name, effect in EFFECTS.items() if effect.needs_density)
             yield Problem(f"{path}.density", f"no effect without {names}, expected no value")
         if weighing and material.density is None:
             from materials.named import NAMED
@@ -181,7 +181,7 @@ def _density(parts: Parts) -> Iterator[Problem]:
                 yield Problem(f"{path}.density", f"missing, expected a density for {weighing[0]}")
 
 
-def _mesh(parts: Parts) -> Iterator[Problem]:
+def _mesh(parts: ValidParts) -> Iterator[Problem]:
     if parts.mesh is None:
         return
     if parts.mesh.symmetry == "half":
@@ -190,28 +190,28 @@ def _mesh(parts: Parts) -> Iterator[Problem]:
     # elsewhere the mesh depends on the model and its defaults, and is checked with these
     model = MODELS.get(parts.model or "")
     elements = None if model is None else model.elements()
-    said = elements is not None and elements.takes_mesh_as_said
-    if said and parts.actuator is not None and not any(_section(parts)):
+    named = elements is not None and elements.takes_mesh_as_given
+    if named and parts.actuator is not None and not any(_dimensions(parts)):
         size = convert.mesh_size(parts.mesh, half=True)
-        yield from misfitting(parts.actuator, size, parts.draft().effects)
+        yield from size_problems(parts.actuator, size, parts.draft().effects)
 
 
-def misfits(case: Case) -> Iterator[Problem]:
-    """Why the mesh of a case's model cannot hold its dimensions; a closed form has no mesh.
+def mesh_problems(case: Case) -> Iterator[Problem]:
+    """Why the mesh of a case's model cannot resolve its dimensions; a closed form has no mesh.
 
     Args:
         case: a checked and completed case.
     """
     model = choose_model(case)[0].elements()
     if model is not None:
-        size = model.fineness(case, half=True)
-        yield from misfitting(case.actuator, size, Parts.of(case).draft().effects)
+        size = model.mesh_size(case, half=True)
+        yield from size_problems(case.actuator, size, ValidParts.of(case).draft().effects)
 
 
-def misfitting(
-    actuator: Actuator, size: MeshSize, effects: Mapping[str, Effect]
+def size_problems(
+    actuator: ActuatorSpec, size: MeshSize, effects: Mapping[str, Effect]
 ) -> Iterator[Problem]:
-    """Why a mesh cannot hold the dimensions of an actuator.
+    """Why a mesh cannot resolve the dimensions of an actuator.
 
     Args:
         actuator: its dimensions.
@@ -239,7 +239,7 @@ def misfitting(
                 yield Problem(path, str(error))
 
 
-def _solver(parts: Parts) -> Iterator[Problem]:
+def _solver(parts: ValidParts) -> Iterator[Problem]:
     pressure = parts.inflation
     if parts.solver is None or parts.broken_effects:
         return
@@ -258,7 +258,7 @@ def _solver(parts: Parts) -> Iterator[Problem]:
         )
 
 
-def _output(parts: Parts) -> Iterator[Problem]:
+def _output(parts: ValidParts) -> Iterator[Problem]:
     output = parts.output
     if output is None:
         return

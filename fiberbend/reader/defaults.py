@@ -11,8 +11,8 @@ def complete(case: Case) -> Case:
 
     The effects come first: the model is chosen by them, and the mesh by the model.
     """
-    said = MODELS.get(case.model)
-    offers = None if said is None else said.offers
+    named = MODELS.get(case.model)
+    offers = None if named is None else named.offers
     effects = tuple(effect.completed(offers) for effect in case.effects)
     case = case.model_copy(update={"effects": effects})
     model, _ = choose_model(case)

@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from fiberbend.case.case import (
-    Actuator,
+    ActuatorSpec,
     Case,
     Materials,
     Mesh,
@@ -18,11 +18,11 @@ from fiberbend.case.case import (
 )
 from fiberbend.effects.table import EffectEntry, unwrap
 from fiberbend.models import choice
-from fiberbend.reader.checks import Parts, check, misfits
+from fiberbend.reader.checks import ValidParts, check, mesh_problems
 from fiberbend.reader.defaults import complete
 from fiberbend.reader.yaml_file import (
     apply_setting,
-    lines_told,
+    line_numbers,
     read_yaml,
     root_paths,
     setting_path,
@@ -30,8 +30,8 @@ from fiberbend.reader.yaml_file import (
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.validation import from_pydantic
 
-_SECTIONS: dict[str, type[BaseModel]] = {
-    "actuator": Actuator,
+_PARTS: dict[str, type[BaseModel]] = {
+    "actuator": ActuatorSpec,
     "materials": Materials,
     "mesh": Mesh,
     "solver": Solver,
@@ -70,7 +70,7 @@ def read_case(path: Path | str, settings: Iterable[str] = ()) -> Case:
     if problems:
         raise CaseError(problems)
     root_paths(data, Path())
-    with lines_told(source.lines, [setting_path(setting) for setting in settings]):
+    with line_numbers(source.lines, [setting_path(setting) for setting in settings]):
         return parse_case(data)
 
 
@@ -86,7 +86,7 @@ def as_case(case: Case | Mapping[str, Any] | Path | str) -> Case:
 
 
 def parse_case(data: Mapping[str, Any]) -> Case:
-    """Check a case given as a mapping of plain values, as YAML holds them.
+    """Check a case given as a mapping of plain values, as YAML gives them.
 
     Raises:
         CaseError: everything that is wrong with it.
@@ -95,24 +95,24 @@ def parse_case(data: Mapping[str, Any]) -> Case:
     case = None
     try:
         case = Case.model_validate(data)
-        parts = Parts.of(case)
+        parts = ValidParts.of(case)
     except ValidationError as error:
         problems += from_pydantic(error, Case)
-        parts = _valid_parts(data) if isinstance(data, Mapping) else Parts()
+        parts = _valid_parts(data) if isinstance(data, Mapping) else ValidParts()
     problems += check(parts)
     if problems or case is None:
         raise CaseError(problems)
     case = complete(case)
     problems += [Problem(path, text) for path, text in choice.problems(case)]
-    problems += misfits(case)
+    problems += mesh_problems(case)
     if problems:
         raise CaseError(problems)
     return case
 
 
-def _valid_parts(data: Mapping[str, Any]) -> Parts:
-    parts = Parts(model=str(data.get("model")))
-    for name, part in _SECTIONS.items():
+def _valid_parts(data: Mapping[str, Any]) -> ValidParts:
+    parts = ValidParts(model=str(data.get("model")))
+    for name, part in _PARTS.items():
         try:
             setattr(parts, name, part.model_validate(data.get(name, {})))
         except ValidationError:

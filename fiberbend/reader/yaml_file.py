@@ -15,7 +15,7 @@ from fiberbend.schema.problems import CaseError, Problem
 
 
 class _Loader(yaml.SafeLoader):
-    """Refuses a key that a mapping holds twice, where YAML would keep the last in silence."""
+    """Refuses a key that a mapping has twice, where YAML would keep the last in silence."""
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
         lines: dict[str, int] = {}
@@ -33,8 +33,8 @@ class _Loader(yaml.SafeLoader):
 
 
 @dataclasses.dataclass(frozen=True)
-class Source:
-    """What a YAML file holds, and where.
+class YamlContent:
+    """The mapping of a YAML file, and the lines of its values.
 
     Attributes:
         data: its mapping.
@@ -46,7 +46,7 @@ class Source:
 
 
 def load_yaml(path: Path) -> dict[str, Any]:
-    """Read a YAML file that holds one mapping.
+    """Read a YAML file of one mapping.
 
     Raises:
         CaseError: no such file, malformed, a key twice, or no mapping.
@@ -54,7 +54,7 @@ def load_yaml(path: Path) -> dict[str, Any]:
     return read_yaml(path).data
 
 
-def read_yaml(path: Path) -> Source:
+def read_yaml(path: Path) -> YamlContent:
     """Read a YAML file that holds one mapping, with the lines of its values.
 
     Raises:
@@ -75,11 +75,11 @@ def read_yaml(path: Path) -> Source:
         raise CaseError([Problem(where, f"malformed YAML, {what}")]) from None
     if not isinstance(data, dict):
         raise CaseError([Problem(str(path), "holds no mapping, expected a case")])
-    return Source(data, lines)
+    return YamlContent(data, lines)
 
 
 def _parse(stream: str | IO[str]) -> tuple[Any, dict[str, int]]:
-    """The value that YAML holds, and the line of every value within it."""
+    """The value of a YAML text, and the line of every value within it."""
     loader = _Loader(stream)
     node = loader.get_single_node()
     lines = {place: mark.line + 1 for place, mark in _marks(node, (), ())}
@@ -108,8 +108,8 @@ def _marks(node: Any, keys: tuple[str, ...], around: tuple[Any, ...]) -> Iterato
 
 
 @contextlib.contextmanager
-def lines_told(lines: Mapping[str, int], changed: Sequence[str] = ()) -> Iterator[None]:
-    """Let the problems found within say in which line of a file they stand.
+def line_numbers(lines: Mapping[str, int], changed: Sequence[str] = ()) -> Iterator[None]:
+    """Add to the problems raised within the lines of a file at which they stand.
 
     Args:
         lines: the line of each value of the file, by its dotted path.
@@ -122,7 +122,7 @@ def lines_told(lines: Mapping[str, int], changed: Sequence[str] = ()) -> Iterato
 
 
 def located(problem: Problem, lines: Mapping[str, int], changed: Sequence[str] = ()) -> Problem:
-    """A problem with the line of its value, or of what should hold the value.
+    """A problem with the line of its value, or of the part that should have it.
 
     Args:
         problem: the problem.
@@ -164,7 +164,7 @@ def apply_setting(data: dict[str, Any], setting: str) -> None:
             the file leaves out, and the effect after the last; the schema checks what came out.
 
     Raises:
-        CaseError: the path leads nowhere, or the value is not YAML.
+        CaseError: there is no such path, or the value is not YAML.
     """
     path, (_, equals, text) = setting_path(setting), setting.partition("=")
     if not equals or not path:

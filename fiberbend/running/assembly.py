@@ -18,8 +18,8 @@ from fem.scene import Scene
 from fem.solver.newton import Newton, Settings
 from fiberbend.case.case import Case
 from fiberbend.models.choice import meshed
-from fiberbend.models.model import MeshedModel, Reading
-from fiberbend.models.parts import Parts, build
+from fiberbend.models.model import MeshedModel, Observables
+from fiberbend.models.parts import SceneParts, build
 from fiberbend.running.approach import Approach
 from geometry.mesh.data import MeshData
 
@@ -45,9 +45,9 @@ class Assembly:
         ramps: the loads of what is modelled.
     """
 
-    parts: Parts
+    parts: SceneParts
     scene: Scene
-    reading: Reading
+    observables: Observables
     newton: Newton
     march: March
     ramps: list[Ramp]
@@ -65,25 +65,27 @@ def assemble(case: Case, mesh: MeshData, comm: MPI.Comm, lead: Lead | None = Non
     model = meshed(case)
     parts = build(case, mesh, model)
     scene = Scene(Domain(mesh, comm), parts.effects, model.kinematics(case))
-    reading = model.reading(case, scene)
+    observables = model.observables(case, scene)
     settings = Settings(tolerance=case.solver.tolerance)
     for effect in case.effects:
         settings = effect.settings(settings)
     newton = Newton(scene, comm, settings)
-    frames = reading.frames
+    frames = observables.frames
     guide = None if lead is None or frames is None else lead(scene, frames)
     march = March(
         scene,
         newton,
         rules(case, model, guide is not None),
         frames=frames,
-        control=reading.control,
+        control=observables.control,
         guide=guide,
-        rod=reading.rod,
+        rod=observables.rod,
         causes=Diagnosis(scene),
         hooks=[Approach(scene)] if any(effect.touches() for effect in case.effects) else [],
     )
-    return Assembly(parts, scene, reading, newton, march, parts.ramps(scene.body.symmetry_factor))
+    return Assembly(
+        parts, scene, observables, newton, march, parts.ramps(scene.body.symmetry_factor)
+    )
 
 
 def rules(case: Case, model: MeshedModel, guided: bool) -> Rules:

@@ -168,8 +168,8 @@ class _Run:
 
     def _recording(self, assembly: Assembly, again: bool) -> tuple[Recorder, Recording]:
         """The rows and what listens to the march, which goes on where the checkpoint is."""
-        march, reading = assembly.march, assembly.reading
-        archive, gauge = Archive(assembly.scene, reading.frames), reading.gauge()
+        march, observables = assembly.march, assembly.observables
+        archive, gauge = Archive(assembly.scene, observables.frames), observables.gauge()
         saved = restart.load(self.folder, archive) if again and self.folder else None
         if saved is not None:
             march.resume(saved.position)

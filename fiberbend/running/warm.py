@@ -69,7 +69,7 @@ class SectionStates:
 
 def guides(case: Case) -> bool:
     """Whether a section bends as the body of a case does, between its ends."""
-    return case.inflation is not None and all(effect.steers() for effect in case.effects)
+    return case.inflation is not None and all(effect.follows_section() for effect in case.effects)
 
 
 def section_states(case: Case) -> SectionStates | None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from fiberbend.schema.problems import CaseError, Problem
-from fiberbend.schema.quantities import Model
+from fiberbend.schema.quantities import Spec
 
 
 def dotted(location: Iterable[str | int]) -> str:
@@ -24,7 +24,7 @@ def put(data: dict[str, Any], path: str, value: Any) -> None:
         value: as YAML would give it.
 
     Raises:
-        CaseError: the path leads nowhere.
+        CaseError: there is no such path.
     """
     keys = path.split(".")
     place: Any = data
@@ -75,27 +75,27 @@ def differences(one: Any, other: Any, path: str = "") -> list[str]:
     return [line for key, a, b in steps for line in differences(a, b, dot + key)]
 
 
-def keys(model: type[Model]) -> Mapping[str, Any]:
-    """The fields of a model by the names that a case gives them."""
-    return {field.alias or name: field for name, field in model.model_fields.items()}
+def keys(spec: type[Spec]) -> Mapping[str, Any]:
+    """The fields of a part of a case by the names that a case gives them."""
+    return {field.alias or name: field for name, field in spec.model_fields.items()}
 
 
-def _models_in(annotation: Any) -> Iterator[type[Model]]:
-    if isinstance(annotation, type) and issubclass(annotation, Model):
+def _specs_in(annotation: Any) -> Iterator[type[Spec]]:
+    if isinstance(annotation, type) and issubclass(annotation, Spec):
         yield annotation
     for part in typing.get_args(annotation):
-        yield from _models_in(part)
+        yield from _specs_in(part)
 
 
-def models_at(root: type[Model], location: Iterable[str | int]) -> list[type[Model]]:
-    """The models that can stand at a location in data of a model."""
-    models = [root]
+def specs_at(root: type[Spec], location: Iterable[str | int]) -> list[type[Spec]]:
+    """The parts that can stand at a location in the data of a part."""
+    specs = [root]
     for part in location:
         if isinstance(part, str):
-            models = [
+            specs = [
                 inner
-                for outer in models
+                for outer in specs
                 if part in keys(outer)
-                for inner in _models_in(keys(outer)[part].annotation)
+                for inner in _specs_in(keys(outer)[part].annotation)
             ]
-    return models
+    return specs

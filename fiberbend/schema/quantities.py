@@ -1,4 +1,4 @@
-"""Building blocks of the case schema: quantities with units, and the base of all its models."""
+"""Building blocks of the case schema: quantities with units, and the base of all its parts."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from fiberbend.schema.units import KINDS, parse, show
 Sign = Literal["above zero", "zero or above", "other than zero", "any"]
 
 
-class Model(BaseModel):
-    """A part of a case: frozen, and without room for keys that nobody reads."""
+class Spec(BaseModel):
+    """A part of a case as a file gives it: frozen, and without room for keys that nobody reads."""
 
     model_config = ConfigDict(
         extra="forbid", frozen=True, strict=True, allow_inf_nan=False, use_attribute_docstrings=True
@@ -23,7 +23,7 @@ class Model(BaseModel):
 
 @dataclasses.dataclass(frozen=True)
 class Quantity:
-    """Annotation of a float that a case holds as text with a unit.
+    """Annotation of a float that a case gives as text with a unit.
 
     Attributes:
         kind: a key of `fiberbend.schema.units.KINDS`.
@@ -35,7 +35,7 @@ class Quantity:
 
     @property
     def expected(self) -> str:
-        """What a message says that it expected."""
+        """What a message expects in its place."""
         kind = KINDS[self.kind]
         return f'{kind.name} with its unit such as "{kind.example}"'
 
@@ -79,9 +79,9 @@ class Quantity:
 
 Length = Annotated[float, Quantity("length")]
 """mm, above zero."""
-Width = Annotated[float, Quantity("length", "zero or above")]
+LengthOrZero = Annotated[float, Quantity("length", "zero or above")]
 """mm, zero allowed."""
-Position = Annotated[float, Quantity("length", "any")]
+Coordinate = Annotated[float, Quantity("length", "any")]
 """mm, of either sign."""
 Pressure = Annotated[float, Quantity("pressure")]
 """MPa, above zero."""
@@ -95,7 +95,7 @@ Volume = Annotated[float, Quantity("volume")]
 """mm³, above zero."""
 Density = Annotated[float, Quantity("density")]
 """t/mm³, above zero."""
-Bedding = Annotated[float, Quantity("bedding")]
+PenaltyStiffness = Annotated[float, Quantity("penalty stiffness")]
 """MPa/mm, above zero."""
 Acceleration = Annotated[float, Quantity("acceleration")]
 """mm/s², above zero."""

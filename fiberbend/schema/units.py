@@ -64,7 +64,7 @@ KINDS = {
         "9.81 m/s^2",
         {"mm/s^2": "1", "m/s^2": "1e3"},
     ),
-    "bedding": Kind(
+    "penalty stiffness": Kind(
         "a pressure per depth",
         "MPa/mm",
         "MPa/mm",
@@ -81,21 +81,21 @@ KINDS = {
         {"dm^3/(s*bar)": "1", "L/(s*bar)": "1"},
     ),
 }
-"""The kinds of quantity that a case or an option can hold."""
+"""The kinds of quantity that a case or an option can give."""
 
 
 def parse(text: Any, kind: str) -> float:
     """Read a quantity into the internal unit of its kind.
 
     Args:
-        text: what the case holds, such as "8 mm".
+        text: as the case gives it, such as "8 mm".
         kind: a key of `KINDS`.
 
     Returns:
         The value in the internal unit.
 
     Raises:
-        ValueError: says what was expected; not a quantity of this kind, or not finite.
+        ValueError: not a quantity of this kind, or not finite.
     """
     what = KINDS[kind]
     wanted = f'{what.name} with its unit such as "{what.example}"'

@@ -9,9 +9,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from fiberbend.schema.paths import dotted, keys, models_at
+from fiberbend.schema.paths import dotted, keys, specs_at
 from fiberbend.schema.problems import Problem, found, meant
-from fiberbend.schema.quantities import Model, Quantity
+from fiberbend.schema.quantities import Quantity, Spec
 
 _PLAIN = {
     "model_type": "expected a mapping",
@@ -28,21 +28,21 @@ _PLAIN = {
 }
 
 
-def from_pydantic(error: ValidationError, root: type[Model]) -> Iterator[Problem]:
+def from_pydantic(error: ValidationError, root: type[Spec]) -> Iterator[Problem]:
     """The problems that pydantic found.
 
     Args:
         error: what pydantic raised.
-        root: the model that it was validating.
+        root: the class that it was validating.
     """
     for line in error.errors(include_url=False):
         yield Problem(dotted(line["loc"]), _text(line, root))
 
 
-def _text(line: Any, root: type[Model]) -> str:
+def _text(line: Any, root: type[Spec]) -> str:
     kind, context = line["type"], line.get("ctx", {})
     if kind == "extra_forbidden":
-        known = [key for outer in models_at(root, line["loc"][:-1]) for key in keys(outer)]
+        known = [key for outer in specs_at(root, line["loc"][:-1]) for key in keys(outer)]
         return f"unknown key, expected one of {', '.join(known)}{meant(line['loc'][-1], known)}"
     if kind == "missing":
         return f"missing, expected {_expected(root, line['loc'])}"
@@ -60,8 +60,8 @@ def _text(line: Any, root: type[Model]) -> str:
     return f"{shown}, {_PLAIN.get(kind, line['msg'])}"
 
 
-def _expected(root: type[Model], location: tuple[str | int, ...]) -> str:
-    for outer in models_at(root, location[:-1]):
+def _expected(root: type[Spec], location: tuple[str | int, ...]) -> str:
+    for outer in specs_at(root, location[:-1]):
         field = keys(outer).get(str(location[-1]))
         if field is None:
             continue

@@ -13,7 +13,7 @@ from pydantic import Field, field_validator
 from pydantic_core import PydanticCustomError
 
 from fiberbend.schema.problems import Problem
-from fiberbend.schema.quantities import Angle, Model, Pressure
+from fiberbend.schema.quantities import Angle, Pressure, Spec
 
 Quantity = Literal["pressure", "stretch", "blocked-force"]
 
@@ -23,7 +23,7 @@ MOST_POINTS = 10_000
 """A grid with more points is taken for a mistake."""
 
 
-class Report(Model):
+class Report(Spec):
     """What the table and the maps of a sweep hold beside status, angle and time."""
 
     angles: tuple[Angle, ...] = Field(default=(), strict=False)
@@ -38,7 +38,7 @@ class Report(Model):
     """Quantities that are drawn, where the table holds them."""
 
 
-class SweepFile(Model):
+class SweepFile(Spec):
     """A sweep file."""
 
     title: str = ""

@@ -19,9 +19,9 @@ from fiberbend.effects.straight import kept_straight
 from fiberbend.models.choice import choose_model
 from fiberbend.reader.reader import parse_case
 from fiberbend.reader.yaml_file import (
-    Source,
+    YamlContent,
     apply_setting,
-    lines_told,
+    line_numbers,
     located,
     read_yaml,
     setting_path,
@@ -108,11 +108,11 @@ def read_sweep(path: Path | str, settings: Iterable[str] = ()) -> Sweep:
     source = read_yaml(path)
     if "case" not in source.data and "actuator" in source.data:
         raise CaseError([Problem(str(path), f"this is a case: fiberbend run {path}")])
-    with lines_told(source.lines):
+    with line_numbers(source.lines):
         return _checked(source, path, list(settings))
 
 
-def _checked(source: Source, path: Path, settings: Sequence[str]) -> Sweep:
+def _checked(source: YamlContent, path: Path, settings: Sequence[str]) -> Sweep:
     try:
         file = SweepFile.model_validate(source.data)
     except ValidationError as error:
@@ -144,7 +144,7 @@ class _Base:
         changed: paths whose values come from elsewhere.
     """
 
-    source: Source
+    source: YamlContent
     where: str
     changed: tuple[str, ...]
 
@@ -154,12 +154,12 @@ class _Base:
         return dataclasses.replace(found, path=f"{self.where}: {found.path}")
 
 
-def _base(file: SweepFile, source: Source, path: Path, settings: Sequence[str]) -> _Base:
+def _base(file: SweepFile, source: YamlContent, path: Path, settings: Sequence[str]) -> _Base:
     if isinstance(file.case, dict):
         begin = "case."
         lines = source.lines.items()
         inner = {place.removeprefix(begin): n for place, n in lines if place.startswith(begin)}
-        where, own = "case", Source(copy.deepcopy(file.case), inner)
+        where, own = "case", YamlContent(copy.deepcopy(file.case), inner)
     else:
         where, own = file.case, read_yaml(path.parent / file.case)
     base = own.data
@@ -271,7 +271,7 @@ def _case(base: dict[str, Any], settings: tuple[_Setting, ...], report: Report) 
 
 def _blocked(case: Case, report: Report) -> Case | None:
     model = choose_model(case)[0]
-    if report.force_at is None or case.straight or not model.is_kept_straight:
+    if report.force_at is None or case.straight or not model.gives_blocked_force:
         return None
     data = kept_straight(case.resolved(), show(report.force_at, "pressure"))
     data |= {"model": model.name, "output": {"pictures": False, "fields": False}}

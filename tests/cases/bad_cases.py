@@ -212,54 +212,63 @@ UNFIT_MODELS = [
     # turns, twist and ends
     (
         ["model=section", "effects.1.winding.as=discrete"],
-        "effects.1.winding: model section cannot hold it: only cell and body have turns",
+        "effects.1.winding: model section does not support it: only cell and body have turns",
     ),
     (
         ["model=analytic", "effects.1.winding.width=0.38 mm"],
-        "effects.1.winding: model analytic cannot hold it: only cell and body have turns",
+        "effects.1.winding: model analytic does not support it: only cell and body have turns",
     ),
     (
         ["model=analytic", SMEARED, "effects.1.winding.pattern=single-helix-left"],
-        "effects.1.winding: model analytic cannot hold it: the closed form knows no twist",
+        "effects.1.winding: model analytic does not support it: the closed form has no twist",
     ),
     (
         ["model=cell", BLOCKED],
-        "effects.2.blocked-tip: model cell cannot hold it: roof and post need the ends of a body",
+        "effects.2.blocked-tip: model cell does not support it: "
+        "roof and post need the ends of a body",
     ),
-    (["model=section", BLOCKED], "effects.2.blocked-tip: model section cannot hold it: "),
+    (["model=section", BLOCKED], "effects.2.blocked-tip: model section does not support it: "),
     *[
-        ([f"model={model}", *WEIGHT], f"effects.2.gravity: model {model} cannot hold it: weight")
+        (
+            [f"model={model}", *WEIGHT],
+            f"effects.2.gravity: model {model} does not support it: weight",
+        )
         for model in ("analytic", "section", "cell")
     ],
     # what only a uniform bend, or only a closed form, can hold
     (
         ["model=body", "effects.2.straight={}", "output={}"],
-        "effects.2.straight: model body cannot hold it: only a uniform bend is held straight",
+        "effects.2.straight: model body does not support it: only a uniform bend is kept straight",
     ),
     *[
-        ([f"model={model}", HOOPS], f"effects.1.hoops: model {model} cannot hold it: hoops that")
+        (
+            [f"model={model}", HOOPS],
+            f"effects.1.hoops: model {model} does not support it: hoops that",
+        )
         for model in ("section", "cell", "body")
     ],
     (
         ["effects.2={hoops: {}}"],
-        "effects.2.hoops: effects.1.winding holds the circumference already, expected one of them",
+        "effects.2.hoops: effects.1.winding fixes the circumference already, expected one of them",
     ),
     # what the closed form needs
     (
         ["model=analytic", "effects.0={pressure: {volume: 45 mL}}"],
-        "effects.0.pressure: model analytic cannot hold it: the closed form bends by pressure or",
+        "effects.0.pressure: model analytic does not support it: "
+        "the closed form bends by pressure or",
     ),
     (
         ["model=analytic", "materials.floor=elastosil-m4601"],
-        "materials.floor: model analytic cannot hold it: floor and layer together stretch only",
+        "materials.floor: model analytic does not support it: "
+        "floor and layer together stretch only",
     ),
     (
         ["model=analytic", "effects=[{pressure: {to: 1 kPa}}]"],
-        "effects: model analytic cannot hold it: no winding holds the circumference",
+        "effects: model analytic does not support it: no winding fixes the circumference",
     ),
     (
         ["model=analytic", "output.fields=true"],
-        "output.fields: model analytic cannot hold it: closed forms have no fields",
+        "output.fields: model analytic does not support it: closed forms have no fields",
     ),
     (
         [
@@ -267,26 +276,28 @@ UNFIT_MODELS = [
             "actuator={section: circle, radius: 8 mm, length: 160 mm, wall: 2 mm, floor: 1 mm, "
             "sheath: 1 mm}",
         ],
-        "actuator.section: model analytic cannot hold it: the closed form is for a hemicircle, not",
+        "actuator.section: model analytic does not support it: "
+        "the closed form is for a hemicircle, not",
     ),
     # uniform bending
     (
         ["model=cell", "mesh.element=tetrahedron"],
-        "mesh.element: model cell cannot hold it: tetrahedra are for a body",
+        "mesh.element: model cell does not support it: tetrahedra are for a body",
     ),
     (
         ["model=section", "effects=[{gravity: {direction: -y}}]", WEIGHT[1], "output={}"],
-        "effects: model section cannot hold it: nothing bends it uniformly but a pressure",
+        "effects: model section does not support it: nothing bends it uniformly but a pressure",
     ),
     # no model at all
     (
         ["model=auto", HOOPS, BLOCKED],
-        'model: "auto", expected effects that one model holds: analytic not effects.2.blocked-tip '
-        "(in closed forms the tip is held rigidly, without roof, post and sheath); section not "
+        'model: "auto", expected effects that one model supports: '
+        "analytic not effects.2.blocked-tip "
+        "(in closed forms the tip is fixed rigidly, without roof, post and sheath); section not "
         "effects.1.hoops (",
     ),
 ]
-"""Settings that leave a case right by itself and ask for a model that cannot hold it."""
+"""Settings that leave a case right by itself and ask for a model that does not support it."""
 
 BAD_FILES = {
     "malformed": ("actuator: [1, 2\n", "line 2: malformed YAML"),

@@ -1,6 +1,6 @@
 """The cheapest model that a case allows, and what a case leaves to the model.
 
-A user who says `auto` wants the fastest answer that holds everything that the case says: a model
+A user of `auto` wants the fastest answer that supports everything in the case: a model
 too cheap answers another question, one too dear costs minutes.
 """
 
@@ -59,7 +59,7 @@ def winding(case: Case) -> WindingEffect:
     ],
     ids=str,
 )
-def test_auto_takes_the_cheapest_that_holds_everything(settings: list[str], model: str) -> None:
+def test_auto_takes_the_cheapest_that_supports_everything(settings: list[str], model: str) -> None:
     automatic = case("model=auto", *settings)
     assert choose_model(automatic)[0].name == model
     cheaper = itertools.takewhile(lambda name: name != model, MODELS)
@@ -114,5 +114,5 @@ def test_half_or_full() -> None:
     assert choose_half(case("model=cell", SINGLE))[0] is False
     # half a turn about y maps a section onto itself, whatever its winding
     assert choose_half(case("model=section", SMEARED, SINGLE))[0] is True
-    assert choose_half(case("mesh.symmetry=full")) == (False, "as the case says")
+    assert choose_half(case("mesh.symmetry=full")) == (False, "given in the case")
     assert choose_half(case(*WEIGHT, "effects.2.gravity.direction=+x"))[0] is False

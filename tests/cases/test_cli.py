@@ -193,7 +193,7 @@ def test_plan_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plan", BASELINE]) == 0
     out = capsys.readouterr().out
     assert out.splitlines()[0].split() == ["effects:", "pressure,", "winding"]
-    assert "body (as the case says)" in out
+    assert "body (given in the case)" in out
 
 
 @pytest.mark.parametrize(("status", "code"), [("converged", 0), ("stopped", 0), ("failed", 2)])

@@ -13,7 +13,7 @@ from fiberbend.effects.pressure import inflate
 from fiberbend.models.choice import MODELS, choose_model, problems
 from fiberbend.plan.estimate import steps_of
 from fiberbend.plan.plan import make_plan
-from fiberbend.reader.checks import Parts, check
+from fiberbend.reader.checks import ValidParts, check
 from fiberbend.reader.defaults import complete
 from fiberbend.reader.reader import read_case
 from fiberbend.running.warm import guides
@@ -33,7 +33,7 @@ def case(model: str) -> Case:
     """The baseline with the effect, as the reader would leave it."""
     base = read_case(ROOT / "cases" / "free_bending_smeared.yaml", ["output={}"])
     made = base.model_copy(update={"effects": (*base.effects, TipLoad()), "model": model})
-    assert list(check(Parts.of(made))) == []
+    assert list(check(ValidParts.of(made))) == []
     return complete(made)
 
 
@@ -42,7 +42,10 @@ def test_every_model_but_the_body_refuses_it_by_name(model: str) -> None:
     (problem,) = problems(case(model))
     path, text = problem
     assert path == PATH
-    assert text == f"model {model} cannot hold it: only a body in space is known to hold tip-load"
+    assert (
+        text
+        == f"model {model} does not support it: only a body in space is known to support tip-load"
+    )
 
 
 def test_auto_takes_the_whole_body_and_plan_says_so() -> None:
@@ -56,7 +59,10 @@ def test_auto_takes_the_whole_body_and_plan_says_so() -> None:
     assert plan.steps is None
     text = " ".join("\n".join(plan.lines()).split())
     for name in ("analytic", "section", "cell"):
-        assert f"{name} cannot hold {PATH}: only a body in space is known to hold tip-load" in text
+        assert (
+            f"{name} does not support {PATH}: only a body in space is known to support tip-load"
+            in text
+        )
     assert "full (tip-load is not known to be mirror-symmetric)" in text
 
 
@@ -73,5 +79,5 @@ def test_no_phase_takes_it_for_granted() -> None:
 
 
 def test_it_is_not_built_as_nothing() -> None:
-    with pytest.raises(NotImplementedError, match="tip-load does not say how it is built"):
+    with pytest.raises(NotImplementedError, match="tip-load cannot be built"):
         TipLoad().build(None, None, None)  # type: ignore[arg-type]

@@ -8,7 +8,7 @@ import pytest
 
 from fiberbend.case.case import Case
 from fiberbend.effects.table import WindingEffect
-from fiberbend.schema.paths import differences, dotted, models_at, put, value_at
+from fiberbend.schema.paths import differences, dotted, put, specs_at, value_at
 from fiberbend.schema.problems import CaseError
 
 
@@ -38,6 +38,6 @@ def test_a_path_that_leads_nowhere(path: str) -> None:
 def test_models_along_a_path() -> None:
     location = ("effects", 1, "winding")
     assert dotted(location) == "effects.1.winding"
-    assert models_at(Case, location[:1]) != []
-    assert models_at(Case, ("actuator", "wall")) == []
-    assert WindingEffect not in models_at(Case, ("actuator",))
+    assert specs_at(Case, location[:1]) != []
+    assert specs_at(Case, ("actuator", "wall")) == []
+    assert WindingEffect not in specs_at(Case, ("actuator",))

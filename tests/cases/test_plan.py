@@ -155,14 +155,14 @@ def test_pictures_and_fields_cost_extra() -> None:
 
 def test_plan_says_why_no_cheaper_model() -> None:
     text = row(plan("model=auto"), "model")
-    assert text.startswith("cell (the cheapest that holds everything)\n")
-    assert "analytic cannot hold effects.1.winding: only cell and body have turns" in text
-    assert "section cannot hold effects.1.winding: only cell and body have turns" in text
+    assert text.startswith("cell (the cheapest that supports everything)\n")
+    assert "analytic does not support effects.1.winding: only cell and body have turns" in text
+    assert "section does not support effects.1.winding: only cell and body have turns" in text
     dearer = row(plan(SMEARED), "model")
     assert "analytic leaves out effects.1.winding: in closed forms a winding has" in dearer
-    assert dearer.endswith("section holds everything too: auto would take it")
+    assert dearer.endswith("section supports everything too: auto would take it")
     assert row(plan("model=auto", HOOPS), "model") == (
-        "analytic (the cheapest that holds everything)"
+        "analytic (the cheapest that supports everything)"
     )
 
 

@@ -29,7 +29,7 @@ def folder(tmp_path: Path) -> RunFolder:
     return RunFolder.create(tmp_path / "deep" / "run", CASE)
 
 
-def test_new_folder_holds_the_case(folder: RunFolder) -> None:
+def test_new_folder_has_the_case(folder: RunFolder) -> None:
     assert [path.name for path in folder.path.iterdir()] == ["case.resolved.yaml"]
     assert [path.name for path in folder.path.parent.iterdir()] == ["run"]
 

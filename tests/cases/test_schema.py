@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 from fiberbend.case import convert
-from fiberbend.case.case import Case, Material
+from fiberbend.case.case import Case, MaterialSpec
 from fiberbend.effects.table import (
     EFFECTS,
     GravityEffect,
@@ -152,7 +152,7 @@ def test_nothing_is_guessed_where_nothing_is_near() -> None:
 
 
 @pytest.mark.parametrize(("settings", "line"), bad_cases.UNFIT_MODELS)
-def test_model_that_cannot_hold_the_case_is_refused(settings: list[str], line: str) -> None:
+def test_model_that_does_not_support_the_case_is_refused(settings: list[str], line: str) -> None:
     lines = complaint(settings)
     assert any(text.startswith(line) for text in lines), lines
 
@@ -227,10 +227,10 @@ def test_a_case_is_frozen_and_comes_in_three_forms(data: dict[str, Any]) -> None
 
 
 def test_schema_has_a_key_for_every_parameter_of_a_law() -> None:
-    annotation = Material.model_fields["law"].annotation
+    annotation = MaterialSpec.model_fields["law"].annotation
     (literal,) = (part for part in typing.get_args(annotation) if part is not type(None))
     assert set(typing.get_args(literal)) == set(LAWS)
-    described = {name: field.description or "" for name, field in Material.model_fields.items()}
+    described = {name: field.description or "" for name, field in MaterialSpec.model_fields.items()}
     for law in LAWS.values():
         for parameter in law.parameters:
             assert parameter.meaning in described[parameter.name]
@@ -280,7 +280,7 @@ def test_bridge_takes_what_the_case_says() -> None:
     assert winding is not None
     assert winding.fiber.thread().stiffness == pytest.approx(3000 * math.pi * 0.1**2)
     assert convert.dimensions(case.actuator).total_length == 190.0
-    own = Material.model_validate({"law": "neo-hooke", "mu": "1 MPa", "density": "1.1 g/cm^3"})
+    own = MaterialSpec.model_validate({"law": "neo-hooke", "mu": "1 MPa", "density": "1.1 g/cm^3"})
     assert convert.material(own).density == pytest.approx(1100.0)
 
 

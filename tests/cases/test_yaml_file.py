@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from fiberbend.reader.reader import read_case
-from fiberbend.reader.yaml_file import Source, apply_setting, read_yaml
+from fiberbend.reader.yaml_file import YamlContent, apply_setting, read_yaml
 from fiberbend.schema.paths import value_at
 from fiberbend.schema.problems import CaseError
 
@@ -49,7 +49,7 @@ VALUES: list[tuple[str, Any]] = [
 ]
 
 
-def source(text: str, folder: Path) -> Source:
+def source(text: str, folder: Path) -> YamlContent:
     path = folder / "case.yaml"
     path.write_text(text, encoding="utf-8")
     return read_yaml(path)
@@ -127,7 +127,7 @@ def test_a_problem_names_its_line(tmp_path: Path) -> None:
     assert line.endswith(f" (line {line_of('radius:')})")
 
 
-def test_what_is_missing_names_the_line_of_what_should_hold_it(tmp_path: Path) -> None:
+def test_what_is_missing_names_the_line_of_its_part(tmp_path: Path) -> None:
     (line,) = complaint(tmp_path, "pitch: 3 mm, ", "")
     assert line.startswith("effects.1.winding.pitch: missing")
     assert line.endswith(f" (line {line_of('winding:')})")

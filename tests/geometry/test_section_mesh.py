@@ -111,6 +111,6 @@ def test_smeared_section_is_the_smeared_slice() -> None:
     assert not solid.axial.any()
 
 
-def test_a_section_holds_no_discrete_fibers() -> None:
+def test_a_section_can_have_no_discrete_fibers() -> None:
     with pytest.raises(ValueError, match="smeared windings only"):
         embed(section_quadrilaterals(BODY, MeshSize()), BODY, DOUBLE)

@@ -60,10 +60,10 @@ every_body = pytest.mark.parametrize("body", BODIES.values(), ids=BODIES)
 
 
 def test_the_case_offers_every_shape() -> None:
-    offered = get_args(case.Actuator.model_fields["section"].annotation)
+    offered = get_args(case.ActuatorSpec.model_fields["section"].annotation)
     assert set(offered) == set(SECTIONS)
     dimensions = {field.name for shape in SECTIONS.values() for field in dataclasses.fields(shape)}
-    assert set(case.Actuator.model_fields) == {"section", *dimensions}
+    assert set(case.ActuatorSpec.model_fields) == {"section", *dimensions}
 
 
 def test_a_shape_without_a_part_cannot_be_made() -> None:
@@ -300,7 +300,7 @@ def test_smeared_windings_follow_the_helix(body: ShapedActuator) -> None:
 
 
 @every_body
-def test_half_a_pitch_holds_one_pass(body: ShapedActuator) -> None:
+def test_half_a_pitch_contains_one_pass(body: ShapedActuator) -> None:
     # the cell model: one pass of one fiber from the top to the bottom
     mesh = hexahedral_slice(body, MeshSize(section=2), 1.5, 2)
     fibers = embed(mesh, body, Winding("double-helix", 3, 0.0))
@@ -355,7 +355,7 @@ def test_a_floor_thicker_than_its_ring_is_refused_however_the_actuator_is_made()
         dataclasses.replace(CIRCLE, floor=2.1)
 
 
-def test_meshes_that_cannot_hold_a_section_are_refused() -> None:
+def test_meshes_that_cannot_resolve_a_section_are_refused() -> None:
     thin = dataclasses.replace(CIRCLE, floor=1.9)
     with pytest.raises(ValueError, match=r"floor 1\.9 mm leaves 0\.1 mm of the wall, too thin"):
         check_size(thin, MeshSize(axial=4))

@@ -136,7 +136,7 @@ def test_smeared_length_is_the_discrete_one() -> None:
         assert fibers.length.sum() == pytest.approx(total, rel=2e-5)
 
 
-def test_slice_of_half_a_pitch_holds_one_pass() -> None:
+def test_slice_of_half_a_pitch_contains_one_pass() -> None:
     # the cell model: one pass of one fiber from the top to the bottom
     mesh = hexahedral_slice(BODY, MeshSize(), 1.5, 2)
     fibers = embed(mesh, BODY, Winding("double-helix", 3, 0.0))

@@ -29,7 +29,7 @@ def test_a_hard_case_is_reached_or_refused_for_its_reason(name: str, model: str)
 
 
 @pytest.mark.parametrize("hard", HARD, ids=lambda hard: hard.name)
-def test_a_case_says_why_a_model_cannot_hold_it(hard: Hard) -> None:
+def test_a_model_that_does_not_support_a_case_gives_the_reason(hard: Hard) -> None:
     missing = [model for model in MODELS if model not in hard.models]
     named, _, reason = hard.absent.partition(": ")
     assert named == ", ".join(missing)

@@ -122,7 +122,7 @@ def test_cases_without_a_closed_form_say_why() -> None:
     free = case_with(effects=[{"pressure": {"to": "10 kPa"}}], model="body")
     assert "no winding" in str(no_analytic(free))
     assert analytic_curves(free) == {}
-    with pytest.raises(ValueError, match="no winding holds the circumference"):
+    with pytest.raises(ValueError, match="no winding fixes the circumference"):
         run(free)
 
 
@@ -201,7 +201,7 @@ def test_loads_beyond_the_closed_form() -> None:
     assert np.all(np.diff(column(limit, "pressure_kPa")) > 0)
 
 
-def test_held_straight() -> None:
+def test_kept_straight() -> None:
     straight = case_with(effects=loaded({"pressure": {"to": "200 kPa"}}, {"straight": {}}))
     result = run(straight)
     # by hand: F = κP/L_f at 200 kPa with L_f = 15 mm

@@ -257,6 +257,6 @@ def test_obstacles_need_a_body(model: str) -> None:
     case = _case(HELD) | {"model": model}
     case["mesh"], case["output"] = {}, {}
     with pytest.raises(
-        CaseError, match=r"effects\.2\.contact: model \w+ cannot hold it: obstacles"
+        CaseError, match=r"effects\.2\.contact: model \w+ does not support it: obstacles"
     ):
         as_case(case)

@@ -117,9 +117,9 @@ def test_the_body_between_carries_the_moment_of_a_section() -> None:
     found = up[beyond] @ (here[beyond] - middle)
 
     shape = built.march.states[-1].shape
-    assert built.reading.frames is not None
+    assert built.observables.frames is not None
     assert shape is not None
-    sag = np.degrees(UniformAngle(body, built.reading.frames).value(shape))
+    sag = np.degrees(UniformAngle(body, built.observables.frames).value(shape))
     section = case | {"model": "section", "mesh": {}}
     free = run(section | {"effects": [load, WINDING]}).last("angle_deg")
     held = {"straight": {"stretch": "free"}}

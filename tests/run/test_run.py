@@ -40,7 +40,7 @@ def assert_same(rows: list[Any], other: list[Any], tolerance: float) -> None:
         assert abs(a - b) <= tolerance * max(1.0, abs(a)), column
 
 
-def test_folder_holds_what_is_promised(small_run: RunResult) -> None:
+def test_folder_has_what_is_promised(small_run: RunResult) -> None:
     """Scripts rely on these names."""
     assert small_run.status == "converged"
     assert small_run.folder is not None

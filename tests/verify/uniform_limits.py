@@ -10,7 +10,7 @@ import numpy as np
 from mpi4py import MPI
 
 from fem.effects.chamber_pressure import ChamberPressure
-from fem.effects.supports import HeldStraight
+from fem.effects.supports import StraightAxis
 from fem.effects.winding import SmearedWinding
 from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
 from fem.march.records import Ramp
@@ -142,7 +142,7 @@ def _wound(n: int, pattern: str, pitch: float, straight: bool) -> Scene:
     fibers = SmearedWinding(smear(where.data, TUBE, Winding(pattern, pitch, 0.38)), EA)
     effects = [*rubber({"wall": YEOH}), ChamberPressure(), fibers]
     if straight:
-        effects.append(HeldStraight())
+        effects.append(StraightAxis())
     return section(where, TUBE, effects, twisted=len(PATTERNS[pattern]) == 1)
 
 
@@ -170,7 +170,7 @@ def free_tube(n: int) -> list[Check]:
     """The tube without winding, its ends closed and free, at a/A = 1.1."""
     exact = closed_tube(LAW, INNER, OUTER, 1.1 * INNER)
     scene = section(
-        domain(TUBE, n), TUBE, [*rubber({"wall": YEOH}), ChamberPressure(), HeldStraight()]
+        domain(TUBE, n), TUBE, [*rubber({"wall": YEOH}), ChamberPressure(), StraightAxis()]
     )
     scene.set(np.zeros(scene.body.owned))
     volume = scene.conjugate("pressure") * 1.1**2 * exact.stretch
