@@ -22,7 +22,7 @@ def run(
     """Solve a case.
 
     Args:
-        case: a case, a mapping as its YAML holds it, or the path of a case file.
+        case: a case, a mapping as its YAML gives it, or the path of a case file.
         out: run folder; without one nothing is written.
         overwrite: replace an earlier run in `out`.
         quiet: report no progress.

@@ -115,7 +115,7 @@ def validate(case: CaseFile, /, *, settings: Changes = ()) -> None:
 """
 )
 def plan(case: CaseFile, /, *, settings: Changes = ()) -> None:
-    """Say what a run would do: its model, size, time, memory and errors."""
+    """Print what a run would do: its model, size, time, memory and errors."""
     from fiberbend.plan.plan import make_plan
     from fiberbend.reader.reader import read_case
 
@@ -202,7 +202,7 @@ def sweep(
         file: Sweep file, YAML.
         settings: Changes to the base case.
         out: Folder; runs/SWEEP unless given.
-        jobs: Processes that solve at once; 1 unless said.
+        jobs: Processes that solve at once; 1 by default.
         retry: Run failed points again.
     """
     from fiberbend.schema.problems import CaseError

@@ -8,7 +8,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 STEP = "step"
@@ -40,6 +40,8 @@ BODY = ("body",)
 MESHED = (*UNIFORM, *BODY)
 ALL = ("analytic", *MESHED)
 
+Row = Mapping[str, Any]
+"""A row of history.csv: values by the names of their columns; None or absent: not known."""
 Read = Callable[[Any, Any], float]
 """Reads a value off a `fem.scene.Scene` and the `fem.march.records.State` at which it is."""
 

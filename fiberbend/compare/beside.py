@@ -13,7 +13,7 @@ from fiberbend.case.case import Case
 from fiberbend.case.measured import read_measured
 from fiberbend.case.section_beside import MODEL, as_section
 from fiberbend.compare.check import Check, crosscheck
-from fiberbend.compare.others import Straight
+from fiberbend.compare.others import StraightSection
 from fiberbend.effects.pressure import inflate
 from fiberbend.effects.straight import straight_of
 from fiberbend.models.model import ModelKind
@@ -80,8 +80,8 @@ def section_curve(case: Case, angle: float, solve: Callable[[Case], RunResult]) 
 
 def _straight(
     case: Case, pressure: float, solve: Callable[[Case], RunResult]
-) -> tuple[Straight | None, str]:
-    """The section held straight up to a pressure in MPa, and why it ends early."""
+) -> tuple[StraightSection | None, str]:
+    """The section kept straight up to a pressure in MPa, and why it ends early."""
     section = as_section(case, inflate(to=pressure))
     output = section.output.model_copy(
         update={"at_pressures": tuple(part * pressure for part in _PARTS)}
@@ -94,4 +94,4 @@ def _straight(
         return None, result.reason
     pressures, moments = np.array(known).T
     order = np.argsort(pressures)
-    return Straight(pressures[order], moments[order]), result.reason
+    return StraightSection(pressures[order], moments[order]), result.reason

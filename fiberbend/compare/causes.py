@@ -9,7 +9,6 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from analytic.bending import Hemicircle
 from fiberbend import columns as col
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.compare.others import Other
+from fiberbend.compare.others import OtherModel
 from fiberbend.effects.effect import tip_strips
 from fiberbend.models.closed_form import (
     analytic_curves,
@@ -26,8 +25,6 @@ from fiberbend.models.closed_form import (
 )
 from fiberbend.models.model import ModelKind
 from fiberbend.models.resolution import bulging
-
-Row = Mapping[str, Any]
 
 _SHARE = 0.25
 """Part of a difference that a cause has to account for to be named."""
@@ -67,7 +64,9 @@ class Cause:
         return dataclasses.replace(self, percent=percent, direction=direction)
 
 
-def find(case: Case, model: ModelKind, row: Row, other: Other, value: float) -> list[Cause]:
+def find_causes(
+    case: Case, model: ModelKind, row: col.Row, other: OtherModel, value: float
+) -> list[Cause]:
     """What sets a run apart from another model.
 
     Args:
@@ -90,7 +89,7 @@ def find(case: Case, model: ModelKind, row: Row, other: Other, value: float) -> 
     return [*_ends(model, row, other), *_fibers(case, model, row)]
 
 
-def _ends(model: ModelKind, row: Row, other: Other) -> list[Cause]:
+def _ends(model: ModelKind, row: col.Row, other: OtherModel) -> list[Cause]:
     middle, whole = row.get(col.UNIFORM_ANGLE), row[col.ANGLE]
     if not model.ends or not middle:
         return []
@@ -101,7 +100,7 @@ def _ends(model: ModelKind, row: Row, other: Other) -> list[Cause]:
     return [Cause("end caps", percent, f"{text}: {percent:+.1f} %")]
 
 
-def _fibers(case: Case, model: ModelKind, row: Row) -> list[Cause]:
+def _fibers(case: Case, model: ModelKind, row: col.Row) -> list[Cause]:
     turns, part = case.turns, model.resolved_bulging(case)
     if turns is None or part == 0:
         return []
@@ -114,7 +113,7 @@ def _fibers(case: Case, model: ModelKind, row: Row) -> list[Cause]:
 
 
 def _of_closed_form(
-    case: Case, model: ModelKind, row: Row, closed: Hemicircle, curves: Mapping[str, Hemicircle]
+    case: Case, model: ModelKind, row: col.Row, closed: Hemicircle, curves: Mapping[str, Hemicircle]
 ) -> list[Cause]:
     """What sets a finite-element model apart from a section that keeps its shape."""
     own, wide = curves["zero-fit"], curves["winding"]
@@ -150,7 +149,7 @@ def _floor_stiffness(case: Case, closed: Hemicircle, angle: float) -> Cause:
     return Cause("floor stiffness", percent, text)
 
 
-def _floor_bulging(row: Row, wide: Hemicircle, angle: float) -> list[Cause]:
+def _floor_bulging(row: col.Row, wide: Hemicircle, angle: float) -> list[Cause]:
     """A flat floor rounds the outline, which the closed form keeps as it is.
 
     Rubber keeps its volume, so that in an outline of unchanged shape the chamber grows with the
@@ -163,12 +162,14 @@ def _floor_bulging(row: Row, wide: Hemicircle, angle: float) -> list[Cause]:
     excess = volume / (straight + wide.kappa * angle) - 1
     if excess < _BULGED:
         return []
-    text = f"the chamber holds {100 * excess:.0f} % more than in an outline that keeps its shape"
+    text = (
+        f"the chamber's volume is {100 * excess:.0f} % more than in an outline that keeps its shape"
+    )
     return [Cause("floor bulging", None, text, direction=None)]
 
 
-def _of_force(case: Case, row: Row, force: float) -> list[Cause]:
-    """What sets F of a blocked tip apart from M/L_f of a section held straight."""
+def _of_force(case: Case, row: col.Row, force: float) -> list[Cause]:
+    """What sets F of a blocked tip apart from M/L_f of a section kept straight."""
     lever, pressure = lever_arm(case), 1e-3 * row[col.PRESSURE]
     kappa, reach = force * lever / pressure, row[col.TIP_FORCE] * lever / pressure
     curves, found = analytic_curves(case), []
@@ -181,7 +182,7 @@ def _of_force(case: Case, row: Row, force: float) -> list[Cause]:
         found.append(Cause("acting area", 100 * (wide / kappa - 1), text))
     rotation = row.get(col.ANGLE) or 0.0
     if abs(rotation) > _ROTATED:
-        text = f"the tip is guided, not held: the section z = L turns by {rotation:.1f}°"
+        text = f"the tip is guided, not clamped: the section z = L turns by {rotation:.1f}°"
         found.append(Cause("guided tip", None, text, -1))
     sheath, wall = case.materials.sheath, convert.material(case.materials.wall)
     if sheath is not None and tip_strips(case.effects) is not None:

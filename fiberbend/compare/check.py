@@ -20,10 +20,10 @@ from analytic.stress import Floats
 from fiberbend import columns as col
 from fiberbend.case.case import Case
 from fiberbend.case.measured import Measured
-from fiberbend.compare import causes as why
+from fiberbend.compare.causes import Cause, find_causes
 from fiberbend.compare.others import (
-    Other,
-    Straight,
+    OtherModel,
+    StraightSection,
     bending_models,
     force_models,
     through_rows,
@@ -33,8 +33,6 @@ from fiberbend.models.closed_form import dimensions, no_analytic
 from fiberbend.models.model import ModelKind
 from fiberbend.models.resolution import BULGING_PITCH, bulging
 from fiberbend.models.result import Curve
-
-Row = dict[str, Any]
 
 PAPER_PRESSURE = 11.0
 PAPER_FORCE = 10.5
@@ -57,7 +55,7 @@ class Comparison:
         label: as a message calls it.
         percent: the greatest difference, signed, in per cent of the other one.
         at: where, such as "180.0°".
-        band: percent within which they are expected to agree; None where that cannot be said.
+        band: percent within which they are expected to agree; None where that is not known.
         causes: estimates of what sets them apart there.
     """
 
@@ -66,7 +64,7 @@ class Comparison:
     percent: float
     at: str
     band: float | None
-    causes: tuple[why.Cause, ...] = ()
+    causes: tuple[Cause, ...] = ()
 
     @property
     def beyond(self) -> bool:
@@ -74,12 +72,12 @@ class Comparison:
         return self.band is not None and abs(self.percent) > self.band
 
     @property
-    def likely(self) -> list[why.Cause]:
+    def likely(self) -> list[Cause]:
         """The causes that account for a good part of the difference."""
         return [cause for cause in self.causes if cause.explains(self.percent)]
 
     def entry(self) -> dict[str, Any]:
-        """As run.json holds it."""
+        """Its entry of run.json."""
         entry: dict[str, Any] = {
             "greatest_percent": round(self.percent, 3),
             "at": self.at,
@@ -93,7 +91,7 @@ class Comparison:
         return entry
 
     def line(self) -> str:
-        """As a message tells it."""
+        """Its line for the user."""
         text = f"run against {self.label}: {self.percent:+.1f} % at {self.at}"
         if self.band is None:
             return text
@@ -117,7 +115,7 @@ class Check:
         calibration: effective modulus fitted to measured angles, or why there is none.
     """
 
-    columns: tuple[Row, ...]
+    columns: tuple[dict[str, Any], ...]
     comparisons: tuple[Comparison, ...] = ()
     angles: Overlay | None = None
     forces: Overlay | None = None
@@ -125,12 +123,12 @@ class Check:
     remarks: tuple[str, ...] = ()
     calibration: Mapping[str, Any] | None = None
 
-    def beside(self, rows: Sequence[Row]) -> list[Row]:
+    def beside(self, rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
         """The rows with the columns of the other models at their ends."""
         return [row | more for row, more in zip(rows, self.columns, strict=True)]
 
     def entry(self) -> dict[str, Any]:
-        """What run.json holds under 'crosscheck'."""
+        """The entry 'crosscheck' of run.json."""
         entry: dict[str, Any] = {c.name: c.entry() for c in self.comparisons}
         extra = {"missing": self.missing, "remarks": self.remarks, "calibration": self.calibration}
         return entry | {key: value for key, value in extra.items() if value}
@@ -157,10 +155,10 @@ class Check:
 def crosscheck(
     case: Case,
     model: ModelKind,
-    rows: Sequence[Row],
+    rows: Sequence[dict[str, Any]],
     section: Curve | None = None,
     measured: Measured | None = None,
-    straight: Straight | None = None,
+    straight: StraightSection | None = None,
     no_section: str = "",
 ) -> Check:
     """Put a run beside the other models of its case, and beside measured points.
@@ -171,7 +169,7 @@ def crosscheck(
         rows: its history, from rest on.
         section: P(θ) of the section model, for free bending.
         measured: measured points.
-        straight: the section held straight, for a blocked tip.
+        straight: the section kept straight, for a blocked tip.
         no_section: why the section model is not given, for the user.
     """
     nothing = Check(tuple({} for _ in rows))
@@ -190,7 +188,7 @@ def crosscheck(
     if blocked and any(effect.touches() for effect in case.effects):
         least = _FULL * np.abs(at).max()
     counts = np.abs(at) > least
-    added: list[Row] = [{} for _ in rows]
+    added: list[dict[str, Any]] = [{} for _ in rows]
     lines, comparisons = [], []
     for other in others:
         values = other.value(at)
@@ -205,14 +203,14 @@ def crosscheck(
             limit, causes = None, []
             if not alone and not (other.line and model.elements() is None):
                 limit = _limit(case, model, other, blocked)
-                causes = why.find(case, model, rows[index], other, float(values[index]))
+                causes = find_causes(case, model, rows[index], other, float(values[index]))
             comparisons.append(
                 Comparison(other.name, other.label, percent, where, limit, tuple(causes))
             )
     points: tuple[Points, ...] = ()
     remarks = [] if blocked else _unresolved(case, model, rows, [o.name for o in others])
     if alone:
-        remarks.append(f"{alone} in this run alone: its differences are shown, not judged")
+        remarks.append(f"{alone} in this run alone: its differences are shown without a band")
     if measured is not None:
         points = (Points(f"measured ({measured.source})", *measured.shown()),)
         comparison, outside = _beside_measured(rows, columns, points[0], blocked)
@@ -249,14 +247,14 @@ def band(case: Case, model: ModelKind) -> float:
     return round(max(model.agreement, _SMEARED + _BULGING * scale), 2)
 
 
-def _limit(case: Case, model: ModelKind, other: Other, blocked: bool) -> float:
+def _limit(case: Case, model: ModelKind, other: OtherModel, blocked: bool) -> float:
     if other.name == "section" and not (blocked and model.ends):
         return band(case, model)
     return PAPER_FORCE if blocked else PAPER_PRESSURE
 
 
 def _unresolved(
-    case: Case, model: ModelKind, rows: Sequence[Row], others: Sequence[str]
+    case: Case, model: ModelKind, rows: Sequence[dict[str, Any]], others: Sequence[str]
 ) -> list[str]:
     """Agreement with a smeared winding proves nothing where a discrete one is not resolved."""
     turns = case.turns
@@ -274,7 +272,7 @@ def _unresolved(
 
 
 def _beside_measured(
-    rows: Sequence[Row], columns: tuple[str, str], points: Points, blocked: bool
+    rows: Sequence[dict[str, Any]], columns: tuple[str, str], points: Points, blocked: bool
 ) -> tuple[Comparison | None, str]:
     """The run at the measured points, and how many of them lie beyond it."""
     at, target = (points.across, points.up) if blocked else (points.up, points.across)
@@ -306,19 +304,19 @@ def _calibration(case: Case, measured: Measured) -> dict[str, Any]:
     }
 
 
-def _column(rows: Sequence[Row], name: str) -> Floats:
+def _column(rows: Sequence[dict[str, Any]], name: str) -> Floats:
     values = [row.get(name) for row in rows]
     return np.array([np.nan if value is None else value for value in values], dtype=float)
 
 
-def _drawn(other: Other, at: Floats, blocked: bool) -> list[Line]:
+def _drawn(other: OtherModel, at: Floats, blocked: bool) -> list[Line]:
     """The other model's curve over the range of the run."""
-    way = np.linspace(at.min(), at.max(), 121)
-    values = other.value(way)
+    points = np.linspace(at.min(), at.max(), 121)
+    values = other.value(points)
     known = ~np.isnan(values)
-    if np.ptp(way) == 0 or known.sum() < 2:
+    if np.ptp(points) == 0 or known.sum() < 2:
         return []
-    across, up = (way, values) if blocked else (values, way)
+    across, up = (points, values) if blocked else (values, points)
     return [Line(other.name, other.label, across[known], up[known])]
 
 

@@ -22,16 +22,16 @@ _LABELS = {
     "winding": "analytic (area to winding)",
     "paper": "analytic (paper's μ̄)",
 }
-_SLACK = 1e-6
+_TOLERANCE = 1e-6
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Straight:
-    """A section that is held straight, its axial stretch free.
+class StraightSection:
+    """A section that is kept straight, its axial stretch free.
 
     Attributes:
         pressure: rising pressures from zero on, (n,), MPa.
-        moment: moments about the floor's lower face that hold it, (n,), N mm.
+        moment: moments about the floor's lower face that keep it straight, (n,), N mm.
     """
 
     pressure: Floats
@@ -39,7 +39,7 @@ class Straight:
 
 
 @dataclasses.dataclass(frozen=True)
-class Other:
+class OtherModel:
     """A model beside the run.
 
     Attributes:
@@ -56,7 +56,7 @@ class Other:
     line: str = ""
 
 
-def bending_models(case: Case, model: str, section: Curve | None) -> list[Other]:
+def bending_models(case: Case, model: str, section: Curve | None) -> list[OtherModel]:
     """P(θ) of the other models of a case that bends freely.
 
     Args:
@@ -66,22 +66,24 @@ def bending_models(case: Case, model: str, section: Curve | None) -> list[Other]
     """
     others = []
     if section is not None:
-        others.append(Other("section", "section model", _through_curve(section)))
+        others.append(OtherModel("section", "section model", _through_curve(section)))
     for line, closed in analytic_curves(case).items():
-        others.append(Other(ANALYTIC[line], _LABELS[line], _closed(closed), line))
+        others.append(OtherModel(ANALYTIC[line], _LABELS[line], _closed(closed), line))
     return [other for other in others if other.name != model]
 
 
-def force_models(case: Case, model: str, straight: Straight | None) -> list[Other]:
+def force_models(case: Case, model: str, straight: StraightSection | None) -> list[OtherModel]:
     """F(P) of the other models of a case whose tip is blocked; see `bending_models`."""
     lever, others = lever_arm(case), []
     if straight is not None:
-        others.append(Other("section", "section model (M/L_f)", _held(straight, lever)))
+        others.append(
+            OtherModel("section", "section model (M/L_f)", _straight_force(straight, lever))
+        )
     curves = analytic_curves(case)
     if curves:
         others += [
-            Other("analytic", "κP/L_f", _force(curves["zero-fit"], lever), "zero-fit"),
-            Other(
+            OtherModel("analytic", "κP/L_f", _force(curves["zero-fit"], lever), "zero-fit"),
+            OtherModel(
                 "analytic_winding",
                 "κP/L_f (area to winding)",
                 _force(curves["winding"], lever),
@@ -94,7 +96,13 @@ def force_models(case: Case, model: str, straight: Straight | None) -> list[Othe
 def through_rows(
     rows: Sequence[dict[str, Any]], key: str, value: str
 ) -> Callable[[Floats], Floats]:
-    """A smooth curve of a column over another one; nan outside, and where there are no two rows."""
+    """A smooth curve of a column over another one; nan outside, and where there are no two rows.
+
+    Args:
+        rows: rows of history.csv.
+        key: the column of the arguments.
+        value: the column of the values.
+    """
     pairs = {row[key]: row[value] for row in rows if row.get(value) is not None}
     at = np.array(sorted(pairs))
     if len(at) < 2:
@@ -109,7 +117,7 @@ def _through_curve(curve: Curve) -> Callable[[Floats], Floats]:
     spline = CubicSpline(curve.angle[order], 1e3 * curve.pressure[order])
 
     def pressure(degrees: Floats) -> Floats:
-        inside = (degrees >= low - _SLACK) & (degrees <= high + _SLACK)
+        inside = (degrees >= low - _TOLERANCE) & (degrees <= high + _TOLERANCE)
         return np.where(inside, spline(np.radians(np.clip(degrees, low, high))), np.nan)
 
     return pressure
@@ -119,7 +127,7 @@ def _closed(closed: Hemicircle) -> Callable[[Floats], Floats]:
     return lambda degrees: 1e3 * closed.pressure(np.radians(degrees))
 
 
-def _held(straight: Straight, lever: float) -> Callable[[Floats], Floats]:
+def _straight_force(straight: StraightSection, lever: float) -> Callable[[Floats], Floats]:
     moment = PchipInterpolator(straight.pressure, straight.moment, extrapolate=False)
     return lambda kpa: np.asarray(moment(1e-3 * kpa) / lever)
 

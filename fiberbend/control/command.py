@@ -28,7 +28,7 @@ from fiberbend.control.export import (
     trace_csv,
 )
 from fiberbend.control.result import ControlResult, FilterFit
-from fiberbend.control.settings import Settings, refusals
+from fiberbend.control.settings import ControlSettings, refusals
 from fiberbend.models.closed_form import analytic_curves, no_analytic
 from fiberbend.running import launch
 from fiberbend.running.folder import RunFolder
@@ -38,7 +38,7 @@ CONTROL_FILE = "control.json"
 
 
 def run_control(
-    case: Case, settings: Settings, out: Path | None = None, overwrite: bool = False
+    case: Case, settings: ControlSettings, out: Path | None = None, overwrite: bool = False
 ) -> ControlResult:
     """Run a case's actuator through steps and a sine under feedback control; collective.
 
@@ -79,7 +79,7 @@ def run_control(
     return result
 
 
-def plant_curve(case: Case, settings: Settings) -> tuple[ActuatorCurve, str]:
+def plant_curve(case: Case, settings: ControlSettings) -> tuple[ActuatorCurve, str]:
     """The actuator's own P, θ and V: of the section model, or of eq. (19) with the paper's μ̄.
 
     Returns:
@@ -96,11 +96,11 @@ def plant_curve(case: Case, settings: Settings) -> tuple[ActuatorCurve, str]:
     return curve, curve.reason
 
 
-def fit_filter(case: Case, curve: ActuatorCurve, settings: Settings) -> FilterFit:
+def fit_filter(case: Case, curve: ActuatorCurve, settings: ControlSettings) -> FilterFit:
     """The filter that the settings ask for, μ̄ fitted to the plant's curve as in section IV-B.
 
     Raises:
-        ValueError: no filter can be made; says why.
+        ValueError: no filter can be made.
     """
     factor = 1 + settings.mismatch
     modulus = error = math.nan

@@ -152,6 +152,6 @@ def _kilopascals(pressure: float) -> str:
 
 
 def _comment(text: str) -> str:
-    """Text that a comment of plain ASCII can hold."""
+    """Text as plain ASCII for a comment."""
     plain = text.replace("μ̄", "mu").replace("θ", "theta").replace("°", " deg").replace("±", "+/-")
     return " ".join(plain.encode("ascii", "replace").decode().replace("*/", "* /").split())

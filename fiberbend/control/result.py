@@ -12,7 +12,7 @@ from analytic.control.filter import AngleFilter, LinearTable
 from analytic.control.loop import Trace
 from analytic.control.metrics import PAPER, SineMetrics, StepMetrics
 from fiberbend.control.export import shown_time
-from fiberbend.control.settings import Settings
+from fiberbend.control.settings import ControlSettings
 from fiberbend.version import __version__
 
 
@@ -49,7 +49,7 @@ class ControlResult:
         sine_metrics: measures of the second.
     """
 
-    settings: Settings
+    settings: ControlSettings
     fit: FilterFit
     table: LinearTable
     steps: Trace

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclasses.dataclass(frozen=True)
-class Settings:
+class ControlSettings:
     """What a loop is made of, beside the case.
 
     Attributes:
@@ -60,7 +60,7 @@ def _fraction(text: Any) -> float:
     return fraction
 
 
-# Their signs and sizes are for the parts of the loop to judge, which know what they mean.
+# Signs and sizes are checked by the parts of the loop.
 _Pressure = Annotated[float, Quantity("pressure", "any")]
 _Modulus = Annotated[float, Quantity("modulus", "any")]
 _Conductance = Annotated[float, Quantity("conductance", "any")]
@@ -131,7 +131,7 @@ class Options(Spec):
     """Of the sensor's noise."""
 
 
-def read_settings(given: Mapping[str, Any]) -> Settings:
+def read_settings(given: Mapping[str, Any]) -> ControlSettings:
     """Read the options of a loop.
 
     Args:
@@ -156,7 +156,7 @@ def read_settings(given: Mapping[str, Any]) -> Settings:
         if options.modulus is not None and options.modulus <= 0:
             raise ValueError(f"modulus: a positive number expected, not {options.modulus}")
         zone = DeadZone(options.dead_zone_divisor, options.dead_zone)
-        return Settings(
+        return ControlSettings(
             plant=options.plant,
             filter=options.filter,
             modulus=options.modulus,
@@ -183,7 +183,7 @@ def refusals(ended: str = "") -> Iterator[None]:
     """Turn a refusal, 'name: what is wrong', into wrong input.
 
     Args:
-        ended: why the plant's curve ends early, told where the loop needs more of it.
+        ended: why the plant's curve ends early, added where the loop needs more of it.
     """
     try:
         yield

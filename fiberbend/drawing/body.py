@@ -12,8 +12,8 @@ from fiberbend.drawing.page import Page, colormap, nice_above
 from fiberbend.drawing.props import Props
 from fiberbend.drawing.stage import (
     FROM_THE_SIDE,
+    Drawable,
     Image,
-    Layer,
     Stage,
     frame,
 )
@@ -143,7 +143,7 @@ class Album:
             skin = self._props.surface(self._skin, state, self.scenery.mesh.half)
             values = self._skin.interpolate(self._strain[number])
             skin["strain"] = np.resize(values, skin.n_points)
-            layers = [Layer(skin, scalars="strain"), *self._props.threads(state)]
+            layers = [Drawable(skin, scalars="strain"), *self._props.threads(state)]
             self._images[number] = self._stage.draw(layers, self._view, self._limits, colormap())
         return self._images[number]
 

@@ -143,9 +143,9 @@ def plot_tension(
     axes.set_ylim(min(low, 0.0), high + 0.06 * (high - low))
     axes.axhline(0.0, color="0.5", linewidth=0.8)
     _name_pieces(axes, actuator, scenery.mesh.half)
-    way = "to the middle of the floor" if scenery.mesh.half else "once around"
+    extent = "to the middle of the floor" if scenery.mesh.half else "once around"
     page.text(0.5, 0.95, f"{scenery.title}: tension of the fiber", ha="center", fontsize=15)
-    axes.set_xlabel(f"distance along the outline from the crown {way} (mm)", fontsize=13)
+    axes.set_xlabel(f"distance along the outline from the crown {extent} (mm)", fontsize=13)
     axes.set_ylabel("axial force (N)", fontsize=13)
     strain = axes.secondary_yaxis(
         "right", functions=(lambda n: 100 * n / stiffness, lambda e: e * stiffness / 100)
@@ -191,7 +191,7 @@ def _name_pieces(axes: Any, actuator: Actuator, half: bool) -> None:
 def tension_along(scenery: Scenery, state: Snapshot, actuator: Actuator) -> tuple[Floats, Floats]:
     """Tension of a whole fiber by each line of its ribbon, as a running mean.
 
-    A segment that an element's face cuts off short says little by itself.
+    The force of a segment that an element's face cuts short is no mean by itself.
 
     Args:
         scenery: of a cell, with fibers that form lines.

@@ -1,13 +1,13 @@
 """Curves of a run: bending angle and tip force against pressure, and the path of the tip.
 
-Rows are those of history.csv; what a row does not hold is left out.
+Rows are those of history.csv; what a row does not have is left out.
 """
 
 from __future__ import annotations
 
 import functools
 import textwrap
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -22,8 +22,6 @@ from fiberbend.drawing.overlay import (
 from fiberbend.drawing.page import figure, save
 from fiberbend.states.snapshot import Target, Write
 from geometry.mesh.data import Floats
-
-Row = Mapping[str, float | None]
 
 SIZE = (1000, 700)
 """Width and height of a plot in pixels."""
@@ -48,7 +46,7 @@ _FORCE = (col.PRESSURE, col.TIP_FORCE)
 
 
 def plot_pressure_angle(
-    rows: Sequence[Row],
+    rows: Sequence[col.Row],
     target: Target,
     angles: Sequence[float] = (),
     title: str = "",
@@ -68,7 +66,7 @@ def plot_pressure_angle(
         name: of the run's own curve.
 
     Raises:
-        ValueError: no row holds both values.
+        ValueError: no row has both values.
     """
     data = _columns(rows, _ANGLE)
     page, axes = _axes(title, reason, "pressure P (kPa)", "bending angle θ (°)")
@@ -85,7 +83,7 @@ def plot_pressure_angle(
 
 
 def plot_tip_path(
-    rows: Sequence[Row], target: Target, title: str = "", reason: str | None = None
+    rows: Sequence[col.Row], target: Target, title: str = "", reason: str | None = None
 ) -> None:
     """Path of the tip in the plane of bending, z to the right, y up, one scale.
 
@@ -98,7 +96,7 @@ def plot_tip_path(
         reason: why the run ended early, or None.
 
     Raises:
-        ValueError: no row holds all three values.
+        ValueError: no row has all three values.
     """
     z, y, pressure = _columns(rows, _PATH)
     page, axes = _axes(title, reason, "z (mm)", "y (mm)")
@@ -117,7 +115,7 @@ def plot_tip_path(
 
 
 def plot_tip_force(
-    rows: Sequence[Row],
+    rows: Sequence[col.Row],
     target: Target,
     title: str = "",
     reason: str | None = None,
@@ -135,7 +133,7 @@ def plot_tip_force(
         name: of the run's own curve.
 
     Raises:
-        ValueError: no row holds both values.
+        ValueError: no row has both values.
     """
     data = _columns(rows, _FORCE)
     page, axes = _axes(title, reason, "pressure P (kPa)", "tip force (N)")
@@ -146,7 +144,7 @@ def plot_tip_force(
 
 
 def draw_plots(
-    rows: Sequence[Row],
+    rows: Sequence[col.Row],
     write: Write,
     angles: Sequence[float] = (),
     title: str = "",
@@ -185,27 +183,27 @@ def draw_plots(
     return drawn
 
 
-def _complete(row: Row, columns: Sequence[str]) -> bool:
+def _complete(row: col.Row, columns: Sequence[str]) -> bool:
     return all(row.get(name) is not None for name in columns)
 
 
-def _columns(rows: Sequence[Row], names: Sequence[str]) -> list[Floats]:
+def _columns(rows: Sequence[col.Row], names: Sequence[str]) -> list[Floats]:
     full = [[row[name] for name in names] for row in rows if _complete(row, names)]
     if not full:
-        raise ValueError(f"no row of the history holds {', '.join(names)}")
+        raise ValueError(f"no row of the history has {', '.join(names)}")
     return list(np.array(full, dtype=float).T)
 
 
 def _smooth(z: Floats, y: Floats) -> tuple[Floats, Floats]:
-    """A spline through the points, its parameter their distance along the way."""
+    """A spline through the points, its parameter their distance along the path."""
     from scipy.interpolate import CubicSpline
 
-    way = np.r_[0.0, np.cumsum(np.hypot(np.diff(z), np.diff(y)))]
-    kept = np.r_[True, np.diff(way) > 1e-9]
+    path = np.r_[0.0, np.cumsum(np.hypot(np.diff(z), np.diff(y)))]
+    kept = np.r_[True, np.diff(path) > 1e-9]
     if kept.sum() < 3:
         return z, y
-    fine = np.linspace(0.0, way[-1], 400)
-    curve = CubicSpline(way[kept], np.column_stack([z, y])[kept])(fine)
+    fine = np.linspace(0.0, path[-1], 400)
+    curve = CubicSpline(path[kept], np.column_stack([z, y])[kept])(fine)
     return curve[:, 0], curve[:, 1]
 
 

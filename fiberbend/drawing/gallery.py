@@ -11,8 +11,8 @@ import numpy as np
 from fiberbend.drawing.page import Page, colormap
 from fiberbend.drawing.props import Props
 from fiberbend.drawing.stage import (
+    Drawable,
     Image,
-    Layer,
     Stage,
     View,
     frame,
@@ -82,7 +82,7 @@ class Gallery:
             for state, value, view in zip(self._states, values, views, strict=True):
                 surface = self._props.surface(self.skin, state, self._mesh.half)
                 surface["value"] = np.tile(value, 2 if self._mesh.half else 1)
-                layers = [Layer(surface, scalars="value"), *self._props.threads(state)]
+                layers = [Drawable(surface, scalars="value"), *self._props.threads(state)]
                 view = dataclasses.replace(view, width=width)
                 images.append(stage.draw(layers, view, limits, colors or colormap()))
         finally:

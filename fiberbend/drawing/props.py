@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fiberbend.drawing.page import COLORS
-from fiberbend.drawing.stage import Layer
+from fiberbend.drawing.stage import Drawable
 from fiberbend.drawing.tessellation import Tessellation, boundary_facets, on_mirror
 from fiberbend.states.fiber_lines import fiber_lines
 from fiberbend.states.snapshot import Scenery, Snapshot
@@ -57,7 +57,7 @@ class Props:
         state: Snapshot | None = None,
         open_at_mirror: bool = False,
         level: int = 3,
-    ) -> list[Layer]:
+    ) -> list[Drawable]:
         """The surface of some cells, one layer per region."""
         mesh, layers = self.mesh, []
         for name in mesh.regions:
@@ -66,7 +66,7 @@ class Props:
             if len(pairs):
                 skin = Tessellation(mesh, pairs, level)
                 data = self.surface(skin, state, mesh.half and not open_at_mirror)
-                layers.append(Layer(data, color=COLORS.get(name, "#999999")))
+                layers.append(Drawable(data, color=COLORS.get(name, "#999999")))
         return layers
 
     def surface(self, skin: Tessellation, state: Snapshot | None, mirror: bool) -> Any:
@@ -92,7 +92,7 @@ class Props:
         state: Snapshot | None = None,
         low: float = -np.inf,
         high: float = np.inf,
-    ) -> list[Layer]:
+    ) -> list[Drawable]:
         """The fibers between two z, all around the body."""
         mesh, fibers = self.mesh, self.fibers
         if fibers is None:
@@ -104,7 +104,7 @@ class Props:
         lines = [fiber_lines(mesh, _select(fibers, kept), moved)]
         if mesh.half:
             lines.append(lines[0].reflect((1, 0, 0)))
-        return [Layer(data, color=COLORS["fiber"], radius=_FIBER_RADIUS) for data in lines]
+        return [Drawable(data, color=COLORS["fiber"], radius=_FIBER_RADIUS) for data in lines]
 
     def _region(self, name: str) -> Mask:
         number = self.mesh.regions.get(name, -1)

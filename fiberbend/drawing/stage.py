@@ -25,7 +25,7 @@ class PictureError(RuntimeError):
 
 
 @dataclasses.dataclass(frozen=True)
-class Layer:
+class Drawable:
     """One thing to draw.
 
     Attributes:
@@ -57,7 +57,7 @@ class View:
 
 
 def frame(points: Floats, toward: tuple[float, float, float], aspect: float) -> View:
-    """The view that just holds some points.
+    """The least view that contains some points.
 
     Args:
         points: (n, 3), mm.
@@ -100,7 +100,7 @@ class Stage:
 
     def draw(
         self,
-        layers: Sequence[Layer],
+        layers: Sequence[Drawable],
         view: View,
         limits: tuple[float, float] = (0.0, 1.0),
         colors: Any = "viridis",

@@ -30,7 +30,7 @@ def boundary_facets(mesh: MeshData, cells: NDArray[np.bool_]) -> Ints:
     chosen = np.flatnonzero(cells)
     vertices = vertex_positions(mesh.cell_type)[np.array(FACET_VERTICES[mesh.cell_type])]
     corners = np.sort(mesh.cells[chosen[:, None, None], vertices], axis=2)
-    # three corners already tell facets of a conforming mesh apart
+    # three corners identify a facet of a conforming mesh
     first, second, third = corners.reshape(-1, corners.shape[2]).T[:3]
     order = np.lexsort((third, second, first))
     ordered = np.column_stack([first, second, third])[order]

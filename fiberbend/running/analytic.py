@@ -40,11 +40,11 @@ def run_analytic(
     Args:
         case: a case that `no_analytic` has no objection to.
         folder: where history.csv, run.json and the plots go, or None.
-        progress: what is told meanwhile.
+        progress: reports to the user.
         section: P(θ) of the section model, to be put beside it.
 
     Raises:
-        ValueError: the closed form does not hold the case; says why.
+        ValueError: the closed form does not support the case.
     """
     why = no_analytic(case)
     if why is not None:
@@ -119,7 +119,7 @@ def _row(step: int, pressure: float, angle: float, case: Case, model: Hemicircle
 
 
 def _blocked_rows(case: Case, model: Hemicircle) -> list[dict[str, Any]]:
-    """Held straight: eq. (20)."""
+    """Kept straight: eq. (20)."""
     load = case.inflation
     assert load is not None
     assert load.to is not None
@@ -167,7 +167,7 @@ def _free_rows(case: Case, model: Hemicircle) -> tuple[list[dict[str, Any]], str
 
 
 def _angle_at(model: Hemicircle, pressure: float) -> tuple[float, str]:
-    """The angle that a pressure holds, and why it is not reached, or nothing.
+    """The angle at a pressure, and why it is not reached, or nothing.
 
     Unlike `Hemicircle.angle` it goes as far as it can where the pressure is not reached.
     """

@@ -1,4 +1,4 @@
-"""How a march meets obstacles: where its steps end, and where the next ones start from."""
+"""Increment control at obstacles: where steps end, and from which state the next ones start."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from fem.scene import Scene
 from fem.solver.newton import Outcome
 
 DEPTH = 0.05
-"""A step to an obstacle aims so far beyond its surface, as a share of the way there."""
+"""A step to an obstacle aims so far beyond its surface, as a share of the distance."""
 
 
 class Approach(Hook):
-    """Leads a march to its obstacles and along them.
+    """Increment control of a march toward its obstacles and along them.
 
     - A step that would run into an obstacle ends where touch is foreseen: deep inside, a step of
       Newton's method flattens all that lies there onto the surface.
     - Touch and lift-off turn the path: the next step starts from the linear response.
     - While something touches, displacements are extrapolated as they are. They stay on a plane; in
       frames that turn with the body they leave it by more than the depth at which it carries, and
-      Newton's method starts from a body that nothing holds.
+      Newton's method starts from a body without contact.
 
     Args:
         scene: the scene.
@@ -53,15 +53,15 @@ class Approach(Hook):
             self._usual = None
             return
         driven = state.measures[ramp.key] - earlier.measures[ramp.key]
-        ways = [
+        increments = [
             gap / (former[name] - gap) * abs(driven)
             for name, gap in gaps.items()
             if 0 < gap < former[name]
         ]
-        way = (1 + DEPTH) * min(ways, default=float("inf"))
-        if way < position.increment:
+        to_touch = (1 + DEPTH) * min(increments, default=float("inf"))
+        if to_touch < position.increment:
             self._usual = self._usual or position.increment
-            march.limit_increment(way)
+            march.limit_increment(to_touch)
 
 
 def _touching(gaps: dict[str, float]) -> list[str]:

@@ -23,13 +23,13 @@ from fiberbend.models.parts import SceneParts, build
 from fiberbend.running.approach import Approach
 from geometry.mesh.data import MeshData
 
-STEERED_TURN = math.radians(90)
-"""Greatest change of the angle in a step that leans on the section, unless the case says."""
-STEERED_FIRST = math.radians(15)
-STEERED_GROWTH = 3.0
+GUIDED_TURN = math.radians(90)
+"""Greatest change of the angle in a step guided by the section, by default."""
+GUIDED_FIRST = math.radians(15)
+GUIDED_GROWTH = 3.0
 
-Lead = Callable[[Scene, Frames], Guide | None]
-"""Makes the shapes on which a body's march leans; None of it where there are none."""
+GuideFactory = Callable[[Scene, Frames], Guide | None]
+"""Makes the guide of a body's march; None where there is none."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -53,14 +53,16 @@ class Assembly:
     ramps: list[Ramp]
 
 
-def assemble(case: Case, mesh: MeshData, comm: MPI.Comm, lead: Lead | None = None) -> Assembly:
+def assemble(
+    case: Case, mesh: MeshData, comm: MPI.Comm, make_guide: GuideFactory | None = None
+) -> Assembly:
     """Compile a case and put it at rest; collective.
 
     Args:
         case: the case.
         mesh: the mesh of its model.
         comm: communicator.
-        lead: makes the guide of a body; without it there is none.
+        make_guide: makes the guide of a body; None for no guide.
     """
     model = meshed(case)
     parts = build(case, mesh, model)
@@ -71,7 +73,7 @@ def assemble(case: Case, mesh: MeshData, comm: MPI.Comm, lead: Lead | None = Non
         settings = effect.settings(settings)
     newton = Newton(scene, comm, settings)
     frames = observables.frames
-    guide = None if lead is None or frames is None else lead(scene, frames)
+    guide = None if make_guide is None or frames is None else make_guide(scene, frames)
     march = March(
         scene,
         newton,
@@ -107,10 +109,10 @@ def rules(case: Case, model: MeshedModel, guided: bool) -> Rules:
         found = effect.rules(found, case.straight)
     if not guided:
         return found
-    said = case.solver.max_turn
+    given = case.solver.max_turn
     return dataclasses.replace(
         found,
-        turn=said or STEERED_TURN,
-        first_turn=said or STEERED_FIRST,
-        grow=STEERED_GROWTH,
+        turn=given or GUIDED_TURN,
+        first_turn=given or GUIDED_FIRST,
+        grow=GUIDED_GROWTH,
     )

@@ -56,12 +56,12 @@ class RunFolder:
 
     @classmethod
     def create(cls, path: Path, case: Case, overwrite: bool = False, comm: Any = None) -> RunFolder:
-        """Make a new folder that holds the resolved case; rank 0 decides and all ranks agree.
+        """Make a new folder with the resolved case; rank 0 decides and all ranks agree.
 
         Args:
             path: where.
             case: the case that is run.
-            overwrite: replace a run that is there; a folder that holds no run is never replaced.
+            overwrite: replace a run that is there; a folder without a run is never replaced.
             comm: an mpi4py communicator, or None for one process.
 
         Raises:
@@ -72,6 +72,11 @@ class RunFolder:
     @classmethod
     def resume(cls, path: Path, case: Case, comm: Any = None) -> RunFolder:
         """Open the folder of a run that was interrupted.
+
+        Args:
+            path: the folder.
+            case: the case that is run, equal to that of the folder.
+            comm: an mpi4py communicator, or None for one process.
 
         Raises:
             CaseError: on every rank, if there is no run, or it is a run of another case; names
@@ -120,7 +125,7 @@ class RunFolder:
         """Write history.csv: one row per step, columns beyond `HISTORY_COLUMNS` in row order.
 
         Args:
-            rows: all steps so far; what a row does not hold stays empty.
+            rows: all steps so far; what a row does not have stays empty.
 
         Raises:
             KeyError: a column that the table of columns does not have.

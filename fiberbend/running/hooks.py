@@ -22,7 +22,7 @@ from fiberbend.states.snapshot import Snapshot
 
 
 class Recording(Hook):
-    """Keeps what a user reads of every step, says it, and leaves a checkpoint.
+    """Keeps what a user reads of every step, reports it, and leaves a checkpoint.
 
     Args:
         case: the case.
@@ -30,7 +30,7 @@ class Recording(Hook):
         archive: moves states to rank 0.
         recorder: the rows.
         folder: where snapshots and the checkpoint go, or None.
-        progress: what is told meanwhile.
+        progress: reports to the user.
         resumes: leave a checkpoint after every step.
         snapshots: those of a run that is resumed.
 
@@ -75,11 +75,11 @@ class Recording(Hook):
             restart.save(self._folder, self._archive, march.position, self._recorder.rows)
 
     def after_cutback(self, march: Marching, reason: str) -> None:
-        """Say so."""
+        """Report it."""
         self._progress.message(f"increment cut back: {reason}")
 
     def warn(self, lines: Sequence[str]) -> None:
-        """Say each line once."""
+        """Report each line once."""
         for text in lines:
             if text not in self.warnings:
                 self.warnings.append(text)

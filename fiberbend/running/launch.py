@@ -59,7 +59,7 @@ def start_mpi() -> None:
 
 
 def let_rank_0_speak() -> None:
-    """Hold back the end of another rank: mpirun kills all when the first one ends with an error.
+    """Delay the end of another rank: mpirun kills all when the first one ends with an error.
 
     Rank 0 ends long before the time is up, and mpirun then ends this rank too. Once MPI is up,
     its own end waits for all ranks.
@@ -73,7 +73,7 @@ def say(text: str, stream: TextIO | None = None) -> None:
 
     Args:
         text: the line.
-        stream: where to write, the standard output unless said.
+        stream: where to write, the standard output by default.
     """
     if rank() == 0:
         print(text, file=stream or sys.stdout, flush=True)

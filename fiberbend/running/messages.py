@@ -1,4 +1,4 @@
-"""What is said of limit points and lost stability, in the user's units."""
+"""Messages on limit points and lost stability, in the user's units."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from fem.march.records import Critical, Report
 from fiberbend import columns as col
 
 UNSTABLE_END = (
-    "the end is unstable where every load is held at its value: given the pressure, no actuator "
+    "the end is unstable where every load is kept at its value: given the pressure, no actuator "
     "rests there"
 )
 _COUNT = ("no", "one", "two", "three")
@@ -21,7 +21,7 @@ def critical_points(report: Report, symmetry_factor: float) -> list[dict[str, An
 
     Args:
         report: of the march.
-        symmetry_factor: how many of what is modelled the whole actuator is.
+        symmetry_factor: number of modelled parts that make up the whole actuator.
     """
     return [
         {
@@ -84,7 +84,7 @@ def stopped(report: Report, target: str, beyond: float) -> str:
     Args:
         report: of the march.
         target: what was asked for, with its unit.
-        beyond: so many times the volume at the limit point would have been followed.
+        beyond: multiple of the volume at the limit point to which the path is followed.
     """
     limits = [p for p in report.critical if p.kind == "limit" and p.after > p.before]
     limit = max(limits, key=lambda p: abs(p.value))

@@ -1,4 +1,4 @@
-"""What a run says while it goes on: a bar on a terminal, plain lines elsewhere."""
+"""Progress of a run: a bar on a terminal, plain lines elsewhere."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ class Progress:
         """Start the clock.
 
         Args:
-            quiet: say nothing.
-            stream: where to write, the standard output unless said.
+            quiet: print nothing.
+            stream: where to write, the standard output by default.
             clock: seconds; another one for tests.
         """
         self.wall_s: dict[str, float] = {}
@@ -85,7 +85,7 @@ class Progress:
         )
 
     def message(self, text: str) -> None:
-        """Say something else: a cut-back, a warning."""
+        """Print another line: a cut-back, a warning."""
         self._say(text)
 
     def close(self) -> None:

@@ -7,6 +7,7 @@ import resource
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from fiberbend import columns as col
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
@@ -14,8 +15,6 @@ from fiberbend.models.resolution import winding_remark
 from fiberbend.running import messages
 from fiberbend.running.assembly import Assembly
 from fiberbend.version import __version__
-
-Row = Mapping[str, Any]
 
 
 def versions(*libraries: Mapping[str, str]) -> dict[str, str]:
@@ -41,7 +40,7 @@ def entries(
     ranks: int,
     libraries: Mapping[str, str],
 ) -> dict[str, Any]:
-    """What run.json says of a run of any model, in this order.
+    """Entries of run.json for a run of any model, in this order.
 
     Args:
         status: 'converged', 'stopped' or 'failed'.
@@ -84,7 +83,7 @@ def counted(assembly: Assembly, warnings: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def of_effects(case: Case, rows: Sequence[Row]) -> dict[str, Any]:
+def of_effects(case: Case, rows: Sequence[col.Row]) -> dict[str, Any]:
     """What the effects of a case report of a body, and whether its winding is resolved."""
     found: dict[str, Any] = {"winding": winding_remark(case)}
     for effect in case.effects:

@@ -29,7 +29,7 @@ def draw(
 
     Args:
         folder: where to write.
-        case: says which of them are wanted, and names the requested angles.
+        case: has the outputs that are wanted, and the requested angles.
         scenery: mesh, materials and fibers.
         snapshots: the states to show; none for a run that never converged a step.
         rows: the history.

@@ -43,7 +43,7 @@ def save(
 
 
 def load(folder: RunFolder, archive: Archive) -> Saved | None:
-    """What the checkpoint holds; None where the run was killed before its first step; collective.
+    """The checkpoint; None where the run was killed before its first step; collective.
 
     The scene is left in the last state.
     """

@@ -26,7 +26,7 @@ from fiberbend.running.folder import RunFolder
 from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording, ended
 from fiberbend.running.progress import Progress
-from fiberbend.running.warm import SectionStates, guides, section_states
+from fiberbend.running.warm import SectionStates, section_guides, section_states
 from fiberbend.states.snapshot import Scenery
 from geometry.mesh.data import MeshData
 
@@ -46,7 +46,7 @@ def run_case(
         case: the case.
         out: run folder, or None to write nothing.
         overwrite: replace an earlier run.
-        progress: what is told meanwhile; silent unless given.
+        progress: reports to the user; none by default.
         resume: go on from the checkpoint in the folder.
 
     Raises:
@@ -108,10 +108,10 @@ class _Run:
         section = self._section()
         progress.phase("compile")
 
-        def lead(scene: Scene, frames: Frames) -> Guide | None:
+        def make_guide(scene: Scene, frames: Frames) -> Guide | None:
             return section.guide(scene, frames, case.actuator.length) if section else None
 
-        assembly = assemble(case, mesh, self.comm, lead)
+        assembly = assemble(case, mesh, self.comm, make_guide)
         recorder, recording = self._recording(assembly, again)
         remark = winding_remark(case)
         if remark is not None and "NOT" in remark:
@@ -144,7 +144,7 @@ class _Run:
                 run["wall_s"] = self._wall(assembly)
                 self.folder.write_run(**run)
         self.comm.barrier()
-        self._tell(run, check)
+        self._report(run, check)
         return RunResult(status, reason, rows, run, self.folder.path if self.folder else None)
 
     # --- before the march ----------------------------------------------------------------------
@@ -159,8 +159,8 @@ class _Run:
         return mesh
 
     def _section(self) -> SectionStates | None:
-        """What a body leans on: its section's states, solved on rank 0; collective."""
-        if not (self.model.ends and guides(self.case)):
+        """The section's states that guide a body, solved on rank 0; collective."""
+        if not (self.model.ends and section_guides(self.case)):
             return None
         self.progress.phase("section")
         states: SectionStates | None = _on_rank_0(self.comm, lambda: section_states(self.case))
@@ -193,7 +193,7 @@ class _Run:
     # --- after the march -----------------------------------------------------------------------
 
     def _warn_of_ends(self, status: str, recorder: Recorder, recording: Recording) -> None:
-        """Say what only a whole history shows: jumps, and an end at which nothing would rest."""
+        """Warn of what only a whole history shows: jumps, and an unstable end."""
         jumps, rows = recorder.integrate(), recorder.rows
         lines = [messages.jumped(rows[step - 1], rows[step]) for step in jumps]
         if status == "converged" and rows[-1].get(col.MODES):
@@ -226,8 +226,8 @@ class _Run:
         seconds = {name: round(value, 3) for name, value in self.progress.wall_s.items()}
         return seconds | {f"solve/{k}": round(v, 3) for k, v in assembly.newton.seconds.items()}
 
-    def _tell(self, run: dict[str, Any], check: Check | None) -> None:
-        """Say what the run took, and what stands beside it."""
+    def _report(self, run: dict[str, Any], check: Check | None) -> None:
+        """Report the cost of the run, and the comparison with other models."""
         say = self.progress.message
         for line in check.lines() if check is not None else ():
             say(line)

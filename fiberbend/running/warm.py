@@ -1,4 +1,4 @@
-"""States of the section model from which a body takes its start and its direction."""
+"""States of the section model that guide the march of a body."""
 
 from __future__ import annotations
 
@@ -50,7 +50,13 @@ class SectionStates:
     bending: Curve
 
     def guide(self, scene: Scene, frames: Frames, length: float) -> Guide:
-        """The guide of a body."""
+        """The guide of a body.
+
+        Args:
+            scene: of the body.
+            frames: its rod frames.
+            length: of the chamber, mm.
+        """
         measures = {}
         for name, values in self.measures.items():
             share = scene.body.symmetry_factor if name.startswith("conjugate") else 1.0
@@ -67,7 +73,7 @@ class SectionStates:
         )
 
 
-def guides(case: Case) -> bool:
+def section_guides(case: Case) -> bool:
     """Whether a section bends as the body of a case does, between its ends."""
     return case.inflation is not None and all(effect.follows_section() for effect in case.effects)
 
@@ -76,10 +82,10 @@ def section_states(case: Case) -> SectionStates | None:
     """March the section of a case through the case's load; on one rank.
 
     Args:
-        case: a case for which `guides` holds.
+        case: a case for which `section_guides` is true.
 
     Returns:
-        The states; None where the section does not get anywhere.
+        The states; None where the section has too few converged steps.
     """
     load = next(effect for effect in case.effects if effect.inflation() is not None)
     inflation = load.inflation()

@@ -268,7 +268,7 @@ def _segments(
         **{field.name: getattr(fibers, field.name)[segment] for field in dataclasses.fields(fibers)}
     )
     flip = np.array([1.0, 1.0, -1.0])
-    # a mirrored segment runs the other way, so that all run toward growing z
+    # a mirrored segment is reversed, so that all run toward growing z
     points = np.where(
         flipped[:, None, None], [0.0, 0.0, 1.0] + whole.points[:, ::-1] * flip, whole.points
     )

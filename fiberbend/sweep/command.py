@@ -13,7 +13,7 @@ from fiberbend.running.folder import RunFolder
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.sweep.points import Sweep, read_sweep
 from fiberbend.sweep.store import Store
-from fiberbend.sweep.workers import Crew, Event, work
+from fiberbend.sweep.workers import Event, WorkerPool, work
 
 FAILED = 2
 INTERRUPTED = 130
@@ -57,15 +57,15 @@ def run_sweep(
     say(f"{len(sweep.points)} points, {before} finished before")
     interrupted = False
     try:
-        _solve(sweep, store, jobs, _Teller(len(sweep.points), before, say))
+        _solve(sweep, store, jobs, _EventPrinter(len(sweep.points), before, say))
     except KeyboardInterrupt:
         interrupted = True
     _write(sweep, store, say, pictures=not interrupted)
     return _summary(sweep, store, interrupted, say)
 
 
-class _Teller:
-    """Says what happens, a line a point."""
+class _EventPrinter:
+    """Prints what happens, a line a point."""
 
     def __init__(self, count: int, finished: int, say: Say) -> None:
         self._count, self._finished, self._say = count, finished, say
@@ -84,11 +84,11 @@ class _Teller:
             self._say(f"a worker died in {event['died']} (code {event['code']})")
 
 
-def _solve(sweep: Sweep, store: Store, jobs: int, tell: _Teller) -> None:
+def _solve(sweep: Sweep, store: Store, jobs: int, on_event: _EventPrinter) -> None:
     left = sum(store.result(point) is None for point in sweep.points)
     if min(jobs, left) < 2:
         launch.start_mpi()
-        work(sweep.points, store, tell)
+        work(sweep.points, store, on_event)
         return
 
     def stop(_number: int, _frame: FrameType | None) -> None:
@@ -96,7 +96,7 @@ def _solve(sweep: Sweep, store: Store, jobs: int, tell: _Teller) -> None:
 
     previous = {number: signal.signal(number, stop) for number in (signal.SIGTERM, signal.SIGHUP)}
     try:
-        Crew(sweep.points, store, tell, min(jobs, left)).run()
+        WorkerPool(sweep.points, store, on_event, min(jobs, left)).run()
     finally:
         for number, handler in previous.items():
             signal.signal(number, handler)
@@ -123,9 +123,9 @@ def _write(sweep: Sweep, store: Store, say: Say, pictures: bool) -> None:
     from fiberbend.sweep.trends import as_markdown
 
     rows, folder = collect(sweep, store), RunFolder(store.path)
-    told = quantities(sweep.report, rows)
+    reported = quantities(sweep.report, rows)
     folder.write_text("sweep.csv", as_csv(rows))
-    folder.write_text("trends.md", as_markdown(sweep.columns, rows, told))
+    folder.write_text("trends.md", as_markdown(sweep.columns, rows, reported))
     for index, name in enumerate(sweep.report.history):
         if all(row.get(name) is None for row in rows):
             say(f"report.history.{index}: no point has a column {name}")
@@ -133,7 +133,7 @@ def _write(sweep: Sweep, store: Store, say: Say, pictures: bool) -> None:
     if pictures:
         from fiberbend.sweep.plots import draw
 
-        drawn = [quantity for quantity in told if quantity.kind in sweep.report.maps]
+        drawn = [quantity for quantity in reported if quantity.kind in sweep.report.maps]
         names = draw(
             sweep.title,
             sweep.columns,

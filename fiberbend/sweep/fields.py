@@ -14,11 +14,11 @@ from fiberbend.schema.units import KINDS, parse
 
 _QUANTITY = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)? ?[A-Za-z^/0-9]*")
 _SHORT = 2
-"""A last part of a path with no more letters says too little: to, as, mu, c1, 0."""
+"""A last part of a path with no more letters is no label: to, as, mu, c1, 0."""
 
 
 @dataclasses.dataclass(frozen=True)
-class Column:
+class VariedField:
     """A varied field with its value at every point.
 
     Attributes:
@@ -47,7 +47,7 @@ class Column:
 
 
 def labels(paths: Sequence[str]) -> dict[str, str]:
-    """Shortest ends of paths that say enough, `effects.1.winding.pitch` → pitch."""
+    """Shortest ends of paths that are labels, `effects.1.winding.pitch` → pitch."""
     result: dict[str, str] = {}
     for path in paths:
         parts = path.split(".")
@@ -63,7 +63,7 @@ def labels(paths: Sequence[str]) -> dict[str, str]:
     return result
 
 
-def columns(names: Mapping[str, str], resolved: Sequence[Any]) -> tuple[Column, ...]:
+def columns(names: Mapping[str, str], resolved: Sequence[Any]) -> tuple[VariedField, ...]:
     """The varied fields of a sweep.
 
     Args:
@@ -71,7 +71,7 @@ def columns(names: Mapping[str, str], resolved: Sequence[Any]) -> tuple[Column, 
         resolved: the resolved cases of all points.
     """
     return tuple(
-        _column(path, label, [value_at(case, path) for case in resolved])
+        _varied_field(path, label, [value_at(case, path) for case in resolved])
         for path, label in names.items()
     )
 
@@ -91,7 +91,7 @@ def point_name(values: Mapping[str, Any]) -> str:
 
 
 def _slug(value: Any) -> tuple[str, bool]:
-    """A value as part of a file name, and whether the value can be told from it."""
+    """A value as part of a file name, and whether the value can be read from it."""
     if isinstance(value, str):
         if _QUANTITY.fullmatch(value):
             number, _, unit = value.partition(" ")
@@ -104,20 +104,20 @@ def _slug(value: Any) -> tuple[str, bool]:
     return text[:40], False
 
 
-def _column(path: str, label: str, values: Sequence[Any]) -> Column:
+def _varied_field(path: str, label: str, values: Sequence[Any]) -> VariedField:
     if all(isinstance(value, int | float) and not isinstance(value, bool) for value in values):
-        return Column(path, label, "", tuple(float(value) for value in values))
+        return VariedField(path, label, "", tuple(float(value) for value in values))
     units = [str(v).partition(" ")[2] for v in values if isinstance(v, str)]
     texts = all(isinstance(value, str) and _QUANTITY.fullmatch(value) for value in values)
     if texts and len(set(units)) == 1 and units[0]:
         numbers = tuple(_rounded(float(str(value).partition(" ")[0])) for value in values)
-        return Column(path, label, units[0], numbers)
+        return VariedField(path, label, units[0], numbers)
     for name, kind in KINDS.items() if texts else ():
         if all(unit in (kind.shown, kind.unit) for unit in units):
             factor = parse(f"1 {kind.shown}", name)
             numbers = tuple(_rounded(parse(value, name) / factor) for value in values)
-            return Column(path, label, kind.shown, numbers)
-    return Column(path, label, "", tuple(_plain(value) for value in values))
+            return VariedField(path, label, kind.shown, numbers)
+    return VariedField(path, label, "", tuple(_plain(value) for value in values))
 
 
 def _rounded(number: float) -> float:

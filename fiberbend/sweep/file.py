@@ -1,6 +1,6 @@
-"""What a sweep file says: a base case, the fields that vary, and what is reported.
+"""A sweep file: a base case, the fields that vary, and what is reported.
 
-The models check the file's own values. `fiberbend.sweep.points.read_sweep` is the way in: it also
+The classes check the file's own values. `fiberbend.sweep.points.read_sweep` reads a file: it also
 checks the case of every point, and reports every problem at once.
 """
 
@@ -15,7 +15,7 @@ from pydantic_core import PydanticCustomError
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Angle, Pressure, Spec
 
-Quantity = Literal["pressure", "stretch", "blocked-force"]
+MapKind = Literal["pressure", "stretch", "blocked-force"]
 
 Values = Annotated[tuple[Any, ...], Field(strict=False)]
 
@@ -23,19 +23,19 @@ MOST_POINTS = 10_000
 """A grid with more points is taken for a mistake."""
 
 
-class Report(Spec):
-    """What the table and the maps of a sweep hold beside status, angle and time."""
+class ReportSpec(Spec):
+    """Content of the table and the maps of a sweep beside status, angle and time."""
 
     angles: tuple[Angle, ...] = Field(default=(), strict=False)
     """Bending angles at which the pressure is reported; every point hits them exactly."""
     force_at: Pressure | None = None
-    """Pressure at which the blocked force is reported; none unless said."""
+    """Pressure at which the blocked force is reported; none by default."""
     history: tuple[str, ...] = Field(default=(), strict=False)
     """Further columns of history.csv, at the end of each point."""
-    maps: tuple[Quantity, ...] = Field(
+    maps: tuple[MapKind, ...] = Field(
         default=("pressure", "stretch", "blocked-force"), strict=False
     )
-    """Quantities that are drawn, where the table holds them."""
+    """Quantities that are drawn, where the table has them."""
 
 
 class SweepFile(Spec):
@@ -53,7 +53,7 @@ class SweepFile(Spec):
     """Values of fields that change together: the first of each, the second of each, …"""
     points: tuple[dict[str, Any], ...] = Field(default=(), strict=False)
     """Points one by one, each as dotted paths with values."""
-    report: Report = Report()
+    report: ReportSpec = ReportSpec()
     """What is reported."""
 
     @field_validator("case")

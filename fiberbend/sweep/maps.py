@@ -10,9 +10,9 @@ import numpy as np
 
 from fiberbend.drawing.page import colormap, figure, save
 from fiberbend.states.snapshot import Target
-from fiberbend.sweep.fields import Column
-from fiberbend.sweep.table import Row
-from fiberbend.sweep.trends import spoken
+from fiberbend.sweep.fields import VariedField
+from fiberbend.sweep.table import TableRow
+from fiberbend.sweep.trends import in_words
 from geometry.mesh.data import Floats
 
 PANELS = 4
@@ -27,8 +27,8 @@ _MOST_LABELS = 12
 
 def map_page(
     title: str,
-    axes: Sequence[Column],
-    panels: Mapping[str, Sequence[Row]],
+    axes: Sequence[VariedField],
+    panels: Mapping[str, Sequence[TableRow]],
     lines: Mapping[str, str],
     limits: tuple[float, float],
     label: str,
@@ -71,16 +71,16 @@ def map_page(
     save(page, target)
 
 
-def limits_of(rows: Sequence[Row], names: Sequence[str]) -> tuple[float, float]:
+def limits_of(rows: Sequence[TableRow], names: Sequence[str]) -> tuple[float, float]:
     """Least and greatest value in some columns, never the same."""
     values = [float(row[name]) for row in rows for name in names if row.get(name) is not None]
     low, high = min(values), max(values)
     return (low, high) if high > low else (low - 0.5, high + 0.5)
 
 
-def axis_label(column: Column) -> str:
+def axis_label(column: VariedField) -> str:
     """A field as the label of an axis."""
-    return spoken(column) + (f" ({column.unit})" if column.unit else "")
+    return in_words(column) + (f" ({column.unit})" if column.unit else "")
 
 
 def _box(
@@ -90,7 +90,11 @@ def _box(
 
 
 def _map(
-    axis: Any, axes: Sequence[Column], rows: Sequence[Row], name: str, limits: tuple[float, float]
+    axis: Any,
+    axes: Sequence[VariedField],
+    rows: Sequence[TableRow],
+    name: str,
+    limits: tuple[float, float],
 ) -> None:
     from matplotlib.ticker import MaxNLocator
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from fiberbend.drawing.page import figure, save
 from fiberbend.states.snapshot import Target, Write
-from fiberbend.sweep.fields import Column
+from fiberbend.sweep.fields import VariedField
 from fiberbend.sweep.maps import (
     PANELS,
     axis_label,
@@ -18,7 +18,7 @@ from fiberbend.sweep.maps import (
     map_page,
     spread,
 )
-from fiberbend.sweep.table import Quantity, Row
+from fiberbend.sweep.table import ReportedQuantity, TableRow
 from fiberbend.sweep.trends import Group, described, groups
 
 _COLORS = ("#1f5a99", "#c0392b", "#2e8b57", "#8e5ea2", "#b8860b", "#444444")
@@ -30,9 +30,9 @@ _NAMED = 8
 
 def draw(
     title: str,
-    columns: Sequence[Column],
-    rows: Sequence[Row],
-    quantities: Sequence[Quantity],
+    columns: Sequence[VariedField],
+    rows: Sequence[TableRow],
+    quantities: Sequence[ReportedQuantity],
     write: Write,
 ) -> list[str]:
     """Draw quantities of a sweep.
@@ -61,7 +61,9 @@ def draw(
     return written
 
 
-def _full(columns: Sequence[Column], varied: Sequence[Column], rows: Sequence[Row]) -> bool:
+def _full(
+    columns: Sequence[VariedField], varied: Sequence[VariedField], rows: Sequence[TableRow]
+) -> bool:
     """The points fill the grid of the first two fields for every combination of the others."""
     cells = len({*varied[0].values}) * len({*varied[1].values})
     rest = [column for column in columns if column not in varied[:2]]
@@ -70,14 +72,14 @@ def _full(columns: Sequence[Column], varied: Sequence[Column], rows: Sequence[Ro
 
 def _draw_maps(
     title: str,
-    columns: Sequence[Column],
-    axes: Sequence[Column],
-    rows: Sequence[Row],
-    quantity: Quantity,
+    columns: Sequence[VariedField],
+    axes: Sequence[VariedField],
+    rows: Sequence[TableRow],
+    quantity: ReportedQuantity,
     write: Write,
 ) -> list[str]:
     rest = [column for column in columns if column not in axes]
-    panels: dict[str, list[Row]] = {}
+    panels: dict[str, list[TableRow]] = {}
     for row in rows:
         caption = ", ".join(described(column, row[column.name]) for column in rest)
         panels.setdefault(caption, []).append(row)
@@ -97,10 +99,10 @@ def _draw_maps(
 
 def _curves(
     title: str,
-    columns: Sequence[Column],
-    varied: Sequence[Column],
-    rows: Sequence[Row],
-    quantity: Quantity,
+    columns: Sequence[VariedField],
+    varied: Sequence[VariedField],
+    rows: Sequence[TableRow],
+    quantity: ReportedQuantity,
     target: Target,
 ) -> None:
     """A panel for each field, a curve for each group of points that differ in it alone."""
@@ -132,7 +134,7 @@ def _curves(
     save(page, target)
 
 
-def _legend(page: Any, quantity: Quantity, height: int) -> None:
+def _legend(page: Any, quantity: ReportedQuantity, height: int) -> None:
     """What full and broken lines are, below the panels."""
     from matplotlib.lines import Line2D
 
@@ -150,7 +152,7 @@ def _legend(page: Any, quantity: Quantity, height: int) -> None:
     )
 
 
-def _panel(axis: Any, found: Sequence[Group], quantity: Quantity, several: bool) -> None:
+def _panel(axis: Any, found: Sequence[Group], quantity: ReportedQuantity, several: bool) -> None:
     from matplotlib.lines import Line2D
 
     for g, group in enumerate(found):
@@ -188,6 +190,6 @@ def _panel(axis: Any, found: Sequence[Group], quantity: Quantity, several: bool)
     axis.spines[["top", "right"]].set_visible(False)
 
 
-def _sorted(rows: Sequence[Row], column: Column) -> tuple[Any, tuple[Row, ...]]:
+def _sorted(rows: Sequence[TableRow], column: VariedField) -> tuple[Any, tuple[TableRow, ...]]:
     ordered = sorted(rows, key=lambda row: float(row[column.name]))
     return np.array([row[column.name] for row in ordered], dtype=float), tuple(ordered)

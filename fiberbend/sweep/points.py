@@ -31,12 +31,12 @@ from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.units import parse, show
 from fiberbend.schema.validation import from_pydantic
 from fiberbend.sweep.fields import (
-    Column,
+    VariedField,
     columns,
     labels,
     point_name,
 )
-from fiberbend.sweep.file import Report, SweepFile, contradictions
+from fiberbend.sweep.file import ReportSpec, SweepFile, contradictions
 
 
 @dataclasses.dataclass(frozen=True)
@@ -46,8 +46,8 @@ class Point:
     Attributes:
         name: name of its run folder, made from its values.
         case: the checked case.
-        blocked: the same held straight under the pressure at which the blocked force is reported,
-            or None where the force is not asked for or the model cannot say it.
+        blocked: the same kept straight under the pressure at which the blocked force is reported,
+            or None where the force is not asked for or the model does not give it.
     """
 
     name: str
@@ -75,8 +75,8 @@ class Sweep:
 
     title: str
     points: tuple[Point, ...]
-    columns: tuple[Column, ...]
-    report: Report
+    columns: tuple[VariedField, ...]
+    report: ReportSpec
 
 
 @dataclasses.dataclass(frozen=True)
@@ -85,8 +85,8 @@ class _Setting:
 
     Attributes:
         path: dotted path in the case.
-        value: as YAML holds it.
-        origin: where the sweep file says so, `vary.actuator.radius.2`.
+        value: as YAML gives it.
+        origin: its place in the sweep file, `vary.actuator.radius.2`.
     """
 
     path: str
@@ -148,7 +148,7 @@ class _Base:
     where: str
     changed: tuple[str, ...]
 
-    def told(self, problem: Problem) -> Problem:
+    def reported(self, problem: Problem) -> Problem:
         """A problem of the base case, as one of a sweep."""
         found = located(problem, self.source.lines, self.changed)
         return dataclasses.replace(found, path=f"{self.where}: {found.path}")
@@ -203,7 +203,7 @@ def _settings(file: SweepFile) -> Iterator[tuple[_Setting, ...]]:
         yield tuple(setting for part in combination for setting in part)
 
 
-def _check_all(base: _Base, points: list[tuple[_Setting, ...]], report: Report) -> list[Case]:
+def _check_all(base: _Base, points: list[tuple[_Setting, ...]], report: ReportSpec) -> list[Case]:
     """The case of every point, or all their problems."""
     cases: list[Case] = []
     wrong: dict[Problem, list[int]] = {}
@@ -214,16 +214,16 @@ def _check_all(base: _Base, points: list[tuple[_Setting, ...]], report: Report) 
             for problem in error.problems:
                 wrong.setdefault(problem, []).append(index)
     if wrong:
-        raise CaseError(_told(wrong, points, base))
+        raise CaseError(_merged(wrong, points, base))
     return cases
 
 
-def _told(
+def _merged(
     wrong: dict[Problem, list[int]], points: list[tuple[_Setting, ...]], base: _Base
 ) -> Iterator[Problem]:
-    """Problems of points by what they hang on, as few as possible.
+    """Problems of points by their cause, as few as possible.
 
-    A problem of every point that has a value is told once, where the value stands; one of all
+    A problem of every point that has a value is reported once, where the value stands; one of all
     points, as one of the base case or of the report; any other by the values of its point.
     """
     with_origin: dict[str, set[int]] = {}
@@ -242,14 +242,14 @@ def _told(
                 left -= with_origin[origin]
                 yield Problem(spot, problem.text)
         if len(left) == len(points):
-            yield problem if problem.path.startswith("report.") else base.told(problem)
+            yield problem if problem.path.startswith("report.") else base.reported(problem)
         else:
             for index in sorted(left):
                 values = ", ".join(f"{s.path} {s.value}" for s in points[index])
                 yield Problem(f"point {index + 1} ({values})", str(problem))
 
 
-def _case(base: dict[str, Any], settings: tuple[_Setting, ...], report: Report) -> Case:
+def _case(base: dict[str, Any], settings: tuple[_Setting, ...], report: ReportSpec) -> Case:
     data = copy.deepcopy(base)
     problems: list[Problem] = []
     for setting in settings:
@@ -269,7 +269,7 @@ def _case(base: dict[str, Any], settings: tuple[_Setting, ...], report: Report) 
         ) from None
 
 
-def _blocked(case: Case, report: Report) -> Case | None:
+def _blocked(case: Case, report: ReportSpec) -> Case | None:
     model = choose_model(case)[0]
     if report.force_at is None or case.straight or not model.gives_blocked_force:
         return None

@@ -1,8 +1,8 @@
 """The folder of a sweep: which points are finished, and who solves which.
 
-A point is finished when its run.json holds the digest of its case; that is written last. A point
+A point is finished when its run.json has the digest of its case; that is written last. A point
 is claimed by a lock on a file of its own, which the system releases when the process ends, however
-it ends. Lock files stay: two processes would otherwise hold locks on two files of the same name.
+it ends. Lock files stay: two processes could otherwise lock two files of the same name.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from fiberbend.sweep.points import Point
 MARK = "sweep"
 """Key of run.json under which a finished point stands."""
 BLOCKED = "blocked"
-"""Folder within that of a point with the same body held straight."""
+"""Folder within that of a point with the same body kept straight."""
 _LOCKS = ".locks"
 _CHECKPOINT = "checkpoint.npz"
 
@@ -83,7 +83,7 @@ class Store:
 
     @contextlib.contextmanager
     def claim(self, point: Point) -> Iterator[bool]:
-        """Hold a point; False where another process holds it."""
+        """Lock a point; False where another process has locked it."""
         with (self.path / _LOCKS / point.name).open("a") as lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -117,7 +117,7 @@ class Store:
 
         Args:
             point: the point.
-            reason: one line that says why.
+            reason: one line.
             log: more of it, for error.log.
             wall: seconds that it took.
         """
@@ -127,7 +127,7 @@ class Store:
         return self._finish(point, {"status": "failed", "reason": reason}, wall)
 
     def forget(self, point: Point) -> None:
-        """Take a failed point that nobody holds for unfinished, so that it runs again."""
+        """Take a failed point that no process has locked as unfinished, so that it runs again."""
         with self.claim(point) as mine:
             run = self.result(point)
             if mine and run is not None and run["status"] == "failed":
@@ -153,7 +153,7 @@ def _run(case: Case, folder: Path) -> dict[str, Any]:
 
 
 def _with_blocked(run: dict[str, Any], blocked: dict[str, Any]) -> dict[str, Any]:
-    """A run with what came of the same body held straight."""
+    """A run with the result of the same body kept straight."""
     if blocked["status"] == "failed" != run["status"]:
-        run = run | {"status": "failed", "reason": f"held straight: {blocked['reason']}"}
+        run = run | {"status": "failed", "reason": f"kept straight: {blocked['reason']}"}
     return run

@@ -16,12 +16,12 @@ from fiberbend import columns as col
 from fiberbend.case.case import Case
 from fiberbend.models.closed_form import analytic_curves, lever_arm
 from fiberbend.schema.units import show
-from fiberbend.sweep.file import Report
+from fiberbend.sweep.file import ReportSpec
 from fiberbend.sweep.points import Point, Sweep
 from fiberbend.sweep.store import BLOCKED, MARK, Store
 
 History = Sequence[Mapping[str, float | None]]
-Row = dict[str, Any]
+TableRow = dict[str, Any]
 
 LINES = {"paper": "paper", "zero-fit": "zero_fit", "winding": "winding"}
 """Analytical lines in the table, with their names in it."""
@@ -31,7 +31,7 @@ CAPTIONS = {
     "paper_force": "analytical, eq. (20)",
     "winding_force": "analytical, pressure acting up to the winding",
 }
-"""What readers call the analytical lines that are drawn."""
+"""Captions of the analytical lines that are drawn."""
 MODEL_STRETCH = col.CROWN_STRETCH
 """Column of history.csv with the axial stretch of the wall's crown."""
 BLOCKED_COLUMNS = {
@@ -39,19 +39,19 @@ BLOCKED_COLUMNS = {
     col.MOMENT: col.MOMENT,
     "blocked_axis_stretch": col.AXIS_STRETCH,
 }
-"""Columns of the table from the history of the body held straight."""
+"""Columns of the table from the history of the body kept straight."""
 _SAME = 1e-6
 NOT_RUN = "not run"
 
 
 @dataclasses.dataclass(frozen=True)
-class Quantity:
-    """A quantity of the table that is drawn and whose trends are told.
+class ReportedQuantity:
+    """A quantity of the table that is drawn and has its trends listed.
 
     Attributes:
-        kind: an entry of `Report.maps`.
+        kind: an entry of `ReportSpec.maps`.
         name: name of its picture without the ending.
-        label: what a reader calls it.
+        label: its name in words.
         unit: its unit, or empty.
         lines: columns of the table by their captions, the run first, then analytical models.
     """
@@ -68,23 +68,27 @@ class Quantity:
         return f"{self.label} ({self.unit})" if self.unit else self.label
 
 
-def quantities(report: Report, rows: Sequence[Row]) -> list[Quantity]:
-    """What the table of a sweep holds to be drawn; columns without values are left out."""
+def quantities(report: ReportSpec, rows: Sequence[TableRow]) -> list[ReportedQuantity]:
+    """Quantities of the table of a sweep that can be drawn; columns without values are left out."""
     solved = sorted({row["solved_by"] for row in rows if row["solved_by"]})
     run = " and ".join(solved) + " model"
     result = []
     for angle in report.angles:
         lines = {run: pressure_column(angle), CAPTIONS["paper"]: pressure_column(angle, "paper")}
         label = f"pressure at {math.degrees(angle):.6g}°"
-        result.append(Quantity("pressure", f"pressure_{degrees(angle)}", label, "kPa", lines))
+        result.append(
+            ReportedQuantity("pressure", f"pressure_{degrees(angle)}", label, "kPa", lines)
+        )
     at = f" at {math.degrees(max(report.angles, key=abs)):.6g}°" if report.angles else ""
     lines = {run: "greatest_stretch", CAPTIONS["uniform"]: "paper_stretch"}
-    result.append(Quantity("stretch", "stretch", f"greatest axial stretch λ{at}", "", lines))
+    result.append(
+        ReportedQuantity("stretch", "stretch", f"greatest axial stretch λ{at}", "", lines)
+    )
     if report.force_at is not None:
         lines = {run: "blocked_force_N"}
         lines |= {CAPTIONS[line]: f"{line}_N" for line in ("paper_force", "winding_force")}
         label = f"blocked force at {show(report.force_at, 'pressure')}"
-        result.append(Quantity("blocked-force", "blocked_force", label, "N", lines))
+        result.append(ReportedQuantity("blocked-force", "blocked_force", label, "N", lines))
     known = {name for row in rows for name, value in row.items() if value is not None}
     filled = (
         dataclasses.replace(
@@ -105,17 +109,17 @@ def pressure_column(angle: float, line: str = "") -> str:
     return f"{line and line + '_'}pressure_{degrees(angle)}_kPa"
 
 
-def collect(sweep: Sweep, store: Store) -> list[Row]:
+def collect(sweep: Sweep, store: Store) -> list[TableRow]:
     """One row a point, in the order of the sweep; what is not known is None."""
     rows = []
     for index, point in enumerate(sweep.points):
-        row: Row = {"point": point.name}
+        row: TableRow = {"point": point.name}
         row |= {column.name: column.values[index] for column in sweep.columns}
         rows.append(row | _results(point, sweep.report, store))
     return rows
 
 
-def as_csv(rows: Sequence[Row]) -> str:
+def as_csv(rows: Sequence[TableRow]) -> str:
     """The table as CSV; None is an empty cell."""
     names = list(dict.fromkeys(key for row in rows for key in row))
     text = io.StringIO()
@@ -125,11 +129,11 @@ def as_csv(rows: Sequence[Row]) -> str:
     return text.getvalue()
 
 
-def _results(point: Point, report: Report, store: Store) -> Row:
+def _results(point: Point, report: ReportSpec, store: Store) -> TableRow:
     run = store.result(point)
     history = store.history(point) if run is not None else []
     end = history[-1] if history else {}
-    row: Row = {
+    row: TableRow = {
         "status": run["status"] if run else NOT_RUN,
         "reason": run["reason"] if run else None,
         "solved_by": run["model"] if run else None,
@@ -141,9 +145,9 @@ def _results(point: Point, report: Report, store: Store) -> Row:
     row["greatest_stretch"] = _stretch(history, report)
     row[col.TIP_FORCE] = end.get(col.TIP_FORCE)
     if report.force_at is not None:
-        held = store.history(point, BLOCKED) if run is not None and point.blocked else history
+        straight = store.history(point, BLOCKED) if run is not None and point.blocked else history
         for name, column in BLOCKED_COLUMNS.items():
-            row[name] = where(held, col.PRESSURE, 1e3 * report.force_at, column)
+            row[name] = where(straight, col.PRESSURE, 1e3 * report.force_at, column)
     row |= {name: end.get(name) for name in report.history}
     row |= _analytic(point.case, report)
     for key in ("unknowns", "newton_iterations"):
@@ -174,7 +178,7 @@ def where(history: History, along: str, goal: float, column: str) -> float | Non
     return None
 
 
-def _stretch(history: History, report: Report) -> float | None:
+def _stretch(history: History, report: ReportSpec) -> float | None:
     """Stretch at the greatest reported angle, at the end where none is reported."""
     if report.angles:
         angle = math.degrees(max(report.angles, key=abs))
@@ -182,8 +186,8 @@ def _stretch(history: History, report: Report) -> float | None:
     return history[-1].get(MODEL_STRETCH) if history else None
 
 
-def _analytic(case: Case, report: Report) -> Row:
-    row: Row = {}
+def _analytic(case: Case, report: ReportSpec) -> TableRow:
+    row: TableRow = {}
     models = analytic_curves(case)
     for key, name in LINES.items():
         for angle in report.angles:

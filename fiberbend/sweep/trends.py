@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.sweep.fields import Column
-from fiberbend.sweep.table import Quantity, Row
+from fiberbend.sweep.fields import VariedField
+from fiberbend.sweep.table import ReportedQuantity, TableRow
 from geometry.mesh.data import Floats
 
 INSENSITIVE = 0.01
@@ -29,7 +29,7 @@ class Group:
 
     shared: str
     x: Floats
-    rows: tuple[Row, ...]
+    rows: tuple[TableRow, ...]
 
     def values(self, name: str) -> Floats:
         """A column of the rows, nan where it is empty, (n,)."""
@@ -37,7 +37,9 @@ class Group:
         return np.array([np.nan if value is None else value for value in found], dtype=float)
 
 
-def groups(columns: Sequence[Column], rows: Sequence[Row], column: Column) -> list[Group]:
+def groups(
+    columns: Sequence[VariedField], rows: Sequence[TableRow], column: VariedField
+) -> list[Group]:
     """All groups of two points or more along a numeric field, the largest first.
 
     Args:
@@ -46,7 +48,7 @@ def groups(columns: Sequence[Column], rows: Sequence[Row], column: Column) -> li
         column: the field along which the points of a group differ.
     """
     others = [other for other in columns if other is not column]
-    found: dict[tuple[Any, ...], list[Row]] = {}
+    found: dict[tuple[Any, ...], list[TableRow]] = {}
     for row in rows:
         found.setdefault(tuple(row[other.name] for other in others), []).append(row)
     result = []
@@ -60,14 +62,14 @@ def groups(columns: Sequence[Column], rows: Sequence[Row], column: Column) -> li
     return sorted(result, key=lambda group: -len(group.x))
 
 
-def described(column: Column, value: Any) -> str:
+def described(column: VariedField, value: Any) -> str:
     """A field with its value, "length 160 mm"."""
     shown = f"{value:g}" if isinstance(value, float) else value
-    return " ".join(str(part) for part in (spoken(column), shown, column.unit) if part)
+    return " ".join(str(part) for part in (in_words(column), shown, column.unit) if part)
 
 
-def spoken(column: Column) -> str:
-    """The name of a field as one says it."""
+def in_words(column: VariedField) -> str:
+    """The name of a field in words."""
     return column.label.replace("_", " ").replace(".", " ")
 
 
@@ -75,7 +77,7 @@ def sign(found: Sequence[Group], name: str) -> str:
     """How a column changes along a field, over all groups that have values of it.
 
     Returns:
-        ↑ or ↓ where it rises or falls all the way, ∪ or ∩ where it turns once, ~ oftener, — where
+        ↑ or ↓ where it rises or falls throughout, ∪ or ∩ where it turns once, ~ oftener, — where
         it stays, each with the number of groups where they differ, and the relative changes from
         the least to the greatest value of the field; empty where nothing is known.
     """
@@ -102,14 +104,14 @@ def _shape(y: Floats) -> str:
 
 
 def as_markdown(
-    columns: Sequence[Column], rows: Sequence[Row], quantities: Sequence[Quantity]
+    columns: Sequence[VariedField], rows: Sequence[TableRow], quantities: Sequence[ReportedQuantity]
 ) -> str:
     """A table of the signs for each quantity.
 
     Args:
         columns: the varied fields; those that are no numbers are left out.
         rows: the table of the sweep.
-        quantities: what to tell of each field.
+        quantities: those of the table.
     """
     along = [(column, groups(columns, rows, column)) for column in columns if column.numeric]
     blocks = []

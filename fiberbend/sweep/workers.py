@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from pebble import ProcessPool
 
 Event = dict[str, Any]
-Tell = Callable[[Event], None]
+OnEvent = Callable[[Event], None]
 
 _PAUSE = 0.25
 _DEATHS = 2
@@ -33,25 +33,25 @@ _DEATHS = 2
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
 
 
-def work(points: Sequence[Point], store: Store, tell: Tell) -> None:
-    """Solve every point that is not finished; wait for those that other processes hold.
+def work(points: Sequence[Point], store: Store, on_event: OnEvent) -> None:
+    """Solve every point that is not finished; wait for those that other processes have locked.
 
     Args:
         points: all points of the sweep.
         store: its folder.
-        tell: takes {"done": name, "status": …, "reason": …, "wall_s": …} and {"wait": names of
-            points that others hold}.
+        on_event: takes {"done": name, "status": …, "reason": …, "wall_s": …} and {"wait": names of
+            points that others have locked}.
     """
-    left, told = list(points), False
+    left, reported = list(points), False
     while left:
         for point in left:
             if store.result(point) is None and (run := _solve(store, point)) is not None:
-                tell(done(point, run))
-                told = False
+                on_event(done(point, run))
+                reported = False
         left = [point for point in left if store.result(point) is None]
-        if left and not told:
-            tell({"wait": [point.name for point in left]})
-            told = True
+        if left and not reported:
+            on_event({"wait": [point.name for point in left]})
+            reported = True
         if left:
             time.sleep(_PAUSE)
 
@@ -63,27 +63,29 @@ def done(point: Point, run: Event) -> Event:
 
 
 def _solve(store: Store, point: Point) -> Event | None:
-    """Content of run.json of a point that nobody else holds or has finished, else None."""
+    """Content of run.json of a point that no other process has locked or finished, else None."""
     with store.claim(point) as mine:
         return store.solve(point) if mine and store.result(point) is None else None
 
 
-class Crew:
-    """Solves points as `work` does, by worker processes, and tells {"died": name, "code": …} too.
+class WorkerPool:
+    """Solves points as `work` does, by worker processes, and reports {"died": name, "code": …} too.
 
     Args:
         points: all points of the sweep.
         store: its folder.
-        tell: takes the events.
+        on_event: takes the events.
         count: how many work at once.
     """
 
-    def __init__(self, points: Sequence[Point], store: Store, tell: Tell, count: int) -> None:
-        self._store, self._tell, self._count = store, tell, count
+    def __init__(
+        self, points: Sequence[Point], store: Store, on_event: OnEvent, count: int
+    ) -> None:
+        self._store, self._on_event, self._count = store, on_event, count
         self._left = {point.name: point for point in points if store.result(point) is None}
         self._running: dict[Future[Event | None], Point] = {}
-        # when to ask again for points that other processes hold
-        self._held: dict[str, float] = {}
+        # when to ask again for points that other processes have locked
+        self._locked_until: dict[str, float] = {}
         self._deaths: Counter[str] = Counter()
         self._compiled = False
         self._waits = False
@@ -107,7 +109,7 @@ class Crew:
         for name, point in self._left.items():
             if len(running) >= (self._count if self._compiled else 1):
                 return
-            if name not in running and self._held.get(name, 0.0) <= time.monotonic():
+            if name not in running and self._locked_until.get(name, 0.0) <= time.monotonic():
                 self._running[pool.schedule(_solve, args=(self._store, point))] = point
                 running.add(name)
 
@@ -125,19 +127,19 @@ class Crew:
         elif self._store.result(point) is not None:
             del self._left[point.name]
         else:
-            self._held[point.name] = time.monotonic() + _PAUSE
-            if not self._waits and self._held.keys() >= self._left.keys():
-                self._tell({"wait": [*self._left]})
+            self._locked_until[point.name] = time.monotonic() + _PAUSE
+            if not self._waits and self._locked_until.keys() >= self._left.keys():
+                self._on_event({"wait": [*self._left]})
                 self._waits = True
 
     def _finished(self, point: Point, run: Event) -> None:
-        self._held.pop(point.name, None)
+        self._locked_until.pop(point.name, None)
         del self._left[point.name]
         self._waits = False
-        self._tell(done(point, run))
+        self._on_event(done(point, run))
 
     def _died(self, point: Point, code: int) -> None:
-        self._tell({"died": point.name, "code": code})
+        self._on_event({"died": point.name, "code": code})
         self._deaths[point.name] += 1
         if self._deaths[point.name] < _DEATHS:
             return

@@ -16,7 +16,7 @@ from fiberbend.plan.plan import make_plan
 from fiberbend.reader.checks import ValidParts, check
 from fiberbend.reader.defaults import complete
 from fiberbend.reader.reader import read_case
-from fiberbend.running.warm import guides
+from fiberbend.running.warm import section_guides
 
 ROOT = Path(__file__).resolve().parents[2]
 PATH = "effects.2.tip-load"
@@ -71,7 +71,7 @@ def test_no_phase_takes_it_for_granted() -> None:
     elements = choose_model(body)[0].elements()
     assert elements is not None
     # no guide by a section that does not bend so, no such effect in the section beside, and said
-    assert not guides(body)
+    assert not section_guides(body)
     beside = as_section(body, inflate(angle=1.0))
     assert [effect.name for effect in beside.effects] == ["pressure", "winding"]
     assert body.effects[2].alone() == "tip-load acts"

@@ -268,16 +268,16 @@ report:
 """
     (tmp_path / "sweep.yaml").write_text(sweep, encoding="utf-8")
 
-    def told() -> list[str]:
+    def messages() -> list[str]:
         with pytest.raises(CaseError) as error:
             read_sweep(tmp_path / "sweep.yaml")
         return str(error.value).splitlines()
 
-    reported = next(line for line in told() if line.startswith("report.angles.0: 90"))
+    reported = next(line for line in messages() if line.startswith("report.angles.0: 90"))
     assert reported.endswith(" (line 9)")
     (tmp_path / "sweep.yaml").write_text(sweep.partition("report")[0], encoding="utf-8")
     expected = 'expected a length with its unit such as "8 mm"'
-    assert told() == [
+    assert messages() == [
         f"base.yaml: actuator.radius: 8, {expected} (line {radius})",
         f"base.yaml: actuator.floor: 3, {expected}",
         f"vary.actuator.wall.1: 3, {expected} (line 7)",
@@ -285,4 +285,4 @@ report:
     inner = "".join(f"  {line}\n" for line in case.splitlines())
     inline = sweep.partition("report")[0].replace("case: base.yaml\n", f"case:\n{inner}")
     (tmp_path / "sweep.yaml").write_text(inline, encoding="utf-8")
-    assert f"case: actuator.radius: 8, {expected} (line {radius + 1})" in told()
+    assert f"case: actuator.radius: 8, {expected} (line {radius + 1})" in messages()

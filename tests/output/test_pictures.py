@@ -11,13 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fiberbend import columns as col
 from fiberbend.drawing.body import SIZE, draw_pictures
-from fiberbend.drawing.curves import Row, draw_plots, plot_tip_force
+from fiberbend.drawing.curves import draw_plots, plot_tip_force
 from fiberbend.drawing.page import nice_above
 from fiberbend.drawing.props import Props
 from fiberbend.drawing.stage import (
     FROM_THE_SIDE,
-    Layer,
+    Drawable,
     PictureError,
     Stage,
     frame,
@@ -132,7 +133,7 @@ def test_every_picture_is_drawn_anew() -> None:
         view = frame(props.mesh.nodes, FROM_THE_SIDE, 200 / 120)
         empty = stage.draw([], view)
         image = stage.draw(parts, view)
-        red = stage.draw([Layer(layer.data, color="red") for layer in parts], view)
+        red = stage.draw([Drawable(layer.data, color="red") for layer in parts], view)
     finally:
         stage.close()
     assert empty.std() == 0
@@ -147,8 +148,8 @@ def test_no_pyvista_is_said_plainly(monkeypatch: pytest.MonkeyPatch) -> None:
         Stage((100, 100))
 
 
-def history(angles: Sequence[float]) -> list[Row]:
-    rows: list[Row] = []
+def history(angles: Sequence[float]) -> list[col.Row]:
+    rows: list[col.Row] = []
     for step, angle in enumerate(angles):
         theta = np.radians(max(angle, 1e-6))
         radius = 160 / theta

@@ -28,7 +28,7 @@ from fiberbend.compare.check import (
     band,
     crosscheck,
 )
-from fiberbend.compare.others import Straight
+from fiberbend.compare.others import StraightSection
 from fiberbend.models.choice import MODELS
 from fiberbend.models.closed_form import analytic_curves
 from fiberbend.models.result import Curve, RunResult
@@ -280,7 +280,7 @@ def blocked_rows(force: float, rotation: float) -> list[dict[str, Any]]:
 
 def test_force_of_a_blocked_tip() -> None:
     # independent section model: 94 N mm at 100 kPa held straight
-    straight = Straight(np.array([0, 0.1, 0.2]), np.array([0, 94.0, 188.0]))
+    straight = StraightSection(np.array([0, 0.1, 0.2]), np.array([0, 94.0, 188.0]))
     # docs/accuracy_blocked.md: 3.6 N, and z = L turns by 8.9°
     check = crosscheck(case_of("blocked_tip"), BODY, blocked_rows(3.6, 8.9), straight=straight)
     last = check.columns[-1]
@@ -297,7 +297,7 @@ def test_force_of_a_blocked_tip() -> None:
 
 
 def test_soft_sheath_is_named_only_where_it_is_soft() -> None:
-    straight = Straight(np.array([0, 0.1]), np.array([0, 94.0]))
+    straight = StraightSection(np.array([0, 0.1]), np.array([0, 94.0]))
     firm = case_of("blocked_tip", materials={"sheath": "elastosil-m4601"})
     check = crosscheck(firm, BODY, blocked_rows(3.5, 0.5), straight=straight)
     assert compared(check, "section").beyond

@@ -24,7 +24,7 @@ import yaml
 from fem import kernels
 from fiberbend import run
 from fiberbend.sweep.command import run_sweep
-from fiberbend.sweep.fields import Column
+from fiberbend.sweep.fields import VariedField
 from fiberbend.sweep.points import read_sweep
 from fiberbend.sweep.store import MARK, Store
 from fiberbend.sweep.table import where
@@ -335,8 +335,8 @@ def test_the_table_says_what_the_run_says(tmp_path: Path) -> None:
     }
     path = tmp_path / "sweep.yaml"
     path.write_text(yaml.safe_dump(data), encoding="utf-8")
-    told: list[str] = []
-    assert run_sweep(path, tmp_path / "out", say=told.append) == 0, told
+    reported: list[str] = []
+    assert run_sweep(path, tmp_path / "out", say=reported.append) == 0, reported
     with (tmp_path / "out" / "sweep.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert [row["radius_mm"] for row in rows] == ["7", "8"]
@@ -382,8 +382,8 @@ def test_a_value_between_steps_is_on_a_line() -> None:
 
 def test_signs_of_trends() -> None:
     """Groups hold the other fields; a failed point has no value."""
-    a = Column("a", "a", "mm", (1.0, 2.0, 3.0) * 2)
-    b = Column("b", "b", "", (1.0,) * 3 + (2.0,) * 3)
+    a = VariedField("a", "a", "mm", (1.0, 2.0, 3.0) * 2)
+    b = VariedField("b", "b", "", (1.0,) * 3 + (2.0,) * 3)
     values = [1.0, 2.0, 4.0, 3.0, None, 1.5]
     bowl = [3.0, 1.0, 2.0] * 2
     rows = [
