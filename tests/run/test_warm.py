@@ -46,7 +46,7 @@ def test_a_body_steered_by_its_section_needs_fewer_iterations(
     winding = LONG["effects"][1]
     case = small(**LONG | {"effects": [{"pressure": {"to": "190 kPa"}}, winding]})
     steered = run(case)
-    monkeypatch.setattr(runner, "guides", lambda _case: False)
+    monkeypatch.setattr(runner, "section_guides", lambda _case: False)
     alone = run(case)
     counts = [row["newton_iterations"] for row in steered.rows[1:]]
     assert counts[0] <= np.median(counts)
