@@ -93,7 +93,7 @@ class Body(MeshedModel):
             frames,
             BendingAngle(scene.body, frames),
             lambda: BodyGauge(scene, frames),
-            BodyRod(scene.body, frames),
+            lambda: BodyRod(scene.body, frames),
         )
 
     def resolved(self, case: Case) -> float:
