@@ -100,7 +100,7 @@ class Body(MeshedModel):
             frames,
             BendingAngle(scene.body, frames),
             lambda: BodyGauge(scene, frames),
-            BodyRod(scene.body, frames),
+            lambda: BodyRod(scene.body, frames),
         )
 
     def resolved_bulging(self, case: Case) -> float:

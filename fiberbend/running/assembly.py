@@ -54,7 +54,11 @@ class Assembly:
 
 
 def assemble(
-    case: Case, mesh: MeshData, comm: MPI.Comm, make_guide: GuideFactory | None = None
+    case: Case,
+    mesh: MeshData,
+    comm: MPI.Comm,
+    make_guide: GuideFactory | None = None,
+    watch: bool = False,
 ) -> Assembly:
     """Compile a case and put it at rest; collective.
 
@@ -63,6 +67,7 @@ def assemble(
         mesh: the mesh of its model.
         comm: communicator.
         make_guide: makes the guide of a body; None for no guide.
+        watch: look whether the body passes through itself.
     """
     model = meshed(case)
     parts = build(case, mesh, model)
@@ -81,7 +86,7 @@ def assemble(
         frames=frames,
         control=observables.control,
         guide=guide,
-        rod=observables.rod,
+        rod=observables.rod() if watch else None,
         causes=Diagnosis(scene),
         hooks=[Approach(scene)] if any(effect.touches() for effect in case.effects) else [],
     )

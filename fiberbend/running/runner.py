@@ -111,7 +111,7 @@ class _Run:
         def make_guide(scene: Scene, frames: Frames) -> Guide | None:
             return section.guide(scene, frames, case.actuator.length) if section else None
 
-        assembly = assemble(case, mesh, self.comm, make_guide)
+        assembly = assemble(case, mesh, self.comm, make_guide, watch=True)
         recorder, recording = self._recording(assembly, again)
         remark = winding_remark(case)
         if remark is not None and "NOT" in remark:
