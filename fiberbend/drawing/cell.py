@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.gallery import Gallery
 from fiberbend.drawing.page import figure, nice_above, save
+from fiberbend.drawing.side_by_side import SideBySide
 from fiberbend.states.bend import in_frame
 from fiberbend.states.snapshot import (
-    Scenery,
+    ModelMesh,
     Snapshot,
     Target,
     Write,
@@ -33,21 +33,21 @@ class Slices:
     """A few slices of a cell put together and bent.
 
     Args:
-        scenery: of the cell, with fibers that form lines.
+        model_mesh: of the cell, with fibers that form lines.
         snapshots: the states, at least one.
 
     Raises:
         ValueError: no state.
     """
 
-    def __init__(self, scenery: Scenery, snapshots: Sequence[Snapshot]) -> None:
+    def __init__(self, model_mesh: ModelMesh, snapshots: Sequence[Snapshot]) -> None:
         if not snapshots:
             raise ValueError("no state to draw")
-        self._cell, self._snapshots = scenery, snapshots
-        self._section = len(root_section(scenery.mesh).nodes)
-        self._stack: Stack = repeated(scenery, (2 if scenery.mesh.half else 1) * _PITCHES)
-        moved = [self._stack.snapshot(scenery, state) for state in snapshots]
-        self._gallery = Gallery(self._stack.scenery, moved, level=6)
+        self._cell, self._snapshots = model_mesh, snapshots
+        self._section = len(root_section(model_mesh.mesh).nodes)
+        self._stack: Stack = repeated(model_mesh, (2 if model_mesh.mesh.half else 1) * _PITCHES)
+        moved = [self._stack.snapshot(model_mesh, state) for state in snapshots]
+        self._side_by_side = SideBySide(self._stack.model_mesh, moved, level=6)
 
     def bulge(self, target: Target) -> None:
         """Every state in space, coloured by how far its surface lies outside its own mean.
@@ -55,7 +55,7 @@ class Slices:
         The mean is taken along z; shapes are true to scale.
 
         Raises:
-            fiberbend.drawing.stage.PictureError: nothing can be drawn on this machine.
+            fiberbend.drawing.renderer.PictureError: nothing can be drawn on this machine.
         """
         values = [self._outward(state) for state in self._snapshots]
         high = nice_above(max(float(np.quantile(np.abs(v), 0.995)) for v in values))
@@ -63,7 +63,7 @@ class Slices:
             f"{state.caption}\nbulge at the crown {float(np.ptp(self.crown(state)[1])):.2f} mm"
             for state in self._snapshots
         ]
-        page = self._gallery.page(
+        page = self._side_by_side.page(
             title=f"{self._cell.title}: rubber between the fibers, {_PITCHES} pitches",
             captions=captions,
             values=values,
@@ -96,14 +96,14 @@ class Slices:
         weights[1::2] = 4.0
         mean = np.einsum("p,pni->ni", weights / weights.sum(), planes)
         off = (planes - mean).reshape(-1, 3)[stack.node] * stack.sign
-        cells = stack.scenery.mesh.cells
-        normals = self._gallery.skin.normals(stack.scenery.mesh.nodes[cells])
-        outward: Floats = (self._gallery.skin.interpolate(off[cells]) * normals).sum(axis=1)
+        cells = stack.model_mesh.mesh.cells
+        normals = self._side_by_side.skin.normals(stack.model_mesh.mesh.nodes[cells])
+        outward: Floats = (self._side_by_side.skin.interpolate(off[cells]) * normals).sum(axis=1)
         return outward
 
 
 def plot_tension(
-    scenery: Scenery,
+    model_mesh: ModelMesh,
     snapshots: Sequence[Snapshot],
     target: Target,
     actuator: Actuator,
@@ -114,7 +114,7 @@ def plot_tension(
     Lines are means over the lines of a ribbon, bands their range.
 
     Args:
-        scenery: of the cell, with fibers that form lines.
+        model_mesh: of the cell, with fibers that form lines.
         snapshots: the states, at least one.
         target: a path, or a file open for writing bytes.
         actuator: dimensions.
@@ -134,7 +134,7 @@ def plot_tension(
     shades = colormaps["viridis"](np.linspace(0.0, 0.85, len(snapshots)))
     is_ribbon = False
     for state, color in zip(snapshots, shades, strict=True):
-        s, tension = tension_along(scenery, state, actuator)
+        s, tension = tension_along(model_mesh, state, actuator)
         is_ribbon = len(tension) > 1
         axes.fill_between(s, tension.min(axis=0), tension.max(axis=0), color=color, **_BAND)
         axes.plot(s, tension.mean(axis=0), color=color, linewidth=2.2, label=state.caption)
@@ -142,9 +142,9 @@ def plot_tension(
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, 0.0), high + 0.06 * (high - low))
     axes.axhline(0.0, color="0.5", linewidth=0.8)
-    _name_pieces(axes, actuator, scenery.mesh.half)
-    extent = "to the middle of the floor" if scenery.mesh.half else "once around"
-    page.text(0.5, 0.95, f"{scenery.title}: tension of the fiber", ha="center", fontsize=15)
+    _name_pieces(axes, actuator, model_mesh.mesh.half)
+    extent = "to the middle of the floor" if model_mesh.mesh.half else "once around"
+    page.text(0.5, 0.95, f"{model_mesh.title}: tension of the fiber", ha="center", fontsize=15)
     axes.set_xlabel(f"distance along the outline from the crown {extent} (mm)", fontsize=13)
     axes.set_ylabel("axial force (N)", fontsize=13)
     strain = axes.secondary_yaxis(
@@ -188,13 +188,15 @@ def _name_pieces(axes: Any, actuator: Actuator, half: bool) -> None:
             )
 
 
-def tension_along(scenery: Scenery, state: Snapshot, actuator: Actuator) -> tuple[Floats, Floats]:
+def tension_along(
+    model_mesh: ModelMesh, state: Snapshot, actuator: Actuator
+) -> tuple[Floats, Floats]:
     """Tension of a whole fiber by each line of its ribbon, as a running mean.
 
     The force of a segment that an element's face cuts short is no mean by itself.
 
     Args:
-        scenery: of a cell, with fibers that form lines.
+        model_mesh: of a cell, with fibers that form lines.
         state: its state.
         actuator: dimensions.
 
@@ -204,13 +206,13 @@ def tension_along(scenery: Scenery, state: Snapshot, actuator: Actuator) -> tupl
     Raises:
         ValueError: no fiber forces.
     """
-    fibers, force = scenery.lines, state.fiber_force
+    fibers, force = model_mesh.lines, state.fiber_force
     if fibers is None or force is None:
         raise ValueError("no fiber forces to draw")
     lines = round(1 / float(fibers.share[0]))
     helix, line = np.divmod(fibers.curve, lines)
     perimeter = actuator.winding_perimeter
-    if scenery.mesh.half:
+    if model_mesh.mesh.half:
         # what lies beyond a mirror plane is the image of the other helix's opposite line
         line, end = np.where(helix == 0, lines - 1 - line, line), perimeter / 2
         kept = np.ones(len(line), dtype=bool)
@@ -230,7 +232,7 @@ def tension_along(scenery: Scenery, state: Snapshot, actuator: Actuator) -> tupl
 
 
 def draw_cell(
-    scenery: Scenery,
+    model_mesh: ModelMesh,
     snapshots: Sequence[Snapshot],
     write: Write,
     actuator: Actuator,
@@ -239,7 +241,7 @@ def draw_cell(
     """Draw fiber_stretch.png and cell_bulge.png.
 
     Args:
-        scenery: of the cell, with fibers that form lines.
+        model_mesh: of the cell, with fibers that form lines.
         snapshots: the states.
         write: writes a file, such as `RunFolder.write`.
         actuator: dimensions.
@@ -250,11 +252,11 @@ def draw_cell(
 
     Raises:
         ValueError: no state, or one without fiber forces.
-        fiberbend.drawing.stage.PictureError: nothing can be drawn on this machine.
+        fiberbend.drawing.renderer.PictureError: nothing can be drawn on this machine.
     """
     write(
         "fiber_stretch.png",
-        lambda file: plot_tension(scenery, snapshots, file, actuator, stiffness),
+        lambda file: plot_tension(model_mesh, snapshots, file, actuator, stiffness),
     )
-    write("cell_bulge.png", Slices(scenery, snapshots).bulge)
+    write("cell_bulge.png", Slices(model_mesh, snapshots).bulge)
     return ["fiber_stretch.png", "cell_bulge.png"]

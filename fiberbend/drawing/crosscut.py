@@ -6,7 +6,7 @@ import numpy as np
 
 from fiberbend.states.bend import in_frame
 from fiberbend.states.recovery import SplitNodes
-from fiberbend.states.snapshot import Scenery, Snapshot
+from fiberbend.states.snapshot import ModelMesh, Snapshot
 from fiberbend.states.stack import root_section
 from geometry.mesh.data import Floats, Ints, facet_positions
 from geometry.mesh.reference import shape_functions
@@ -18,7 +18,7 @@ class Crosscut:
     """The section of a section model, or the end z = 0 of a cell; a half with its mirror image.
 
     Args:
-        scenery: mesh of quadrilaterals or of a slice.
+        model_mesh: mesh of quadrilaterals or of a slice.
         level: pieces along an edge.
 
     Attributes:
@@ -27,8 +27,8 @@ class Crosscut:
         region: region number of each drawn point, (p,).
     """
 
-    def __init__(self, scenery: Scenery, level: int = 8) -> None:
-        mesh = scenery.mesh
+    def __init__(self, model_mesh: ModelMesh, level: int = 8) -> None:
+        mesh = model_mesh.mesh
         self.mesh = mesh if mesh.cell_type == "quadrilateral" else root_section(mesh)
         line = np.linspace(0.0, 1.0, level + 1)
         v, u = np.meshgrid(line, line, indexing="ij")
@@ -66,7 +66,7 @@ class Crosscut:
         """A field at the drawn points, (p,).
 
         Args:
-            nodes: `split_alike` of the scenery's mesh.
+            nodes: `split_alike` of the mesh.
             field: at their copies, (copies,).
         """
         at_cells = field[nodes.cells[: len(self.mesh.cells), :9]]

@@ -20,7 +20,7 @@ from fiberbend.drawing.page import (
 )
 from fiberbend.states.recovery import NodalFields, recover
 from fiberbend.states.snapshot import (
-    Scenery,
+    ModelMesh,
     Snapshot,
     Target,
     Write,
@@ -36,7 +36,7 @@ _LINE = "#303030"
 _AT_REST: dict[str, Any] = {"color": "#777777", "linewidth": 0.9, "linestyle": (0, (4, 3))}
 
 
-class Sheet:
+class SectionPage:
     """Panels of one scale, each with one state of a section, and room below for a key.
 
     Args:
@@ -139,7 +139,7 @@ class Sections:
     """The pictures of a run's sections.
 
     Args:
-        scenery: mesh and materials of a section or cell.
+        model_mesh: mesh and materials of a section or cell.
         snapshots: the states, at least one.
         fields: their recovered fields, if at hand.
         name: what the section is, for the titles.
@@ -150,17 +150,17 @@ class Sections:
 
     def __init__(
         self,
-        scenery: Scenery,
+        model_mesh: ModelMesh,
         snapshots: Sequence[Snapshot],
         fields: Sequence[NodalFields] | None = None,
         name: str = "section",
     ) -> None:
         if not snapshots:
             raise ValueError("no state to draw")
-        self._cut, self._snapshots = Crosscut(scenery), snapshots
-        self._nodes = split_alike(scenery.mesh)
-        self._fields = fields or [recover(scenery, state, self._nodes) for state in snapshots]
-        self._title = f"{scenery.title}: {name}" if scenery.title else name
+        self._cut, self._snapshots = Crosscut(model_mesh), snapshots
+        self._nodes = split_alike(model_mesh.mesh)
+        self._fields = fields or [recover(model_mesh, state, self._nodes) for state in snapshots]
+        self._title = f"{model_mesh.title}: {name}" if model_mesh.title else name
 
     def shape(self, target: Target) -> None:
         """Every state over the outlines at rest, regions coloured, with the floor's bulge.
@@ -176,12 +176,12 @@ class Sections:
         shifts = [self._shift(state) for state in self._snapshots]
         points = [cut.points(s) + up for s, up in zip(self._snapshots, shifts, strict=True)]
         clouds = [np.concatenate([moved, cut.points(None)]) for moved in points]
-        sheet = Sheet(self._title, clouds, [self._caption(s) for s in self._snapshots])
+        page = SectionPage(self._title, clouds, [self._caption(s) for s in self._snapshots])
         names = sorted(cut.mesh.regions, key=cut.mesh.regions.__getitem__)
         colors = [COLORS.get(name, "#999999") for name in names]
         place = np.searchsorted([cut.mesh.regions[name] for name in names], cut.region) * 1.0
         for axes, state, moved, up in zip(
-            sheet.panels, self._snapshots, points, shifts, strict=True
+            page.panels, self._snapshots, points, shifts, strict=True
         ):
             scale = Normalize(0, max(len(names) - 1, 1))
             self._paint(axes, moved, place, scale, ListedColormap(colors))
@@ -193,9 +193,9 @@ class Sections:
             for name, color in zip(names, colors, strict=True)
         ]
         dashes = Line2D([], [], label="at rest", **_AT_REST)
-        sheet.legend([*handles, dashes])
-        sheet.scale()
-        sheet.save(target)
+        page.legend([*handles, dashes])
+        page.scale()
+        page.save(target)
 
     def stress(self, target: Target) -> None:
         """Von Mises stress over every state, on a logarithmic scale."""
@@ -228,16 +228,16 @@ class Sections:
     ) -> None:
         cut = self._cut
         points = [cut.points(state) for state in self._snapshots]
-        sheet = Sheet(self._title, points, [state.caption for state in self._snapshots])
+        page = SectionPage(self._title, points, [state.caption for state in self._snapshots])
         for axes, state, moved, value in zip(
-            sheet.panels, self._snapshots, points, values, strict=True
+            page.panels, self._snapshots, points, values, strict=True
         ):
             clipped = np.clip(value, scale.vmin, scale.vmax)
             self._paint(axes, moved, clipped, scale, colormap())
             _draw_lines(axes, cut.outlines(state), color=_LINE, linewidth=0.8)
-        sheet.color_bar(scale, label, extend)
-        sheet.scale()
-        sheet.save(target)
+        page.color_bar(scale, label, extend)
+        page.scale()
+        page.save(target)
 
     def _paint(self, axes: Any, points: Floats, values: Floats, scale: Any, colors: Any) -> None:
         """Fill the section with colours that vary linearly within its pieces."""
@@ -280,7 +280,7 @@ def _draw_lines(axes: Any, lines: Floats, **style: Any) -> None:
 
 
 def draw_sections(
-    scenery: Scenery,
+    model_mesh: ModelMesh,
     snapshots: Sequence[Snapshot],
     write: Write,
     fields: Sequence[NodalFields] | None = None,
@@ -289,7 +289,7 @@ def draw_sections(
     """Draw section_shape.png, section_stress.png and section_strain.png.
 
     Args:
-        scenery: mesh and materials of a section or cell.
+        model_mesh: mesh and materials of a section or cell.
         snapshots: the states.
         write: writes a file, such as `RunFolder.write`.
         fields: recovered fields of the states, if at hand.
@@ -301,7 +301,7 @@ def draw_sections(
     Raises:
         ValueError: no state.
     """
-    sections = Sections(scenery, snapshots, fields, name)
+    sections = Sections(model_mesh, snapshots, fields, name)
     jobs: dict[str, Callable[[IO[bytes]], object]] = {
         "section_shape.png": sections.shape,
         "section_stress.png": sections.stress,

@@ -11,13 +11,13 @@ from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
 from fiberbend.running.folder import RunFolder
 from fiberbend.states.recovery import recover
-from fiberbend.states.snapshot import Scenery, Snapshot
+from fiberbend.states.snapshot import ModelMesh, Snapshot
 
 
 def draw(
     folder: RunFolder,
     case: Case,
-    scenery: Scenery,
+    model_mesh: ModelMesh,
     snapshots: Sequence[Snapshot],
     rows: Sequence[dict[str, Any]],
     reason: str | None,
@@ -30,7 +30,7 @@ def draw(
     Args:
         folder: where to write.
         case: has the outputs that are wanted, and the requested angles.
-        scenery: mesh, materials and fibers.
+        model_mesh: mesh, materials and fibers.
         snapshots: the states to show; none for a run that never converged a step.
         rows: the history.
         reason: why the run ended early, for the plots' titles, or None.
@@ -47,22 +47,22 @@ def draw(
         draw_curves(folder, case, rows, reason, check, model)
     if not (snapshots and (output.fields or output.pictures)):
         return
-    if scenery.uniform:
+    if model_mesh.uniform:
         from fiberbend.running.uniform_report import draw_states
 
-        draw_states(folder, case, scenery, snapshots, say)
+        draw_states(folder, case, model_mesh, snapshots, say)
         return
-    fields = [recover(scenery, snapshot) for snapshot in snapshots]
+    fields = [recover(model_mesh, snapshot) for snapshot in snapshots]
     if output.fields:
         from fiberbend.states.paraview import write_fields
 
-        write_fields(scenery, snapshots, into("fields"), fields)
+        write_fields(model_mesh, snapshots, into("fields"), fields)
     if output.pictures:
         from fiberbend.drawing.body import draw_pictures
-        from fiberbend.drawing.stage import PictureError
+        from fiberbend.drawing.renderer import PictureError
 
         try:
-            draw_pictures(scenery, snapshots, into("pictures"), fields)
+            draw_pictures(model_mesh, snapshots, into("pictures"), fields)
         except PictureError as error:
             say(f"no pictures: {error}")
 

@@ -27,7 +27,7 @@ from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording, ended
 from fiberbend.running.progress import Progress
 from fiberbend.running.warm import SectionStates, section_guides, section_states
-from fiberbend.states.snapshot import Scenery
+from fiberbend.states.snapshot import ModelMesh
 from geometry.mesh.data import MeshData
 
 MESH = "mesh.npz"
@@ -250,7 +250,7 @@ class _Run:
         from fiberbend.running import report
 
         assert self.folder is not None
-        scenery = Scenery(
+        model_mesh = ModelMesh(
             mesh=assembly.scene.domain.data,
             materials=assembly.parts.materials,
             fibers=assembly.parts.fibers,
@@ -261,7 +261,7 @@ class _Run:
         report.draw(
             self.folder,
             self.case,
-            scenery,
+            model_mesh,
             recording.snapshots,
             rows,
             reason,

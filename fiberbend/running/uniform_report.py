@@ -12,7 +12,7 @@ from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.running.folder import RunFolder
 from fiberbend.states.recovery import NodalFields, recover
-from fiberbend.states.snapshot import Scenery, Snapshot, Write
+from fiberbend.states.snapshot import ModelMesh, Snapshot, Write
 from fiberbend.states.stack import (
     Stack,
     extruded,
@@ -27,7 +27,7 @@ _LAYER = 4.0
 def draw_states(
     folder: RunFolder,
     case: Case,
-    scenery: Scenery,
+    model_mesh: ModelMesh,
     snapshots: Sequence[Snapshot],
     say: Callable[[str], None],
 ) -> None:
@@ -38,7 +38,7 @@ def draw_states(
     Args:
         folder: where to write.
         case: the case.
-        scenery: of the section or cell.
+        model_mesh: of the section or cell.
         snapshots: the states, at least one.
         say: takes a line for the user where nothing can be drawn.
     """
@@ -46,48 +46,52 @@ def draw_states(
     def into(sub: str) -> Write:
         return lambda name, fill: folder.write(f"{sub}/{name}", fill)
 
-    nodes = split_alike(scenery.mesh)
-    fields = [recover(scenery, state, nodes) for state in snapshots]
-    whole = functools.cache(lambda: _whole(case, scenery, snapshots))
+    nodes = split_alike(model_mesh.mesh)
+    fields = [recover(model_mesh, state, nodes) for state in snapshots]
+    whole = functools.cache(lambda: _whole(case, model_mesh, snapshots))
     if case.output.fields:
         from fiberbend.states.paraview import write_fields
 
-        stack = whole() if _is_section(scenery) else repeated(scenery, _slices_a_pitch(scenery))
-        moved, spread = _in_space(stack, scenery, snapshots, fields)
-        write_fields(stack.scenery, moved, into("fields"), spread)
+        stack = (
+            whole()
+            if _is_section(model_mesh)
+            else repeated(model_mesh, _slices_a_pitch(model_mesh))
+        )
+        moved, spread = _in_space(stack, model_mesh, snapshots, fields)
+        write_fields(stack.model_mesh, moved, into("fields"), spread)
     if case.output.pictures:
-        _draw(case, scenery, snapshots, fields, whole, into("pictures"), say)
+        _draw(case, model_mesh, snapshots, fields, whole, into("pictures"), say)
 
 
 def _draw(
     case: Case,
-    scenery: Scenery,
+    model_mesh: ModelMesh,
     snapshots: Sequence[Snapshot],
     fields: Sequence[NodalFields],
     whole: Callable[[], Stack],
     write: Write,
     say: Callable[[str], None],
 ) -> None:
+    from fiberbend.drawing.renderer import PictureError
     from fiberbend.drawing.section import draw_sections
-    from fiberbend.drawing.stage import PictureError
 
-    name = "section" if _is_section(scenery) else "section where a fiber passes the crown"
-    draw_sections(scenery, snapshots, write, fields, name)
+    name = "section" if _is_section(model_mesh) else "section where a fiber passes the crown"
+    draw_sections(model_mesh, snapshots, write, fields, name)
     try:
-        draw_bent(whole(), scenery, snapshots, write, fields)
+        draw_bent(whole(), model_mesh, snapshots, write, fields)
         turns = case.turns
-        if turns is not None and scenery.lines is not None:
+        if turns is not None and model_mesh.lines is not None:
             from fiberbend.drawing.cell import draw_cell
 
             actuator = convert.dimensions(case.actuator)
-            draw_cell(scenery, snapshots, write, actuator, turns.stiffness)
+            draw_cell(model_mesh, snapshots, write, actuator, turns.stiffness)
     except PictureError as error:
         say(f"no pictures in space: {error}")
 
 
 def draw_bent(
     stack: Stack,
-    scenery: Scenery,
+    model_mesh: ModelMesh,
     snapshots: Sequence[Snapshot],
     write: Write,
     fields: Sequence[NodalFields],
@@ -96,27 +100,29 @@ def draw_bent(
 
     Args:
         stack: the sections or slices of the whole length.
-        scenery: of the section or cell.
+        model_mesh: of the section or cell.
         snapshots: the states, at least one.
         write: writes a file, such as `RunFolder.write`.
         fields: recovered fields of the states.
 
     Raises:
-        fiberbend.drawing.stage.PictureError: nothing can be drawn on this machine.
+        fiberbend.drawing.renderer.PictureError: nothing can be drawn on this machine.
     """
-    from fiberbend.drawing.gallery import Gallery
     from fiberbend.drawing.page import nice_above
-    from fiberbend.drawing.stage import FROM_THE_SIDE
+    from fiberbend.drawing.renderer import FROM_THE_SIDE
+    from fiberbend.drawing.side_by_side import SideBySide
 
-    nodes = split_alike(scenery.mesh)
-    gallery = Gallery(stack.scenery, [stack.snapshot(scenery, s) for s in snapshots], level=3)
+    nodes = split_alike(model_mesh.mesh)
+    side_by_side = SideBySide(
+        stack.model_mesh, [stack.snapshot(model_mesh, s) for s in snapshots], level=3
+    )
     strains = [stack.at_cells(field.log_strain[nodes.cells]) for field in fields]
-    high = max(float(np.quantile(gallery.outside.interpolate(s), 0.998)) for s in strains)
-    model = "section" if _is_section(scenery) else "cell"
-    page = gallery.page(
-        title=f"{scenery.title}: {model} model, caps not modelled",
+    high = max(float(np.quantile(side_by_side.outside.interpolate(s), 0.998)) for s in strains)
+    model = "section" if _is_section(model_mesh) else "cell"
+    page = side_by_side.page(
+        title=f"{model_mesh.title}: {model} model, caps not modelled",
         captions=[_caption(state, stack) for state in snapshots],
-        values=[gallery.skin.interpolate(strain) for strain in strains],
+        values=[side_by_side.skin.interpolate(strain) for strain in strains],
         limits=(0.0, nice_above(high)),
         label="maximum principal logarithmic strain",
         toward=FROM_THE_SIDE,
@@ -127,36 +133,36 @@ def draw_bent(
 def _caption(state: Snapshot, stack: Stack) -> str:
     if state.twist == 0:
         return state.caption
-    twist = np.rad2deg(state.twist * stack.scenery.mesh.nodes[-1, 2])
+    twist = np.rad2deg(state.twist * stack.model_mesh.mesh.nodes[-1, 2])
     return f"{state.caption},  twist {twist:.0f}°".replace("-", "−")
 
 
-def _is_section(scenery: Scenery) -> bool:
-    return scenery.mesh.cell_type == "quadrilateral"
+def _is_section(model_mesh: ModelMesh) -> bool:
+    return model_mesh.mesh.cell_type == "quadrilateral"
 
 
-def _whole(case: Case, scenery: Scenery, snapshots: Sequence[Snapshot]) -> Stack:
+def _whole(case: Case, model_mesh: ModelMesh, snapshots: Sequence[Snapshot]) -> Stack:
     """The whole length; a cell's as near as whole slices come."""
     length = case.actuator.length
-    if not _is_section(scenery):
-        return repeated(scenery, max(1, round(length / scenery.mesh.nodes[-1, 2])))
+    if not _is_section(model_mesh):
+        return repeated(model_mesh, max(1, round(length / model_mesh.mesh.nodes[-1, 2])))
     warps = snapshots[0].displacement.shape[1] == 3
-    return extruded(scenery, length, math.ceil(length / _LAYER), turned=warps)
+    return extruded(model_mesh, length, math.ceil(length / _LAYER), turned=warps)
 
 
-def _slices_a_pitch(scenery: Scenery) -> int:
-    return 2 if scenery.mesh.half else 1
+def _slices_a_pitch(model_mesh: ModelMesh) -> int:
+    return 2 if model_mesh.mesh.half else 1
 
 
 def _in_space(
     stack: Stack,
-    scenery: Scenery,
+    model_mesh: ModelMesh,
     snapshots: Sequence[Snapshot],
     fields: Sequence[NodalFields],
 ) -> tuple[list[Snapshot], list[NodalFields]]:
     """States and fields of a stack."""
-    nodes = split_alike(scenery.mesh)
+    nodes = split_alike(model_mesh.mesh)
     return (
-        [stack.snapshot(scenery, state) for state in snapshots],
+        [stack.snapshot(model_mesh, state) for state in snapshots],
         [stack.fields(nodes, *pair) for pair in zip(fields, snapshots, strict=True)],
     )

@@ -22,7 +22,7 @@ from fiberbend.states.recovery import (
     split_nodes,
 )
 from fiberbend.states.snapshot import (
-    Scenery,
+    ModelMesh,
     Snapshot,
     Target,
     Write,
@@ -44,7 +44,7 @@ def vtk_order(cell_type: str) -> Ints:
 
 
 def body_grid(
-    scenery: Scenery,
+    model_mesh: ModelMesh,
     snapshot: Snapshot,
     fields: NodalFields | None = None,
     nodes: SplitNodes | None = None,
@@ -58,16 +58,16 @@ def body_grid(
     its filter "Warp By Vector".
 
     Args:
-        scenery: mesh and materials.
+        model_mesh: mesh and materials.
         snapshot: the state.
         fields: its recovered fields, if at hand.
         nodes: `split_nodes` of the mesh, if at hand.
     """
     import pyvista as pv
 
-    mesh = scenery.mesh
+    mesh = model_mesh.mesh
     nodes = nodes or split_nodes(mesh)
-    fields = fields or recover(scenery, snapshot, nodes)
+    fields = fields or recover(model_mesh, snapshot, nodes)
     cells = nodes.cells[:, vtk_order(mesh.cell_type)]
     grid = pv.UnstructuredGrid({_vtk_type(mesh.cell_type): cells}, mesh.nodes[nodes.node])
     grid.point_data["displacement_mm"] = snapshot.displacement[nodes.node]
@@ -126,7 +126,7 @@ def write_series(target: Target, entries: Sequence[tuple[float, Sequence[str]]])
 
 
 def write_fields(
-    scenery: Scenery,
+    model_mesh: ModelMesh,
     snapshots: Sequence[Snapshot],
     write: Write,
     fields: Sequence[NodalFields] | None = None,
@@ -134,7 +134,7 @@ def write_fields(
     """Write LABEL.vtu, LABEL_fibers.vtp where fibers form lines, and the series states.pvd.
 
     Args:
-        scenery: mesh, materials and fibers.
+        model_mesh: mesh, materials and fibers.
         snapshots: the states, in the order of the series.
         write: writes a file, such as `RunFolder.write`.
         fields: recovered fields of the states, if at hand.
@@ -142,14 +142,14 @@ def write_fields(
     Returns:
         The names written.
     """
-    nodes = split_nodes(scenery.mesh)
+    nodes = split_nodes(model_mesh.mesh)
     entries: list[tuple[float, list[str]]] = []
     for number, state in enumerate(snapshots):
-        grid = body_grid(scenery, state, fields[number] if fields else None, nodes)
+        grid = body_grid(model_mesh, state, fields[number] if fields else None, nodes)
         files = {f"{state.label}.vtu": grid}
-        if scenery.lines is not None:
+        if model_mesh.lines is not None:
             files[f"{state.label}_fibers.vtp"] = fiber_lines(
-                scenery.mesh, scenery.lines, state.displacement, state.fiber_force
+                model_mesh.mesh, model_mesh.lines, state.displacement, state.fiber_force
             )
         for name, data in files.items():
             write(name, functools.partial(write_grid, data))

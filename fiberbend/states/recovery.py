@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 
 from fiberbend.states.bend import Bend, in_frame
-from fiberbend.states.snapshot import Scenery, Snapshot
+from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.mesh.data import (
     Floats,
     Ints,
@@ -178,14 +178,16 @@ def cauchy_stress(material: Material, f: Floats, multiplier: Floats) -> Floats:
     return multiplier[..., None, None] * np.eye(3) + _deviator(shape) / jacobian
 
 
-def recover(scenery: Scenery, snapshot: Snapshot, nodes: SplitNodes | None = None) -> NodalFields:
+def recover(
+    model_mesh: ModelMesh, snapshot: Snapshot, nodes: SplitNodes | None = None
+) -> NodalFields:
     """Strains and stresses of a state.
 
     FᵀF, det F and stress are evaluated at the points of `sampling` and carried on to the nodes
     of every cell, where they are averaged; what `NodalFields` derives belongs to the averages.
 
     Args:
-        scenery: mesh and materials.
+        model_mesh: mesh and materials.
         snapshot: the state.
         nodes: `split_nodes` of the mesh, if at hand.
 
@@ -195,7 +197,7 @@ def recover(scenery: Scenery, snapshot: Snapshot, nodes: SplitNodes | None = Non
     Raises:
         ValueError: arrays that do not fit the mesh.
     """
-    mesh = scenery.mesh
+    mesh = model_mesh.mesh
     # a section has two components, and three where it warps
     shapes = {mesh.nodes.shape, (len(mesh.nodes), 3)}
     if snapshot.displacement.shape not in shapes:
@@ -209,7 +211,7 @@ def recover(scenery: Scenery, snapshot: Snapshot, nodes: SplitNodes | None = Non
     stress = np.empty_like(f)
     for name, number in mesh.regions.items():
         here = mesh.cell_region == number
-        stress[here] = cauchy_stress(scenery.materials[name], f[here], multiplier[here])
+        stress[here] = cauchy_stress(model_mesh.materials[name], f[here], multiplier[here])
 
     def at_nodes(values: Floats) -> Floats:
         flat = onward @ values.reshape(*values.shape[:2], -1)

@@ -19,7 +19,7 @@ Write = Callable[[str, Callable[[IO[bytes]], object]], None]
 
 
 @dataclasses.dataclass(frozen=True)
-class Scenery:
+class ModelMesh:
     """What all states of a run share.
 
     Attributes:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from fiberbend.states.bend import Bend, in_frame
 from fiberbend.states.recovery import NodalFields, SplitNodes, split_nodes
-from fiberbend.states.snapshot import Scenery, Snapshot
+from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.bodies.extrude import extrude
 from geometry.bodies.stations import slice_stations
 from geometry.mesh.data import Floats, Ints, MeshData
@@ -25,7 +25,7 @@ class Stack:
     """A body in space of which every part is an image of one section or slice.
 
     Attributes:
-        scenery: mesh, materials and fibers of the body, n nodes and m hexahedra.
+        model_mesh: mesh, materials and fibers of the body, n nodes and m hexahedra.
         node: node of the section or slice that each node stands for, (n,).
         sign: signs of the components in the turning frame there, (n, 3).
         mirror: True for the nodes in a mirror plane z = const, (n,).
@@ -34,7 +34,7 @@ class Stack:
         segment: fiber segment that each segment stands for, (segments,), or None.
     """
 
-    scenery: Scenery
+    model_mesh: ModelMesh
     node: Ints
     sign: Floats
     mirror: NDArray[np.bool_]
@@ -42,14 +42,14 @@ class Stack:
     order: Ints
     segment: Ints | None
 
-    def snapshot(self, base: Scenery, state: Snapshot) -> Snapshot:
+    def snapshot(self, base: ModelMesh, state: Snapshot) -> Snapshot:
         """A state of the section or slice as one of the body in space.
 
         Args:
             base: the section or slice.
             state: its state.
         """
-        mesh = self.scenery.mesh
+        mesh = self.model_mesh.mesh
         position = in_frame(base.mesh.nodes, state.displacement)[self.node] * self.sign
         force = state.fiber_force
         return Snapshot(
@@ -73,7 +73,9 @@ class Stack:
         copies = self._copies
         source = np.empty(len(copies.node), dtype=np.int64)
         source[copies.cells.ravel()] = nodes.cells[self.cell[:, None], self.order].ravel()
-        rotation = Bend.of(state).frames(self.scenery.mesh.nodes[:, 2])[0] * self.sign[:, None, :]
+        rotation = (
+            Bend.of(state).frames(self.model_mesh.mesh.nodes[:, 2])[0] * self.sign[:, None, :]
+        )
         rotation = rotation[copies.node]
         stress = fields.cauchy[source]
         # one side alone leaves some of the shear that the other one takes away
@@ -88,7 +90,7 @@ class Stack:
 
     @functools.cached_property
     def _copies(self) -> SplitNodes:
-        return split_nodes(self.scenery.mesh)
+        return split_nodes(self.model_mesh.mesh)
 
     def at_cells(self, values: Floats) -> Floats:
         """Values at the nodes of every cell of the body from those of the section or slice.
@@ -102,17 +104,17 @@ class Stack:
         return values[self.cell[:, None], self.order]
 
 
-def extruded(scenery: Scenery, length: float, number: int, turned: bool = False) -> Stack:
+def extruded(model_mesh: ModelMesh, length: float, number: int, turned: bool = False) -> Stack:
     """A section extruded along z.
 
     Args:
-        scenery: of the section.
+        model_mesh: of the section.
         length: of the body, mm.
         number: layers of hexahedra.
         turned: the other half of a half section is its image by half a turn about y, as under a
             single helix, and is added; by a mirror plane it is left to whoever draws.
     """
-    section = scenery.mesh
+    section = model_mesh.mesh
     node, cell = np.arange(len(section.nodes)), np.arange(len(section.cells))
     sign, order = np.ones((len(node), 3)), np.tile(np.arange(9), (len(cell), 1))
     if turned:
@@ -120,7 +122,7 @@ def extruded(scenery: Scenery, length: float, number: int, turned: bool = False)
     mesh = extrude(section, slice_stations(length, number))
     planes = 2 * number + 1
     return Stack(
-        scenery=_solid(scenery, mesh, None),
+        model_mesh=_solid(model_mesh, mesh, None),
         node=np.tile(node, planes),
         sign=np.tile(sign, (planes, 1)),
         mirror=np.zeros(len(mesh.nodes), dtype=bool),
@@ -130,16 +132,16 @@ def extruded(scenery: Scenery, length: float, number: int, turned: bool = False)
     )
 
 
-def repeated(scenery: Scenery, number: int) -> Stack:
+def repeated(model_mesh: ModelMesh, number: int) -> Stack:
     """Slices put together along z.
 
     Each is the mirror image of the one before where half of the section is modelled, else alike.
 
     Args:
-        scenery: of the slice.
+        model_mesh: of the slice.
         number: slices.
     """
-    slab = scenery.mesh
+    slab = model_mesh.mesh
     section = root_section(slab)
     quads, nodes = len(section.cells), len(section.nodes)
     layers, extent = len(slab.cells) // quads, float(slab.nodes[-1, 2])
@@ -156,10 +158,10 @@ def repeated(scenery: Scenery, number: int) -> Stack:
     backward = forward.reshape(3, 9)[::-1].ravel()
     turned = slab.half & (tiles % 2 == 1)
     segment, fibers = None, None
-    if scenery.lines is not None:
-        segment, fibers = _segments(scenery.lines, slab, quads, number)
+    if model_mesh.lines is not None:
+        segment, fibers = _segments(model_mesh.lines, slab, quads, number)
     return Stack(
-        scenery=_solid(scenery, mesh, fibers),
+        model_mesh=_solid(model_mesh, mesh, fibers),
         node=plane * nodes + np.arange(len(mesh.nodes)) % nodes,
         sign=sign,
         mirror=slab.half & (plane % (2 * layers) == 0),
@@ -199,8 +201,8 @@ def root_section(slab: MeshData) -> MeshData:
     )
 
 
-def _solid(scenery: Scenery, mesh: MeshData, fibers: EmbeddedFibers | None) -> Scenery:
-    return dataclasses.replace(scenery, mesh=mesh, fibers=fibers, uniform=False)
+def _solid(model_mesh: ModelMesh, mesh: MeshData, fibers: EmbeddedFibers | None) -> ModelMesh:
+    return dataclasses.replace(model_mesh, mesh=mesh, fibers=fibers, uniform=False)
 
 
 def _both_halves(half: MeshData) -> tuple[MeshData, Ints, Floats, Ints, Ints]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fiberbend.states.snapshot import Scenery, Snapshot
+from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.bodies.extrude import hexahedral_body
 from geometry.mesh.data import Floats
 from geometry.sections.hemicircle import HemicircleActuator
@@ -22,13 +22,13 @@ MATERIALS = {
 }
 
 
-def scenery(
+def model_mesh(
     actuator: HemicircleActuator = SHORT,
     axial: float = 4.0,
     half: bool = True,
     element: str = "hexahedron",
     width: float = 0.38,
-) -> Scenery:
+) -> ModelMesh:
     """The actuator with its double helix at a pitch of 3 mm."""
     from geometry.mesh.tets import to_tetrahedra
 
@@ -36,7 +36,7 @@ def scenery(
     if element == "tetrahedron":
         mesh = to_tetrahedra(mesh)
     fibers = embed(mesh, actuator, Winding("double-helix", 3.0, width))
-    return Scenery(mesh, MATERIALS, fibers, smeared=False, title="Pure bending")
+    return ModelMesh(mesh, MATERIALS, fibers, smeared=False, title="Pure bending")
 
 
 def bent(nodes: Floats, length: float, angle: float, axis: float = 1.0) -> Floats:
@@ -51,7 +51,7 @@ def bent(nodes: Floats, length: float, angle: float, axis: float = 1.0) -> Float
     return np.column_stack([nodes[:, 0], y, z])
 
 
-def snapshot(scene: Scenery, degrees: float) -> Snapshot:
+def snapshot(scene: ModelMesh, degrees: float) -> Snapshot:
     """The state at an angle, with a made-up pressure and fiber force."""
     mesh, fibers = scene.mesh, scene.fibers
     length = mesh.nodes[mesh.cells[mesh.facets["winding"][:, 0]].ravel(), 2].max()

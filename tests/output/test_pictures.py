@@ -15,18 +15,18 @@ from fiberbend import columns as col
 from fiberbend.drawing.body import SIZE, draw_pictures
 from fiberbend.drawing.curves import draw_plots, plot_tip_force
 from fiberbend.drawing.page import nice_above
-from fiberbend.drawing.props import Props
-from fiberbend.drawing.stage import (
+from fiberbend.drawing.renderer import (
     FROM_THE_SIDE,
     Drawable,
     PictureError,
-    Stage,
+    Renderer,
     frame,
 )
+from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.drawing.tessellation import Tessellation, boundary_facets
 from fiberbend.states.snapshot import Write
 from geometry.checks import region_volumes
-from tests.output.bending import scenery, snapshot
+from tests.output.bending import model_mesh, snapshot
 
 
 def into(folder: Path) -> Write:
@@ -52,7 +52,7 @@ def is_drawn(path: Path) -> bool:
 def test_surface_encloses_the_body(element: str) -> None:
     import pyvista as pv
 
-    mesh = scenery(element=element).mesh
+    mesh = model_mesh(element=element).mesh
     pairs = boundary_facets(mesh, np.ones(len(mesh.cells), dtype=bool))
     skin = Tessellation(mesh, pairs, level=6)
     at_cells = mesh.nodes[mesh.cells]
@@ -72,13 +72,13 @@ def test_surface_encloses_the_body(element: str) -> None:
 
 
 def test_mirror_image_doubles_the_body() -> None:
-    scene = scenery()
-    props = Props(scene)
+    scene = model_mesh()
+    surfaces = BodySurfaces(scene)
     everything = np.ones(len(scene.mesh.cells), dtype=bool)
-    skin = Tessellation(scene.mesh, props.outside(everything), level=6)
+    skin = Tessellation(scene.mesh, surfaces.outside(everything), level=6)
     for state in (None, snapshot(scene, 40.0)):
         whole = (
-            props.surface(skin, state, mirror=True)
+            surfaces.surface(skin, state, mirror=True)
             .clean(tolerance=1e-6, absolute=True)
             .triangulate()
         )
@@ -90,7 +90,7 @@ def test_mirror_image_doubles_the_body() -> None:
 
 
 def test_pictures(tmp_path: Path) -> None:
-    scene = scenery()
+    scene = model_mesh()
     states = [snapshot(scene, angle) for angle in (30.0, 90.0)]
     names = draw_pictures(scene, states, into(tmp_path))
     assert names == [
@@ -118,7 +118,7 @@ def test_pictures(tmp_path: Path) -> None:
 def test_pictures_of_every_kind_of_body(
     half: bool, element: str, smeared: bool, tmp_path: Path
 ) -> None:
-    scene = scenery(half=half, element=element)
+    scene = model_mesh(half=half, element=element)
     scene = dataclasses.replace(scene, smeared=smeared)
     names = draw_pictures(scene, [snapshot(scene, 45.0)], into(tmp_path))
     assert names == ["undeformed.png", "cut.png", "bent_45deg.png"]
@@ -126,16 +126,16 @@ def test_pictures_of_every_kind_of_body(
 
 
 def test_every_picture_is_drawn_anew() -> None:
-    props = Props(scenery())
-    stage = Stage((200, 120))
-    parts = props.parts(np.ones(len(props.middle), dtype=bool))
+    surfaces = BodySurfaces(model_mesh())
+    renderer = Renderer((200, 120))
+    parts = surfaces.parts(np.ones(len(surfaces.middle), dtype=bool))
     try:
-        view = frame(props.mesh.nodes, FROM_THE_SIDE, 200 / 120)
-        empty = stage.draw([], view)
-        image = stage.draw(parts, view)
-        red = stage.draw([Drawable(layer.data, color="red") for layer in parts], view)
+        view = frame(surfaces.mesh.nodes, FROM_THE_SIDE, 200 / 120)
+        empty = renderer.draw([], view)
+        image = renderer.draw(parts, view)
+        red = renderer.draw([Drawable(layer.data, color="red") for layer in parts], view)
     finally:
-        stage.close()
+        renderer.close()
     assert empty.std() == 0
     assert image.std() > 10
     drawn = (red != 255).any(axis=2)
@@ -145,7 +145,7 @@ def test_every_picture_is_drawn_anew() -> None:
 def test_no_pyvista_is_said_plainly(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyvista", None)
     with pytest.raises(PictureError, match="pictures need pyvista"):
-        Stage((100, 100))
+        Renderer((100, 100))
 
 
 def history(angles: Sequence[float]) -> list[col.Row]:

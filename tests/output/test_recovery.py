@@ -13,13 +13,13 @@ from fiberbend.states.recovery import (
     recover,
     split_nodes,
 )
-from fiberbend.states.snapshot import Scenery, Snapshot
+from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.mesh.data import Floats
 from geometry.mesh.tets import to_tetrahedra
 from materials.material import Material
 from tests.exact.solids import box
 from tests.materials.rubber import RUBBERS, uniaxial_stress
-from tests.output.bending import SHORT, scenery, snapshot
+from tests.output.bending import SHORT, model_mesh, snapshot
 
 
 def homogeneous(f: Floats, material: Material, p: float, element: str) -> NodalFields:
@@ -27,7 +27,7 @@ def homogeneous(f: Floats, material: Material, p: float, element: str) -> NodalF
     mesh = box((2.0, 1.0, 3.0), (2, 1, 2))
     if element == "tetrahedron":
         mesh = to_tetrahedra(mesh)
-    scene = Scenery(mesh, {"solid": material}, None, smeared=False, title="box")
+    scene = ModelMesh(mesh, {"solid": material}, None, smeared=False, title="box")
     moved = mesh.nodes @ (f - np.eye(3)).T
     state = Snapshot("state", 1, 0.0, 0.0, moved, np.full(mesh.cells.shape, p), None)
     return recover(scene, state)
@@ -95,7 +95,7 @@ def test_stress_is_the_slope_of_the_energy(material: Material, state: str) -> No
 
 @pytest.mark.parametrize("element", ["hexahedron", "tetrahedron"])
 def test_pure_bending_stretches_by_the_distance_from_the_axis(element: str) -> None:
-    scene = scenery(axial=1.5, element=element)
+    scene = model_mesh(axial=1.5, element=element)
     state = snapshot(scene, 60.0)
     nodes = split_nodes(scene.mesh)
     fields = recover(scene, state, nodes)
@@ -107,7 +107,7 @@ def test_pure_bending_stretches_by_the_distance_from_the_axis(element: str) -> N
 
 
 def test_nothing_is_averaged_across_materials() -> None:
-    scene = scenery()
+    scene = model_mesh()
     nodes = split_nodes(scene.mesh)
     state = snapshot(scene, 60.0)
     fields = recover(scene, state, nodes)
@@ -115,14 +115,14 @@ def test_nothing_is_averaged_across_materials() -> None:
     mesh = dataclasses.replace(
         scene.mesh, cells=scene.mesh.cells[alone], cell_region=scene.mesh.cell_region[alone]
     )
-    only = Scenery(mesh, scene.materials, None, smeared=False, title="")
+    only = ModelMesh(mesh, scene.materials, None, smeared=False, title="")
     state = dataclasses.replace(state, multiplier=state.multiplier[alone])
     floor = recover(only, state).von_mises[split_nodes(mesh).cells]
     assert fields.von_mises[nodes.cells[alone]] == pytest.approx(floor)
 
 
 def test_wrong_input_is_refused() -> None:
-    scene = scenery()
+    scene = model_mesh()
     state = snapshot(scene, 30.0)
     with pytest.raises(ValueError, match="displacement"):
         recover(scene, dataclasses.replace(state, displacement=state.displacement[1:]))

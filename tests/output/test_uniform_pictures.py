@@ -21,7 +21,7 @@ from fiberbend.running.folder import RunFolder
 from fiberbend.running.uniform_report import draw_states
 from fiberbend.states.bend import Bend
 from fiberbend.states.recovery import cauchy_stress, recover
-from fiberbend.states.snapshot import Scenery
+from fiberbend.states.snapshot import ModelMesh
 from fiberbend.states.stack import extruded, repeated, split_alike
 from geometry.bodies.extrude import section_quadrilaterals
 from geometry.checks import region_volumes
@@ -72,7 +72,7 @@ def test_the_frame_moves_as_the_kinematics_says() -> None:
 
 
 @BOTH
-def test_straight_stretch_is_uniaxial(make: Callable[[], Scenery]) -> None:
+def test_straight_stretch_is_uniaxial(make: Callable[[], ModelMesh]) -> None:
     """No curvature, λ0 given, the section shrunk as incompressibility wants it."""
     stretch, scene = 1.4, make()
     rubber = Material("yeoh", {"c1": 0.11, "c2": 0.02})
@@ -96,7 +96,7 @@ def test_straight_stretch_is_uniaxial(make: Callable[[], Scenery]) -> None:
 
 
 @BOTH
-def test_bending_stretches_by_the_height(make: Callable[[], Scenery]) -> None:
+def test_bending_stretches_by_the_height(make: Callable[[], ModelMesh]) -> None:
     scene = make()
     bent = state(scene, 120.0, 0.95)
     nodes = split_alike(scene.mesh)
@@ -140,7 +140,7 @@ def test_wrong_shapes_are_refused() -> None:
 def test_repeated_slices_are_the_long_body(half: bool) -> None:
     scene = cell(half)
     stack = repeated(scene, 3)
-    fibers, long = stack.scenery.fibers, embed(stack.scenery.mesh, SHORT, DOUBLE)
+    fibers, long = stack.model_mesh.fibers, embed(stack.model_mesh.mesh, SHORT, DOUBLE)
     assert fibers is not None
     for field in dataclasses.fields(long):
         ours, theirs = getattr(fibers, field.name), getattr(long, field.name)
@@ -148,7 +148,7 @@ def test_repeated_slices_are_the_long_body(half: bool) -> None:
     moved = stack.snapshot(scene, state(scene, move=wave))
     # one body in one piece: the same point of every pitch lies on the arc
     pitch = 2 * PITCH / 2 if half else PITCH
-    mesh, bend = stack.scenery.mesh, Bend.of(state(scene))
+    mesh, bend = stack.model_mesh.mesh, Bend.of(state(scene))
     placed = mesh.nodes + moved.displacement
     own = mesh.nodes.copy()
     own[:, 2] = 0.0
@@ -163,8 +163,8 @@ def test_mirrored_slices_recover_alike() -> None:
     nodes = split_alike(scene.mesh)
     stack = repeated(scene, 4)
     spread = stack.fields(nodes, recover(scene, bent, nodes), bent)
-    direct = recover(stack.scenery, stack.snapshot(scene, bent))
-    inner = _inside(stack.scenery.mesh)
+    direct = recover(stack.model_mesh, stack.snapshot(scene, bent))
+    inner = _inside(stack.model_mesh.mesh)
     # what second-order interpolation of the arc leaves
     assert spread.stretches[inner] == pytest.approx(direct.stretches[inner], rel=2e-3)
     off = np.linalg.norm(spread.cauchy[inner] - direct.cauchy[inner])
@@ -183,7 +183,7 @@ def test_swept_section_recovers_alike() -> None:
     nodes = split_alike(scene.mesh)
     stack = extruded(scene, SHORT.length, 24)
     spread = stack.fields(nodes, recover(scene, bent, nodes), bent)
-    direct = recover(stack.scenery, stack.snapshot(scene, bent))
+    direct = recover(stack.model_mesh, stack.snapshot(scene, bent))
     assert spread.stretches == pytest.approx(direct.stretches, rel=2e-3)
     assert spread.cauchy == pytest.approx(direct.cauchy, abs=5e-3 * np.abs(direct.cauchy).max())
 
@@ -192,9 +192,9 @@ def test_turned_half_completes_a_twisted_section() -> None:
     scene = section()
     twisted = state(scene, 90.0, move=warp, twist=-0.01)
     stack = extruded(scene, SHORT.length, 8, turned=True)
-    mesh = stack.scenery.mesh
+    mesh = stack.model_mesh.mesh
     assert not mesh.half
-    half = extruded(scene, SHORT.length, 8).scenery.mesh
+    half = extruded(scene, SHORT.length, 8).model_mesh.mesh
     volumes = region_volumes(half)
     assert region_volumes(mesh) == pytest.approx({name: 2 * v for name, v in volumes.items()})
     placed = mesh.nodes + stack.snapshot(scene, twisted).displacement
@@ -277,7 +277,7 @@ def test_floor_bulge_is_read_between_middle_and_edge() -> None:
     assert Crosscut(scene).bulge(state(scene, move=sag)) == pytest.approx(0.7)
     round_one = CircleActuator(radius=8, length=24, wall=2, cap=4)
     mesh = section_quadrilaterals(round_one, MeshSize(axial=PITCH))
-    tube = Scenery(mesh, MATERIALS, None, smeared=False, title="", uniform=True)
+    tube = ModelMesh(mesh, MATERIALS, None, smeared=False, title="", uniform=True)
     still = dataclasses.replace(
         state(scene),
         displacement=np.zeros_like(mesh.nodes),

@@ -20,7 +20,7 @@ from fiberbend.states.paraview import (
 )
 from geometry.checks import region_volumes
 from geometry.mesh.reference import cell_rule
-from tests.output.bending import SHORT, bent, scenery, snapshot
+from tests.output.bending import SHORT, bent, model_mesh, snapshot
 
 ELEMENTS = {"hexahedron": 29, "tetrahedron": 24}
 
@@ -46,7 +46,7 @@ def vtk_volumes(grid: Any, element: str) -> np.ndarray:
 @pytest.mark.parametrize("to_path", [True, False])
 def test_vtk_sees_the_same_body(element: str, to_path: bool, tmp_path: Path) -> None:
     # a wrong order of nodes would turn cells inside out or lose their curved shape
-    scene = scenery(element=element)
+    scene = model_mesh(element=element)
     target = tmp_path / "part.tmp"
     grid = body_grid(scene, snapshot(scene, 45.0))
     if to_path:
@@ -66,7 +66,7 @@ def test_vtk_sees_the_same_body(element: str, to_path: bool, tmp_path: Path) -> 
 
 
 def test_fields_of_the_file(tmp_path: Path) -> None:
-    scene = scenery()
+    scene = model_mesh()
     state = dataclasses.replace(
         snapshot(scene, 45.0), multiplier=np.full(scene.mesh.cells.shape, -0.25)
     )
@@ -92,7 +92,7 @@ def test_fields_of_the_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize("element", ELEMENTS)
 @pytest.mark.parametrize("half", [True, False])
 def test_fibers_lie_on_the_bent_outline(element: str, half: bool, tmp_path: Path) -> None:
-    scene = scenery(axial=2.0, half=half, element=element)
+    scene = model_mesh(axial=2.0, half=half, element=element)
     assert scene.fibers is not None
     state = snapshot(scene, 60.0)
     lines = fiber_lines(scene.mesh, scene.fibers, state.displacement, state.fiber_force)
@@ -114,7 +114,7 @@ def test_fibers_lie_on_the_bent_outline(element: str, half: bool, tmp_path: Path
 
 def test_polylines_follow_the_curves() -> None:
     # a full body has one unbroken line per curve, and lines lose none of the fibers' length
-    scene = scenery(half=False)
+    scene = model_mesh(half=False)
     assert scene.fibers is not None
     lines = fiber_lines(scene.mesh, scene.fibers, force=np.arange(len(scene.fibers.cell)) + 1.0)
     assert lines.n_lines == 10
@@ -127,7 +127,7 @@ def test_polylines_follow_the_curves() -> None:
 
 
 def test_half_body_breaks_its_lines_at_the_mirror() -> None:
-    scene = scenery()
+    scene = model_mesh()
     assert scene.fibers is not None
     lines = fiber_lines(scene.mesh, scene.fibers)
     ends = np.concatenate([cell.points[[0, -1]] for cell in lines.cell])
@@ -137,7 +137,7 @@ def test_half_body_breaks_its_lines_at_the_mirror() -> None:
 
 
 def test_series(tmp_path: Path) -> None:
-    scene = scenery()
+    scene = model_mesh()
     states = [snapshot(scene, angle) for angle in (30.0, 60.0)]
 
     def write(name: str, fill: Any) -> None:
@@ -159,7 +159,7 @@ def test_series(tmp_path: Path) -> None:
 
 
 def test_smeared_fibers_are_no_lines(tmp_path: Path) -> None:
-    scene = dataclasses.replace(scenery(), smeared=True)
+    scene = dataclasses.replace(model_mesh(), smeared=True)
     written: list[str] = []
     write_fields(scene, [snapshot(scene, 30.0)], lambda name, fill: written.append(name))
     assert written == ["30deg.vtu", "states.pvd"]

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fiberbend.states.snapshot import Scenery, Snapshot
+from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.bodies.extrude import hexahedral_slice, section_quadrilaterals
 from geometry.mesh.data import Floats
 from geometry.sections.size import MeshSize
@@ -19,21 +19,21 @@ PITCH = 3.0
 DOUBLE = Winding("double-helix", PITCH, 0.38)
 
 
-def section(half: bool = True) -> Scenery:
+def section(half: bool = True) -> ModelMesh:
     mesh = section_quadrilaterals(SHORT, MeshSize(axial=PITCH, half=half))
     fibers = smear(mesh, SHORT, DOUBLE)
-    return Scenery(mesh, MATERIALS, fibers, smeared=True, title="Section", uniform=True)
+    return ModelMesh(mesh, MATERIALS, fibers, smeared=True, title="Section", uniform=True)
 
 
-def cell(half: bool = True, fineness: int = 1) -> Scenery:
+def cell(half: bool = True, fineness: int = 1) -> ModelMesh:
     extent = PITCH / 2 if half else PITCH
     mesh = hexahedral_slice(SHORT, MeshSize(axial=PITCH, section=fineness, half=half), extent, 2)
     fibers = embed(mesh, SHORT, DOUBLE)
-    return Scenery(mesh, MATERIALS, fibers, smeared=False, title="Cell", uniform=True)
+    return ModelMesh(mesh, MATERIALS, fibers, smeared=False, title="Cell", uniform=True)
 
 
 def state(
-    scene: Scenery,
+    scene: ModelMesh,
     degrees: float = 90.0,
     stretch: float = 1.0,
     move: Callable[[Floats], Floats] | None = None,

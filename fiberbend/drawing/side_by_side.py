@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 
 from fiberbend.drawing.page import Page, colormap
-from fiberbend.drawing.props import Props
-from fiberbend.drawing.stage import (
+from fiberbend.drawing.renderer import (
     Drawable,
     Image,
-    Stage,
+    Renderer,
     View,
     frame,
 )
+from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.drawing.tessellation import Tessellation
-from fiberbend.states.snapshot import Scenery, Snapshot
+from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.mesh.data import Floats
 
 _ALONE, _BAND = (1400, 900), 730
@@ -26,11 +26,11 @@ _PANEL = (1000, 1000)
 _MIRROR = np.array([-1.0, 1.0, 1.0])
 
 
-class Gallery:
+class SideBySide:
     """Body and fibers in several states; a sheath that would hide fibers is left out.
 
     Args:
-        scenery: the body in space.
+        model_mesh: the body in space.
         states: at least one.
         level: pieces along an element's edge.
 
@@ -40,13 +40,15 @@ class Gallery:
         sheathed: what to add to a label: whether a sheath was left out.
     """
 
-    def __init__(self, scenery: Scenery, states: Sequence[Snapshot], level: int) -> None:
-        self._mesh, self._states = scenery.mesh, states
-        self._props = Props(scenery)
-        self.skin = Tessellation(scenery.mesh, self._props.outside(self._props.bare), level)
-        name = "outer" if self._props.bare.all() else "winding"
-        self.outside = Tessellation(scenery.mesh, scenery.mesh.facets[name], level)
-        self.sheathed = "" if self._props.bare.all() else ", sheath not drawn"
+    def __init__(self, model_mesh: ModelMesh, states: Sequence[Snapshot], level: int) -> None:
+        self._mesh, self._states = model_mesh.mesh, states
+        self._surfaces = BodySurfaces(model_mesh)
+        self.skin = Tessellation(
+            model_mesh.mesh, self._surfaces.outside(self._surfaces.bare), level
+        )
+        name = "outer" if self._surfaces.bare.all() else "winding"
+        self.outside = Tessellation(model_mesh.mesh, model_mesh.mesh.facets[name], level)
+        self.sheathed = "" if self._surfaces.bare.all() else ", sheath not drawn"
 
     def page(
         self,
@@ -70,23 +72,23 @@ class Gallery:
             colors: a matplotlib colour map or its name.
 
         Raises:
-            fiberbend.drawing.stage.PictureError: nothing can be drawn on this machine.
+            fiberbend.drawing.renderer.PictureError: nothing can be drawn on this machine.
         """
         is_alone = len(self._states) == 1
         size = (_ALONE[0], _BAND) if is_alone else _PANEL
         views = [self._view(state, toward, size[0] / size[1]) for state in self._states]
         width = max(view.width for view in views)
-        stage = Stage(size)
+        renderer = Renderer(size)
         images: list[Image] = []
         try:
             for state, value, view in zip(self._states, values, views, strict=True):
-                surface = self._props.surface(self.skin, state, self._mesh.half)
+                surface = self._surfaces.surface(self.skin, state, self._mesh.half)
                 surface["value"] = np.tile(value, 2 if self._mesh.half else 1)
-                layers = [Drawable(surface, scalars="value"), *self._props.threads(state)]
+                layers = [Drawable(surface, scalars="value"), *self._surfaces.fiber_tubes(state)]
                 view = dataclasses.replace(view, width=width)
-                images.append(stage.draw(layers, view, limits, colors or colormap()))
+                images.append(renderer.draw(layers, view, limits, colors or colormap()))
         finally:
-            stage.close()
+            renderer.close()
         if is_alone:
             caption = captions[0].replace("\n", ",  ")
             page = Page(_ALONE, f"{title};  {caption}")

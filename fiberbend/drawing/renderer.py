@@ -70,7 +70,7 @@ def frame(points: Floats, toward: tuple[float, float, float], aspect: float) -> 
     return View(toward, (low + high) / 2 @ axes, float(width))
 
 
-class Stage:
+class Renderer:
     """An off-screen window that is used again for every picture.
 
     Args:

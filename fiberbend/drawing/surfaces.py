@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fiberbend.drawing.page import COLORS
-from fiberbend.drawing.stage import Drawable
+from fiberbend.drawing.renderer import Drawable
 from fiberbend.drawing.tessellation import Tessellation, boundary_facets, on_mirror
 from fiberbend.states.fiber_lines import fiber_lines
-from fiberbend.states.snapshot import Scenery, Snapshot
+from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.mesh.data import Floats, Ints
 from geometry.winding.segments import EmbeddedFibers
 
@@ -24,11 +24,11 @@ _FIBER_RADIUS = 0.2
 Mask = NDArray[np.bool_]
 
 
-class Props:
+class BodySurfaces:
     """Drawable parts of a run; a half body is completed by its mirror image.
 
     Args:
-        scenery: mesh and fibers.
+        model_mesh: mesh and fibers.
 
     Attributes:
         mesh: the mesh.
@@ -38,9 +38,9 @@ class Props:
         names: the regions, and "fiber" where there are lines.
     """
 
-    def __init__(self, scenery: Scenery) -> None:
-        self.mesh = scenery.mesh
-        self.fibers = None if scenery.lines is None else _one_line_each(scenery.lines)
+    def __init__(self, model_mesh: ModelMesh) -> None:
+        self.mesh = model_mesh.mesh
+        self.fibers = None if model_mesh.lines is None else _one_line_each(model_mesh.lines)
         self.middle: Floats = self.mesh.nodes[self.mesh.cells].mean(axis=1)
         everything = np.ones(len(self.mesh.cells), dtype=bool)
         self.bare: Mask = everything if self.fibers is None else ~self._region("sheath")
@@ -87,7 +87,7 @@ class Props:
         data.point_data.active_normals = normals
         return data
 
-    def threads(
+    def fiber_tubes(
         self,
         state: Snapshot | None = None,
         low: float = -np.inf,
