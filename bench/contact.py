@@ -19,7 +19,7 @@ ACTUATORS = ((8, 160), (8, 130), (6, 160))
 SHORT: dict[str, Any] = {"length": "24 mm", "cap": "6 mm"}
 LEVEL: dict[str, Any] = {"section": "rectangle", "width": "16 mm", "height": "8 mm"}
 STIFFNESS = 66.0
-"""MPa/mm: what a case with roof and post takes for these materials unless told."""
+"""MPa/mm: what a case with roof and post takes for these materials by default."""
 HEAD = """# Tip force by contact
 
 `OPENBLAS_NUM_THREADS=1 python bench/contact.py` makes this page. Obstacles are rigid, without
@@ -41,7 +41,7 @@ def fig11(actuators: Sequence[Fig11]) -> list[str]:
         "",
         "![the baseline between roof and post, side view](images/contact_blocked.png)",
         "",
-        "F L_f lies near κ P and at half the moment of a section held straight. The nearness is a "
+        "F L_f lies near κ P and at half the moment of a section kept straight. The nearness is a "
         "coincidence: rubber inside the winding passes the pressure on, so that the acting area "
         "reaches the winding (straight section and cell); but the tip's soft cap, which turns, "
         "passes only half of that moment on to the post, and the roof takes the rest.",
@@ -54,8 +54,8 @@ def fig11(actuators: Sequence[Fig11]) -> list[str]:
         [
             "radius, length, mm",
             *[
-                f"{way}: {what}"
-                for way in ("held", "pushed")
+                f"{support}: {what}"
+                for support in ("held", "pushed")
                 for what in ("steps; iterations; cut-backs", "balance missed by", "s")
             ],
         ],
@@ -71,8 +71,8 @@ def ratios(actuators: Sequence[Fig11]) -> list[str]:
     for name, column, runs in (
         ("body, held", "tip_force_N", "guided"),
         ("body, pushed", "tip_force_N", "contact"),
-        ("section held straight", MOMENT, "section"),
-        ("cell held straight", MOMENT, "cell"),
+        ("section kept straight", MOMENT, "section"),
+        ("cell kept straight", MOMENT, "cell"),
     ):
         forces = [getattr(a, runs).at(200)[column] for a in (base, thinner, shorter)]
         rows.append([name, *fixed([forces[0] / forces[1], forces[0] / forces[2]], 3)])
@@ -106,8 +106,8 @@ def _roof(actuators: Sequence[Fig11]) -> list[list[str]]:
     for found, kpa in ((actuators[0], 100), (actuators[-1], 250)):
         name = f"radius{found.radius}_length{found.length}"
         straight = found.section.at(kpa)[MOMENT]
-        for label, way in (("held", "guided"), ("pushed", "contact")):
-            roof = carried(name, way, kpa)
+        for label, support in (("held", "guided"), ("pushed", "contact")):
+            roof = carried(name, support, kpa)
             parts = fixed([roof[part] for part in ("all", "rims", "middle")], 3)
             rest = fixed([roof["moment"], straight, roof["angle"]], 1)
             rows.append([f"radius {found.radius} mm, {kpa} kPa, {label}", *parts, *rest])
@@ -149,7 +149,7 @@ def causes(actuators: Sequence[Fig11]) -> list[str]:
         "- Obstacles yield: the next table but one.",
         "",
         "Upward force of the roof, N, and moment of roof and post beyond half the length, N mm, "
-        "which is that of a section held straight, and more by its share of the free bend where "
+        "which is that of a section kept straight, and more by its share of the free bend where "
         "the body sags:",
         "",
         *table(
@@ -208,7 +208,7 @@ def stiffness() -> list[str]:
     return [
         "## What the obstacles' stiffness costs",
         "",
-        "A penalty: under a pressure p an obstacle yields by p/k. Unless a case says otherwise, k "
+        "A penalty: under a pressure p an obstacle yields by p/k. By default k "
         "is a hundred times the modulus by the thickness of what touches, that is of the sheath, "
         "7.6 MPa/mm here; between roof and post, where nothing else yields, with the modulus of "
         "the wall, 66 MPa/mm. The short actuator at 60 kPa; off in % of the value for k → ∞. "

@@ -91,12 +91,12 @@ def percent(found: Sequence[float], true: Sequence[float]) -> list[str]:
     return [f"{100 * (a / b - 1):+.2f}" for a, b in zip(found, true, strict=True)]
 
 
-def carried(name: str, way: str, kpa: int) -> dict[str, float]:
+def carried(name: str, support: str, kpa: int) -> dict[str, float]:
     """What the roof does to an actuator of Fig. 11.
 
     Args:
         name: its dimensions, as in the name of its case.
-        way: "guided" or "contact".
+        support: "guided" or "contact".
         kpa: the pressure, kPa.
 
     Returns:
@@ -104,8 +104,8 @@ def carried(name: str, way: str, kpa: int) -> dict[str, float]:
         the length, N; the moment in the body at half its length, of roof and post beyond, N mm;
         the angle to which the curvature of the middle half adds up along the length, °.
     """
-    note = RUNS / f"carried_{name}_{way}_{kpa}.json"
-    case = read(f"fig11/{name}_{way}.yaml")
+    note = RUNS / f"carried_{name}_{support}_{kpa}.json"
+    case = read(f"fig11/{name}_{support}.yaml")
     case["effects"][0] = {"pressure": {"to": f"{kpa} kPa"}}
     case["output"] = {}
     if note.exists():
@@ -123,11 +123,11 @@ def carried(name: str, way: str, kpa: int) -> dict[str, float]:
 
     def push(name: str) -> Any:
         """Upward forces of roof or post on the nodes."""
-        if way == "contact":
+        if support == "contact":
             return body.symmetry_factor * scene.force(f"Contact[{name}]")[up]
-        held = np.zeros(body.local)
-        held[scene.fixed(name)] = scene.residual()[0][scene.fixed(name)]
-        return body.symmetry_factor * held[up]
+        reaction = np.zeros(body.local)
+        reaction[scene.fixed(name)] = scene.residual()[0][scene.fixed(name)]
+        return body.symmetry_factor * reaction[up]
 
     frames, shape = built.observables.frames, built.march.states[-1].shape
     assert frames is not None

@@ -28,9 +28,9 @@ class Fig11:
     Attributes:
         radius: of the chamber, mm.
         length: of the chamber, mm.
-        guided: body held by strips.
+        guided: body with strips of roof and post fixed.
         contact: body between obstacles.
-        section: section held straight, its axis free to stretch.
+        section: section kept straight, its axis free to stretch.
         cell: the same of a cell with every fiber.
     """
 
@@ -45,7 +45,7 @@ class Fig11:
     def solve(cls, radius: int, length: int) -> Fig11:
         """Run the four models."""
         name = f"radius{radius}_length{length}"
-        guided, contact = (read(f"fig11/{name}_{way}.yaml") for way in ("guided", "contact"))
+        guided, contact = (read(f"fig11/{name}_{tip}.yaml") for tip in ("guided", "contact"))
         straight = copy.deepcopy(guided) | {"mesh": {}}
         straight["effects"][2] = {"straight": {"stretch": "free"}}
         discrete = copy.deepcopy(straight) | {"model": "cell"}

@@ -1,4 +1,4 @@
-"""Hard cases in every model that holds them: docs/stability.md by `make hard`.
+"""Hard cases in every model that supports them: docs/stability.md by `make hard`.
 
 Each case runs in a process of its own with a time limit, so that a crash or a hang is a line of the
 table and a failure, not the end of the run.
@@ -104,14 +104,14 @@ HEAD = """\
 
 Made by `make hard` (`bench/hard.py`) from the table of cases in `tests/hard/cases.py`; each runs in
 a process of its own, at most {limit} s. What is fast is part of `make test`. The body is
-80 mm long unless the case says otherwise, so that 180° bend it as much as 360° the paper's
+80 mm long by default, so that 180° bend it as much as 360° the paper's
 actuator; bodies are coarse (elements of 8 mm) with their winding spread over its surface.
 
 **{count} runs: {reached} reached, {refused} refused with a physical reason, {bad} not as expected;
 {iterations} Newton iterations.**
 
 - *end*: reached, or refused; the reasons are below.
-- *modes*: unstable modes at the end (negative eigenvalues with all loads held, by inertia).
+- *modes*: unstable modes at the end (negative eigenvalues with all loads kept, by inertia).
 - *gap*: of the work of the loads, ∫ P dV and the like by a spline through the steps, from the
   stored energy, over the greatest stored energy.
 - Times are wall times on the machine that made the page, beside whatever else it did.
@@ -186,7 +186,7 @@ def write(records: Sequence[dict[str, Any]], constants: Sequence[str], faults: l
 def main() -> int:
     """Run all, or those named; write the page when all ran."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("names", nargs="*", help="cases; all unless said")
+    parser.add_argument("names", nargs="*", help="cases; all by default")
     parser.add_argument("--model", choices=MODELS)
     parser.add_argument("-j", type=int, default=os.cpu_count() or 1, help="at once")
     options = parser.parse_args()

@@ -1,4 +1,4 @@
-"""Hard cases as data: what makes each hard, which models hold it, how it has to end."""
+"""Hard cases as data: what makes each hard, which models support it, how it has to end."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class Hard:
         name: unique, of letters, digits and dashes.
         why: what is hard about it.
         changes: to `BASE`, by dotted path; None takes a key away.
-        models: those that hold it.
+        models: those that support it.
         absent: why not the others.
         own: further changes by model; a key that is None there keeps what `OWN` has not.
         refused: by model, a word that the reason has to contain; reached where it is not named.
@@ -117,11 +117,11 @@ class Hard:
         return find(name)
 
     def case(self, model: str) -> dict[str, Any]:
-        """The case for one of its models, as YAML would hold it."""
+        """The case for one of its models, as YAML would give it."""
         data = copy.deepcopy(BASE) | {"title": self.name, "model": model}
         changes = {**OWN[model], **self.changes, **self.own.get(model, {})}
         if "effects" in changes:
-            # another list of effects: what is said of a winding's place has none
+            # another list of effects: settings at the place of a winding have none
             data["effects"] = copy.deepcopy(changes["effects"])
         for path, value in changes.items():
             if not ("effects" in changes and path.startswith("effects")):
@@ -147,7 +147,7 @@ SOFT = {
     },
     "effects": [{"pressure": {"to": "100 kPa"}}],
 }
-"""Nothing holds it together, and its floor is only twice as stiff as its wall."""
+"""Without a winding, and its floor is only twice as stiff as its wall."""
 
 
 def weight(direction: str) -> dict[str, Any]:
@@ -209,7 +209,7 @@ HARD: tuple[Hard, ...] = (
         "pitch-20",
         "rubber bulging out between turns that are wider apart than the chamber is high",
         {f"{WINDING}.pitch": "20 mm"},
-        # no smeared model knows the bulges: pitch-20-turns is the measure
+        # no smeared model has the bulges: pitch-20-turns is the measure
         beside={"cell": None},
     ),
     Hard(

@@ -1,4 +1,4 @@
-"""What is done with a hard case: run, or something that no case file can say."""
+"""What is done with a hard case: run, or something that no case file describes."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def _against(hard: Hard, model: str, result: RunResult) -> Check:
     return f"angle over that of {name}, {measure}, less one", off, -within, within
 
 
-# --- what no case file can say ------------------------------------------------------------------
+# --- what no case file describes ---------------------------------------------------------------
 
 
 class Driven(Hook):
@@ -227,7 +227,7 @@ def resumed(hard: Hard, model: str) -> Done:
 
 
 def distorted(hard: Hard, model: str) -> Done:
-    """Nodes inside the body moved at random: the angle hardly knows; less so on a finer mesh."""
+    """Nodes inside the body moved at random: the angle hardly changes; less so on a finer mesh."""
     done, off, moved = _distort(hard, model)
     done.checks.append(("nodes that were moved", float(moved), 20.0, np.inf))
     done.checks.append(("angle over that of straight elements, less one", off, -1e-2, 1e-2))
@@ -242,8 +242,8 @@ def _distort(hard: Hard, model: str) -> tuple[Done, float, int]:
     """The run on a distorted mesh, how far its angle is off, and the number of nodes moved."""
     case = parse_case(hard.case(model))
     mesh = meshed(case).mesh(case)
-    held = np.unique(np.concatenate([mesh.facet_nodes(name).ravel() for name in mesh.facets]))
-    inner = np.setdiff1d(np.arange(len(mesh.nodes)), [*held, *mesh.points.values()])
+    fixed = np.unique(np.concatenate([mesh.facet_nodes(name).ravel() for name in mesh.facets]))
+    inner = np.setdiff1d(np.arange(len(mesh.nodes)), [*fixed, *mesh.points.values()])
     nodes = mesh.nodes.copy()
     # 0.3 of the distance of neighbours across the sheath, of 1 mm with two nodes an element
     size = 0.3 * 1.0 / (2 * case.mesh.section)
@@ -259,12 +259,12 @@ def hanging(hard: Hard, model: str) -> Done:
     driven = Driven(hard, model)
     done = driven.run()
     direction = hard.case(model)["effects"][0]["gravity"]["direction"]
-    way = np.zeros(3)
-    way["xyz".index(direction[1])] = 1.0 if direction[0] == "+" else -1.0
+    pull = np.zeros(3)
+    pull["xyz".index(direction[1])] = 1.0 if direction[0] == "+" else -1.0
     at = next(i for i, row in enumerate(done.rows) if row["load gravity"] == 1.0)
     move = driven.extra[at] - driven.extra[0]
-    along = float(move @ way)
-    other = float(np.linalg.norm(move - along * way))
+    along = float(move @ pull)
+    other = float(np.linalg.norm(move - along * pull))
     done.checks.append((f"tip's move along {direction}, mm", along, 1e-3, 40.0))
     if direction[1] != "z":
         done.checks.append(("its move across over that", other / along, 0.0, 0.5))

@@ -169,7 +169,7 @@ def blocked() -> list[str]:
     return [
         "## Blocked tip at 100 kPa",
         "",
-        "κ P is eq. (21) of Polygerinos et al. 2015; an independent section model held straight "
+        "κ P is eq. (21) of Polygerinos et al. 2015; an independent section model kept straight "
         "gives 94 N mm. The tip is guided, not glued: its cap rotates (column) and the sheath "
         "under roof and post yields, so that F L_f stays below that moment. A post of 1 mm "
         "squeezes the sheath (1 mm thick, a tenth of the wall's modulus) out from under it.",
@@ -193,7 +193,7 @@ def blocked() -> list[str]:
 
 
 def causes() -> list[str]:
-    """What keeps F L_f below the moment of a body held straight: sheath and cap."""
+    """What keeps F L_f below the moment of a body kept straight: sheath and cap."""
     rows = []
     for name, sheath, cap in (
         ("as the baseline", "ecoflex-0030", 15),
@@ -227,7 +227,7 @@ def causes() -> list[str]:
     return [
         "## Blocked tip at 100 kPa: what the tip force depends on",
         "",
-        "Winding smeared, elements of 3 mm. Held straight, the section carries 94 N mm (an "
+        "Winding smeared, elements of 3 mm. Kept straight, the section carries 94 N mm (an "
         "independent section model); κ P of eq. (21) is 54.24 N mm.",
         "",
         *table(

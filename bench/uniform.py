@@ -31,7 +31,7 @@ LINES = 9
 HEAD = """# Accuracy of section and cell
 
 P in kPa of the baseline of Polygerinos et al. 2015 (radius 8, length 160, wall 2, floor 2, sheath
-1 mm; double helix of pitch 3 mm) at bending angles of 90, 180, 270 and 360°, unless said. s is the
+1 mm; double helix of pitch 3 mm) at bending angles of 90, 180, 270 and 360° by default. s is the
 time of the solution on one core of the machine that wrote this page, compilation and reading left
 out, beside other work: an order of magnitude. `python bench/uniform.py` makes the page.
 """

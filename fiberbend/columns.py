@@ -161,7 +161,7 @@ def check(keys: Iterable[str], model: str) -> None:
     """Refuse keys of a row that the table does not have, or not for a model.
 
     Raises:
-        KeyError: says which.
+        KeyError: with its name.
     """
     for key in keys:
         if model not in column(key).models:

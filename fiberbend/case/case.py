@@ -145,7 +145,7 @@ class Mesh(Spec):
     section: int = Field(default=1, ge=1, le=16)
     """Refinement of the cross-section: elements through each thickness."""
     symmetry: Literal["auto", "half", "full"] = "auto"
-    """Half the body where everything is mirror-symmetric, or as said."""
+    """Half the body where everything is mirror-symmetric, or as given."""
 
 
 class Solver(Spec):

@@ -147,7 +147,7 @@ def _check_folder(out: Path, overwrite: bool) -> None:
     if not overwrite:
         raise CaseError([Problem(str(out), "exists, expected a new folder, or --overwrite")])
     if out.is_dir() and any(out.iterdir()) and not (out / CONTROL_FILE).exists():
-        raise CaseError([Problem(str(out), f"holds no {CONTROL_FILE}, expected a control run")])
+        raise CaseError([Problem(str(out), f"contains no {CONTROL_FILE}, expected a control run")])
 
 
 def _write(result: ControlResult, case: Case, folder: RunFolder) -> None:

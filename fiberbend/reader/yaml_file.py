@@ -55,7 +55,7 @@ def load_yaml(path: Path) -> dict[str, Any]:
 
 
 def read_yaml(path: Path) -> YamlContent:
-    """Read a YAML file that holds one mapping, with the lines of its values.
+    """Read a YAML file of one mapping, with the lines of its values.
 
     Raises:
         CaseError: no such file, malformed, a key twice, or no mapping.
@@ -74,7 +74,7 @@ def read_yaml(path: Path) -> YamlContent:
         what = getattr(error, "problem", None) or str(error).splitlines()[0]
         raise CaseError([Problem(where, f"malformed YAML, {what}")]) from None
     if not isinstance(data, dict):
-        raise CaseError([Problem(str(path), "holds no mapping, expected a case")])
+        raise CaseError([Problem(str(path), "contains no mapping, expected a case")])
     return YamlContent(data, lines)
 
 

@@ -186,7 +186,7 @@ def _make(path: Path, case: Case, overwrite: bool) -> None:
         if not path.is_dir():
             raise CaseError([Problem(str(path), "is a file, expected a folder")])
         if any(path.iterdir()) and not (path / CASE_FILE).exists():
-            raise CaseError([Problem(str(path), "holds no run, expected the folder of a run")])
+            raise CaseError([Problem(str(path), "contains no run, expected the folder of a run")])
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as scratch:
         fresh = Path(scratch) / path.name
@@ -201,7 +201,7 @@ def _same_case(path: Path, case: Case) -> None:
     from fiberbend.reader.yaml_file import load_yaml
 
     if not (path / CASE_FILE).exists():
-        raise CaseError([Problem(str(path), f"holds no {CASE_FILE}, expected a run to resume")])
+        raise CaseError([Problem(str(path), f"contains no {CASE_FILE}, expected a run to resume")])
     before, now = load_yaml(path / CASE_FILE), case.resolved()
     changed = differences(before, now)
     if changed:

@@ -18,8 +18,8 @@ Floats = npt.NDArray[np.float64]
 
 DEGREE = 3
 """Of the spline through the steps."""
-DOUBTS, NOTHING = 2.0, 2e-5
-"""Energy out of nowhere: more than so many doubts, and than this part of the greatest."""
+UNCERTAINTIES, LEAST = 2.0, 2e-5
+"""Unexplained energy: more than so many uncertainties, and than this part of the greatest."""
 
 
 class Recorder:
@@ -28,7 +28,7 @@ class Recorder:
     Args:
         scene: the scene whose states are recorded.
         gauge: what the model reads off a state.
-        model: name of the model, which says which columns there are.
+        model: name of the model, by which the columns are checked.
         rest: the state before any load, at which the scene is unless there are rows.
         rows: those of a run that is resumed.
 
@@ -63,10 +63,10 @@ class Recorder:
             on the branch of the one before, as stable and as well converged as any, shows nowhere
             else.
         """
-        work, doubt = self._work()
+        work, uncertainty = self._work()
         for row, value in zip(self.rows, np.cumsum(work), strict=True):
             row[col.WORK] = float(value)
-        return departures(work, doubt, np.array([row[col.STORED] for row in self.rows]))
+        return departures(work, uncertainty, np.array([row[col.STORED] for row in self.rows]))
 
     def _row(self, step: int, state: State, outcome: Outcome | None) -> dict[str, Any]:
         scene = self._scene
@@ -105,7 +105,7 @@ class Recorder:
         return row
 
     def _work(self) -> tuple[Floats, Floats]:
-        """Σ ∫ q d(conjugate of q) over the loads in the step to every row, and its doubt, N mm."""
+        """Work of the loads in the step to every row, and its uncertainty, N mm; see `work_of`."""
         names = [n for n in self._scene.body.scalars if n not in self._scene.body.natural]
         if len(self.rows) < 2 or not names:
             return np.zeros(len(self.rows)), np.zeros(len(self.rows))
@@ -115,13 +115,15 @@ class Recorder:
 
 
 def work_of(values: Floats, conjugates: Floats) -> tuple[Floats, Floats]:
-    """Σ ∫ q d(conjugate of q) in the step to each of n states, and its doubt, N mm, (n,) both.
+    """Work Σ ∫ q dQ in the step to each of n states, and its uncertainty, N mm, (n,) both.
+
+    Q is the work-conjugate of a load q, for a pressure the volume of the chamber.
 
     Args:
         values: of m loads, (n, m).
-        conjugates: theirs, (n, m).
+        conjugates: their work-conjugates, (n, m).
     """
-    total, doubt = np.zeros(len(values)), np.zeros(len(values))
+    total, uncertainty = np.zeros(len(values)), np.zeros(len(values))
     # where another load begins to move the curves have a kink
     moving = np.diff(values, axis=0) != 0
     kinks = np.flatnonzero(np.any(moving[1:] != moving[:-1], axis=1)) + 1
@@ -131,33 +133,33 @@ def work_of(values: Floats, conjugates: Floats) -> tuple[Floats, Floats]:
             parts = _parts(value, conjugate)
             chord = (value[1:] + value[:-1]) / 2 * np.diff(conjugate)
             total[rows] += parts
-            doubt[rows] += np.abs(parts - chord)
-        # a spline knows least where it has states on one side only
-        doubt[[rows[0], rows[-1]]] = np.inf
-    return total, doubt
+            uncertainty[rows] += np.abs(parts - chord)
+        # a spline is least certain where it has states on one side only
+        uncertainty[[rows[0], rows[-1]]] = np.inf
+    return total, uncertainty
 
 
-def departures(work: Floats, doubt: Floats, stored: Floats) -> list[int]:
+def departures(work: Floats, uncertainty: Floats, stored: Floats) -> list[int]:
     """Steps in which the stored energy changes by what no load has done.
 
-    What the spline leaves in doubt is its distance from a chord, and all near the ends of a ramp.
+    The uncertainty of the spline is its distance from a chord, and infinite at the ends of a ramp.
 
     Args:
         work: of the loads in the step to each of n states, N mm, (n,).
-        doubt: of it, N mm, (n,).
+        uncertainty: of it, N mm, (n,).
         stored: energy of each state, N mm, (n,).
     """
     gap = np.abs(work - np.diff(stored, prepend=stored[0]))
-    around = np.max([doubt, np.roll(doubt, 1), np.roll(doubt, -1)], axis=0)
-    odd = (gap > DOUBTS * around) & (gap > NOTHING * np.max(np.abs(stored)))
+    around = np.max([uncertainty, np.roll(uncertainty, 1), np.roll(uncertainty, -1)], axis=0)
+    odd = (gap > UNCERTAINTIES * around) & (gap > LEAST * np.max(np.abs(stored)))
     return [int(step) for step in np.flatnonzero(odd)]
 
 
 def _parts(value: Floats, conjugate: Floats) -> Floats:
-    """∫ q d(conjugate of q) between n states of one ramp by a spline through them, (n - 1,)."""
+    """∫ q dQ between n states of one ramp by a spline through them, N mm, (n - 1,)."""
     from scipy.interpolate import make_interp_spline
 
-    # a load that is held does work at a constant value: no curve to fit
+    # a load that is kept does work at a constant value: no curve to fit
     parameter = np.arange(len(value), dtype=float)
     if np.all(np.diff(conjugate) > 0):
         parameter = conjugate

@@ -55,7 +55,11 @@ class Store:
         try:
             if path.is_dir() and any(path.iterdir()) and not (path / _LOCKS).is_dir():
                 raise CaseError(
-                    [Problem(str(path), "holds no sweep, expected a new folder or that of a sweep")]
+                    [
+                        Problem(
+                            str(path), "contains no sweep, expected a new folder or that of a sweep"
+                        )
+                    ]
                 )
             (path / _LOCKS).mkdir(parents=True, exist_ok=True)
         except OSError as error:

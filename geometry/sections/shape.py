@@ -19,7 +19,7 @@ class ShapedActuator(Actuator):
     """An actuator with a section of one shape, which can be laid out in blocks.
 
     The dimensions that a shape needs are its fields without a default; those that it may have are
-    None unless given. Its docstring says where they lie.
+    None unless given. Its docstring gives their place.
 
     Raises:
         ValueError: dimensions that do not go together, see `contradictions`.

@@ -306,8 +306,8 @@ BAD_FILES = {
         "title: one\nactuator:\n  wall: 1 mm\n  wall: 2 mm\n",
         "line 4: malformed YAML, key 'wall' a second time, expected once (line 3 has it)",
     ),
-    "list": ("- 1\n", "holds no mapping, expected a case"),
-    "empty": ("", "holds no mapping, expected a case"),
+    "list": ("- 1\n", "contains no mapping, expected a case"),
+    "empty": ("", "contains no mapping, expected a case"),
     "binary": ("\x00\x01", "malformed YAML"),
 }
 """Content of a file, and what the complaint about it must hold."""

@@ -81,7 +81,7 @@ def test_other_ranks_write_nothing(tmp_path: Path) -> None:
 
 def test_overwrite_spares_what_is_no_run(tmp_path: Path) -> None:
     (tmp_path / "thesis.tex").write_text("years", encoding="utf-8")
-    with pytest.raises(CaseError, match="holds no run"):
+    with pytest.raises(CaseError, match="contains no run"):
         RunFolder.create(tmp_path, CASE, overwrite=True)
     with pytest.raises(CaseError, match="is a file"):
         RunFolder.create(tmp_path / "thesis.tex", CASE, overwrite=True)

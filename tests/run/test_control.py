@@ -229,7 +229,7 @@ def test_other_runs_are_never_replaced(
     body.mkdir()
     (body / "case.resolved.yaml").write_text("a run of fiberbend run", encoding="utf-8")
     assert main([*QUICK, "--out", str(body), "--overwrite"]) == 1
-    assert "holds no control.json" in capsys.readouterr().err
+    assert "contains no control.json" in capsys.readouterr().err
     assert (body / "case.resolved.yaml").read_text(encoding="utf-8") == "a run of fiberbend run"
 
 

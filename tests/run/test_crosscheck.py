@@ -279,7 +279,7 @@ def blocked_rows(force: float, rotation: float) -> list[dict[str, Any]]:
 
 
 def test_force_of_a_blocked_tip() -> None:
-    # independent section model: 94 N mm at 100 kPa held straight
+    # independent section model: 94 N mm at 100 kPa kept straight
     straight = StraightSection(np.array([0, 0.1, 0.2]), np.array([0, 94.0, 188.0]))
     # docs/accuracy_blocked.md: 3.6 N, and z = L turns by 8.9°
     check = crosscheck(case_of("blocked_tip"), BODY, blocked_rows(3.6, 8.9), straight=straight)

@@ -31,8 +31,8 @@ def test_energy_out_of_nowhere_is_found(step: int) -> None:
 
 def test_few_steps_are_not_judged() -> None:
     few = [0, 6, 12]
-    work, doubt = work_of(PRESSURE[few, None], VOLUME[few, None])
-    assert departures(work, doubt, STORED[few]) == []
+    work, uncertainty = work_of(PRESSURE[few, None], VOLUME[few, None])
+    assert departures(work, uncertainty, STORED[few]) == []
 
 
 @pytest.mark.hard

@@ -317,7 +317,7 @@ def test_wrong_input_runs_nothing(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> 
     lab.out.mkdir()
     (lab.out / "thesis.tex").touch()
     code, _, err = lab.run()
-    assert (code, "holds no sweep" in err) == (1, True)
+    assert (code, "contains no sweep" in err) == (1, True)
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
     code, _, err = lab.run()
     assert (code, "under mpirun" in err) == (1, True)
@@ -327,7 +327,7 @@ def test_wrong_input_runs_nothing(lab: Lab, monkeypatch: pytest.MonkeyPatch) -> 
 def test_the_table_says_what_the_run_says(tmp_path: Path) -> None:
     """With the real solver: pressures, stretch and blocked force of the baseline's section.
 
-    94 N mm under 100 kPa held straight: an independent section model, a cap of 15 mm its lever.
+    94 N mm under 100 kPa kept straight: an independent section model, a cap of 15 mm its lever.
     """
     data = SWEEP | {
         "vary": {"actuator.radius": ["7 mm", "8 mm"]},
