@@ -65,7 +65,13 @@ class SectionPart:
 
 
 def rectangle(width: float, low: float, high: float) -> SectionPart:
-    """Rectangle of a width from y = `low` to `high`, mm."""
+    """Rectangle that is symmetric about the y axis.
+
+    Args:
+        width: its width, mm.
+        low: y of its lower side, mm.
+        high: y of its upper side, mm.
+    """
     height, weight = _gauss(low, high, _STRAIGHT)
     return SectionPart(height, width * weight)
 

@@ -175,6 +175,13 @@ def simulate(
     At every sample the pressure is measured and the valves are commanded; they move after the
     plant's dead time, which may be longer than a sample.
 
+    Args:
+        plant: what is controlled; left in its last state.
+        angle_filter: θ from the measured pressure.
+        controller: commands the valves.
+        reference: θ_d over time.
+        sensor: noise of the measured pressure.
+
     Raises:
         ValueError: what `check` refuses, or a pressure beyond the plant's curve.
     """
@@ -218,6 +225,12 @@ def check(
     the whole dead zone in the time that a valve stays open after the last sample outside it, which
     is a sample period and the dead time at worst. It is found by letting the plant do just that.
     Enough for rest, not always needed: with luck in its samples a loop rests at half the rate.
+
+    Args:
+        plant: what is controlled; its state is changed.
+        angle_filter: θ from the measured pressure.
+        controller: commands the valves.
+        reference: θ_d over time.
 
     Raises:
         ValueError: a supply below the pressure that the upper angle needs, a curve that ends below

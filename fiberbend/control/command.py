@@ -99,6 +99,11 @@ def plant_curve(case: Case, settings: ControlSettings) -> tuple[ActuatorCurve, s
 def fit_filter(case: Case, curve: ActuatorCurve, settings: ControlSettings) -> FilterFit:
     """The filter that the settings ask for, μ̄ fitted to the plant's curve as in section IV-B.
 
+    Args:
+        case: has the dimensions of eq. (19).
+        curve: P, θ and V of the plant.
+        settings: what the filter inverts, μ̄ and mismatch.
+
     Raises:
         ValueError: no filter can be made.
     """

@@ -72,7 +72,14 @@ class Page:
     def of_panels(
         cls, width: int, title: str, images: Sequence[Image], captions: Sequence[str]
     ) -> Page:
-        """Images of one view in up to four columns, cropped alike, each with its caption."""
+        """Images of one view in up to four columns, cropped alike, each with its caption.
+
+        Args:
+            width: width of the page, pixels.
+            title: text at the top.
+            images: pixels of each, (height, width, 3).
+            captions: text below each.
+        """
         filled = np.any([_filled(image) for image in images], axis=0)
         columns = columns_of(len(images))
         rows = math.ceil(len(images) / columns)
@@ -92,7 +99,13 @@ class Page:
         return page
 
     def image(self, image: Image, box: Box, crop: bool = False) -> None:
-        """Place an image into a box (left, bottom, width, height) in fractions of the page."""
+        """Place an image on the page.
+
+        Args:
+            image: pixels, (height, width, 3).
+            box: left, bottom, width and height in fractions of the page.
+            crop: leave out white margins.
+        """
         axes = self._figure.add_axes(box)
         axes.imshow(_crop(image, _filled(image)) if crop else image)
         axes.set_axis_off()

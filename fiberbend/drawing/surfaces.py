@@ -58,7 +58,14 @@ class BodySurfaces:
         open_at_mirror: bool = False,
         level: int = 3,
     ) -> list[Drawable]:
-        """The surface of some cells, one layer per region."""
+        """The surface of some cells, one drawable per region.
+
+        Args:
+            cells: True for those to draw, (m,).
+            state: the state; None: undeformed.
+            open_at_mirror: draw the half with its facets in the mirror plane, not the whole.
+            level: pieces along an edge.
+        """
         mesh, layers = self.mesh, []
         for name in mesh.regions:
             chosen = cells & self._region(name)
@@ -70,7 +77,13 @@ class BodySurfaces:
         return layers
 
     def surface(self, skin: Tessellation, state: Snapshot | None, mirror: bool) -> Any:
-        """A tessellation as pyvista.PolyData, its mirror image behind it if asked for."""
+        """A tessellation as pyvista.PolyData.
+
+        Args:
+            skin: the tessellation.
+            state: the state; None: undeformed.
+            mirror: append the mirror image in x = 0.
+        """
         import pyvista as pv
 
         mesh = self.mesh
@@ -93,7 +106,13 @@ class BodySurfaces:
         low: float = -np.inf,
         high: float = np.inf,
     ) -> list[Drawable]:
-        """The fibers between two z, all around the body."""
+        """The fibers as tubes, all around the body.
+
+        Args:
+            state: the state; None: undeformed.
+            low: least z at rest, mm.
+            high: greatest z at rest, mm.
+        """
         mesh, fibers = self.mesh, self.fibers
         if fibers is None:
             return []

@@ -66,7 +66,13 @@ class Cost:
 
 
 def cost_of(case: Case, model: MeshedModel, size: ProblemSize) -> Cost:
-    """What the run of a finite-element model is expected to take."""
+    """What the run of a finite-element model is expected to take.
+
+    Args:
+        case: the case.
+        model: its model.
+        size: how large its problem is.
+    """
     return Cost(
         steps=steps_of(case, model),
         step_s=model.step_seconds(case, size),
@@ -132,7 +138,13 @@ def steps_of(case: Case, model: MeshedModel) -> int | None:
 
 
 def count_steps(first: float, most: float, goals: list[float]) -> int:
-    """Steps from zero through every goal, growing by half until they have their greatest size."""
+    """Steps from zero through every goal, growing by half until they have their greatest size.
+
+    Args:
+        first: size of the first step, in the unit of the goals.
+        most: greatest size of a step.
+        goals: values that are hit exactly, the last one the end.
+    """
     here, size, steps = 0.0, first, 0
     for goal in sorted(goals):
         while here < goal * (1 - 1e-9):

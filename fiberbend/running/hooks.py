@@ -131,7 +131,13 @@ class Recording(Hook):
 
 
 def ended(case: Case, assembly: Assembly, rows: Sequence[dict[str, Any]]) -> tuple[str, str]:
-    """Status of a run whose march is over, and why it is not 'converged'."""
+    """Status of a run whose march is over, and why it is not 'converged'.
+
+    Args:
+        case: has the outputs that were asked for.
+        assembly: its march has ended.
+        rows: rows of the history.
+    """
     march, report = assembly.march, assembly.march.report
     if report.status == "stopped":
         ramp = assembly.ramps[march.position.ramp]

@@ -35,7 +35,14 @@ class Saved:
 def save(
     folder: RunFolder, archive: Archive, position: Position, rows: list[dict[str, Any]]
 ) -> None:
-    """Write all that is needed to go on from here, and the history; collective."""
+    """Write all that is needed to go on from here, and the history; collective.
+
+    Args:
+        folder: the run folder.
+        archive: moves states to rank 0.
+        position: where the march stands.
+        rows: rows of the history so far.
+    """
     arrays = archive.pack(position)
     history = np.array(json.dumps(rows, default=float))
     folder.write_arrays(CHECKPOINT, rows=history, **arrays)

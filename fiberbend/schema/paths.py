@@ -63,7 +63,13 @@ def value_at(resolved: Any, path: str) -> Any:
 
 
 def differences(one: Any, other: Any, path: str = "") -> list[str]:
-    """Paths at which two resolved cases differ."""
+    """Paths at which two resolved cases differ.
+
+    Args:
+        one: a resolved case, or the part of it at `path`.
+        other: another.
+        path: where both parts stand; empty for whole cases.
+    """
     if isinstance(one, dict) and isinstance(other, dict):
         keys = list(dict.fromkeys([*one, *other]))
         steps = [(str(key), one.get(key), other.get(key)) for key in keys]

@@ -106,7 +106,13 @@ def section_quadrilaterals(actuator: ShapedActuator, size: MeshSize) -> MeshData
 def hexahedral_slice(
     actuator: ShapedActuator, size: MeshSize, length: float, number: int
 ) -> MeshData:
-    """Hexahedra of a slice between the caps, 0 ≤ z ≤ `length` (mm), `number` layers.
+    """Hexahedra of a slice between the caps, 0 ≤ z ≤ `length`.
+
+    Args:
+        actuator: dimensions.
+        size: fineness of the section.
+        length: length of the slice, mm.
+        number: layers of elements.
 
     Raises:
         ValueError: dimensions that this mesh cannot resolve.
@@ -118,6 +124,11 @@ def hexahedral_body(
     actuator: ShapedActuator, size: MeshSize, strips: Strips | None = None
 ) -> MeshData:
     """Hexahedra of the whole body, from the block map alone.
+
+    Args:
+        actuator: dimensions.
+        size: fineness.
+        strips: strips of roof and post, which become named surfaces.
 
     Raises:
         ValueError: dimensions that this mesh cannot resolve.

@@ -53,6 +53,11 @@ def body_stations(actuator: Actuator, size: MeshSize, strips: Strips | None = No
     Surfaces: "clamp" and "tip" (end faces), "section_root" and "section_tip" (the ring of material
     at z = 0 and z = L), "chamber" with its end planes, "winding" and "roof" for 0 ≤ z ≤ L,
     "post", and everywhere "outer" and "symmetry".
+
+    Args:
+        actuator: dimensions.
+        size: length of the elements along z.
+        strips: length of the post; without it there is none.
     """
     length, cap = actuator.length, actuator.cap
     end = length + cap

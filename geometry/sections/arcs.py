@@ -61,7 +61,13 @@ def roof_edge(actuator: Actuator, strips: Strips | None) -> float | None:
 
 
 def levels(start: float, end: float, number: int) -> list[float]:
-    """Evenly spaced values, both ends exact."""
+    """Evenly spaced values, both ends exact.
+
+    Args:
+        start: first value.
+        end: last value.
+        number: number of intervals.
+    """
     return [start + (end - start) * i / number for i in range(number)] + [end]
 
 
@@ -113,7 +119,13 @@ def add_rings(
 def core_columns(
     radius: float, size: MeshSize, divisions: Sequence[int]
 ) -> list[tuple[float, int]]:
-    """Right ends in mm and divisions of the columns of a disk's core, from x = 0."""
+    """Right ends in mm and divisions of the columns of a disk's core, from x = 0.
+
+    Args:
+        radius: of the disk, mm.
+        size: fineness.
+        divisions: number of quads along each piece of the upper quarter arc.
+    """
     columns, done = [], 0
     for number in reversed(divisions[1:]):
         done += number

@@ -88,6 +88,11 @@ def too_thin(actuator: Actuator, size: MeshSize) -> Iterator[tuple[str, str]]:
 def check_size(actuator: Actuator, size: MeshSize, strips: Strips | None = None) -> None:
     """Refuse a mesh whose elements would be too flat, or strips that do not fit.
 
+    Args:
+        actuator: dimensions.
+        size: fineness.
+        strips: strips of roof and post, or None.
+
     Raises:
         ValueError: names the dimension, and the least value it can have with this mesh.
     """

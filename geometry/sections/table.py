@@ -70,6 +70,11 @@ def section_layout(
     `strips` "roof" and "post". Every surface inside the body is listed once, from the region that
     comes first.
 
+    Args:
+        actuator: dimensions.
+        size: fineness; half or full section.
+        strips: strips of roof and post, or None.
+
     Raises:
         ValueError: dimensions that this mesh cannot resolve.
     """
