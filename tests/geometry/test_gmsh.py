@@ -83,3 +83,11 @@ def _centers(mesh: MeshData, name: str) -> np.ndarray:
 
 def _as_set(points: np.ndarray) -> set[tuple[float, ...]]:
     return set(map(tuple, (points.round(6) + 0.0).tolist()))
+
+
+def test_the_same_body_gives_the_same_tetrahedra() -> None:
+    """On several threads one mesh of 42 was another (rectangle, 3 mm); once a cell was flat."""
+    size = MeshSize(axial=6, element="tetrahedron")
+    one, other = build_body(SHORT, size), build_body(SHORT, size)
+    assert np.array_equal(one.cells, other.cells)
+    assert np.array_equal(one.nodes, other.nodes)

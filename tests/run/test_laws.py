@@ -104,7 +104,8 @@ import numpy as np
 from fiberbend import run
 from fiberbend.case import convert
 from fiberbend.models.closed_form import analytic_curves
-from fiberbend.reader.reader import json_schema, parse_case
+from fiberbend.reader.json_schema import json_schema
+from fiberbend.reader.reader import parse_case
 from fiberbend.schema.problems import CaseError
 from fiberbend.states.recovery import cauchy_stress
 
