@@ -22,12 +22,16 @@ from fiberbend.effects.effect import (
 from fiberbend.schema.problems import Problem, found, meant
 from fiberbend.schema.quantities import Length, Model, Modulus, Width
 from fiberbend.schema.units import show
+from geometry.winding.patterns import PATTERNS
 
 if TYPE_CHECKING:
+    PatternName = str
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
     from geometry.winding.helix import Winding
     from materials.fiber import Fiber as Thread
+else:
+    PatternName = Literal[tuple(PATTERNS)]
 
 DEFAULT_LINES = 5
 _POINTS_A_TURN = 24
@@ -103,7 +107,7 @@ class WindingEffect(Effect):
 
     name = "winding"
 
-    pattern: Literal["double-helix", "single-helix-right", "single-helix-left"]
+    pattern: PatternName
     """Double helix: one right-handed and one left-handed, crossing on the plane of symmetry."""
     pitch: Length
     """Length along the axis of one turn."""
@@ -122,7 +126,7 @@ class WindingEffect(Effect):
 
     @property
     def _twists(self) -> bool:
-        return self.pattern != "double-helix"
+        return not PATTERNS[self.pattern].mirrored
 
     def needs(self) -> dict[str, str]:
         """Turns where every one is to lie by itself, twist where the pattern has a hand."""
@@ -141,7 +145,8 @@ class WindingEffect(Effect):
 
     def mirror_breaker(self) -> str:
         """A pattern with a hand."""
-        return "a single helix is not its own mirror image" if self._twists else ""
+        meaning = PATTERNS[self.pattern].meaning
+        return f"{meaning} is not its own mirror image" if self._twists else ""
 
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
         """Pitch, ribbon and thread."""
@@ -190,7 +195,7 @@ class WindingEffect(Effect):
         """Rigid, without pitch and twist."""
         yield "the winding holds the circumference rigidly; its pitch does not enter"
         if self._twists:
-            yield "the twist of a single helix is not in it"
+            yield f"the twist of {PATTERNS[self.pattern].meaning} is not in it"
 
     def curves(self, actuator: Actuator) -> list[Floats]:
         """The axis of every fiber."""
