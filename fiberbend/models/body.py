@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.columns import BODY, MIDDLE
 from fiberbend.effects.effect import (
     ENDS,
     SPACE,
@@ -41,6 +42,7 @@ class Body(MeshedModel):
 
     name = "body"
     offers = frozenset({SPACE, ENDS, STRIPS, VOLUME, TWIST, THREAD, TURNS})
+    fills = MeshedModel.fills | {MIDDLE, BODY}
     shared = True
     resumes = True
     takes_mesh_as_said = True
