@@ -16,6 +16,7 @@ class Analytic(ModelKind):
 
     name = "analytic"
     offers = frozenset({ARC, ENDS, HOOPS})
+    line = "zero-fit"
     fills = ModelKind.fills | {MIDDLE}
     agreement = 11.0
     start_s = 1.5
@@ -67,3 +68,6 @@ class Analytic(ModelKind):
             "on the baseline (docs/crosscheck.md)"
         )
         yield "fitted to an experiment: up to 11 % in pressure (Polygerinos et al. 2015)"
+
+
+MODEL = Analytic()

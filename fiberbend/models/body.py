@@ -149,3 +149,6 @@ class Body(MeshedModel):
             yield from effect.uncertainties(case.straight)
         if not case.straight and not any(effect.alone() for effect in case.effects):
             yield f"ends: {ENDS_BEND}: see uniform_angle_deg"
+
+
+MODEL = Body()

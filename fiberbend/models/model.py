@@ -93,6 +93,8 @@ class ModelKind(ABC):
     """What effects may ask for, see `fiberbend.effects.effect`."""
     fills: ClassVar[frozenset[str]] = frozenset({RUN})
     """Groups of columns of history.csv, see `fiberbend.columns`; others are refused."""
+    line: ClassVar[str] = ""
+    """Where it has no elements: its name among `fiberbend.models.closed_form.analytic_curves`."""
     ends: ClassVar[bool] = False
     """It knows the caps and what they do to the bend near them."""
     is_kept_straight: ClassVar[bool] = False
