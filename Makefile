@@ -25,8 +25,8 @@ SWEEP ?= cases/sweeps/radius_length_wall.yaml
 sweep: setup ## solve SWEEP=cases/sweeps/….yaml, resumable; make -j2 sweep or JOBS=2: in parallel
 	$(BIN)/fiberbend sweep $(SWEEP) -j $(or $(JOBS),$(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
-test: setup ## run the tests, on one rank and on two
-	$(BIN)/python -m pytest
+test: setup ## run the tests, two at a time
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(RANKS) --dist worksteal
 
 verify: setup ## run the slow convergence ladders against exact solutions
 	$(BIN)/python -m pytest -m verify

@@ -19,7 +19,7 @@ from geometry.winding.segments import EmbeddedFibers
 Floats = npt.NDArray[np.float64]
 
 ROUND_OFF = 1e-12
-"""Strains of fibers at rest are ±1e-15; one that carries in tension only is slack up to here."""
+"""Strains of fibers at rest are ±1e-15; one that carries in tension only is taut down to −this."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -230,7 +230,7 @@ class FiberPotential:
         if self._predicted is not None:
             force = np.maximum(self._predicted, 0) if self.tension_only else self._predicted
         if self.tension_only:
-            stiffness = np.where(self.strain > ROUND_OFF, stiffness, 0.0)
+            stiffness = np.where(self.strain > -ROUND_OFF, stiffness, 0.0)
         n = self._direction
         across = np.eye(3) - n[..., :, None] * n[..., None, :]
         pull = self.length[:, None] * force[:, None] * self._share

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
 
+from fem.effects.embedded_fibers import FiberPotential
 from fem.kinematics.kinematics import Kinematics
 from fem.march.frames import Frames, Shape
 from fem.scene import Scene
@@ -215,3 +216,11 @@ def balance(scene: Scene, mirror: str = "symmetry") -> Balance:
         float(np.linalg.norm(total.force)) / max([*forces, 1e-30]),
         float(np.linalg.norm(total.moment)) / max([*moments, 1e-30]),
     )
+
+
+def fiber_forces(scene: Scene) -> tuple[float, float] | None:
+    """Least and greatest axial force of a scene's fibers, N; None without fibers; collective."""
+    for discrete in scene.discrete.values():
+        if isinstance(discrete, FiberPotential):
+            return discrete.force_range()
+    return None

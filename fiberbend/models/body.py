@@ -77,10 +77,11 @@ class Body(MeshedModel):
         return InSpace
 
     def supports(self, case: Case, mesh: MeshData) -> list[Term]:
-        """The clamped root cap, and the mirror plane of half a body."""
+        """The support that the case names, and the mirror plane of half a body."""
         from fem.effects.supports import Clamp, Symmetry
 
-        return [Clamp(), *([Symmetry()] if mesh.half else [])]
+        named = {"clamped-root": Clamp}
+        return [named[case.support](), *([Symmetry()] if mesh.half else [])]
 
     def reading(self, case: Case, scene: Scene) -> Reading:
         """Angles by rod frames."""
@@ -94,7 +95,7 @@ class Body(MeshedModel):
             frames,
             BendingAngle(scene.body, frames),
             lambda: BodyGauge(scene, frames),
-            BodyRod(scene.body, frames),
+            lambda: BodyRod(scene.body, frames),
         )
 
     def resolved(self, case: Case) -> float:

@@ -56,13 +56,13 @@ class Reading:
         frames: rod frames of a body; None where the kinematics turns by itself.
         control: the bending angle, which loads may be driven by.
         gauge: makes the columns of the history; call it when the scene is at rest.
-        rod: the states as rods with caps, to see whether the body passes through itself.
+        rod: makes the states rods with caps, to see whether the body passes through itself.
     """
 
     frames: Frames | None
     control: Functional
     gauge: Callable[[], Gauge]
-    rod: Rod
+    rod: Callable[[], Rod]
 
 
 @dataclasses.dataclass(frozen=True)

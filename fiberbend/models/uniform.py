@@ -39,7 +39,7 @@ class UniformModel(MeshedModel):
             None,
             CurvatureAngle(body),
             lambda: UniformGauge(scene, actuator),
-            UniformRod(body, case.actuator.cap),
+            lambda: UniformRod(body, case.actuator.cap),
         )
 
     def memory_mb(self, size: Size) -> float:

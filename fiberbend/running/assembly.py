@@ -53,7 +53,13 @@ class Assembly:
     ramps: list[Ramp]
 
 
-def assemble(case: Case, mesh: MeshData, comm: MPI.Comm, lead: Lead | None = None) -> Assembly:
+def assemble(
+    case: Case,
+    mesh: MeshData,
+    comm: MPI.Comm,
+    lead: Lead | None = None,
+    watch: bool = False,
+) -> Assembly:
     """Compile a case and put it at rest; collective.
 
     Args:
@@ -61,6 +67,7 @@ def assemble(case: Case, mesh: MeshData, comm: MPI.Comm, lead: Lead | None = Non
         mesh: the mesh of its model.
         comm: communicator.
         lead: makes the guide of a body; without it there is none.
+        watch: look whether the body passes through itself.
     """
     model = meshed(case)
     parts = build(case, mesh, model)
@@ -79,7 +86,7 @@ def assemble(case: Case, mesh: MeshData, comm: MPI.Comm, lead: Lead | None = Non
         frames=frames,
         control=reading.control,
         guide=guide,
-        rod=reading.rod,
+        rod=reading.rod() if watch else None,
         causes=Diagnosis(scene),
         hooks=[Approach(scene)] if any(effect.touches() for effect in case.effects) else [],
     )

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from fem.effects.embedded_fibers import FiberPotential
 from fem.march.records import MODES, State
+from fem.results.measures import fiber_forces
 from fem.scene import Scene
 from fem.solver.newton import Outcome
 from fiberbend import columns as col
@@ -83,9 +83,9 @@ class Recorder:
         row |= self._gauge.columns(state)
         row[col.ITERATIONS] = outcome.iterations if outcome else 0
         row[col.DET_F] = outcome.least_det_f if outcome else 1.0
-        for discrete in scene.discrete.values():
-            if isinstance(discrete, FiberPotential):
-                row[col.FIBER_MIN], row[col.FIBER_MAX] = discrete.force_range()
+        forces = fiber_forces(scene)
+        if forces is not None:
+            row[col.FIBER_MIN], row[col.FIBER_MAX] = forces
         energies = scene.energies()
         names = [name for name in state.scalars if name not in scene.body.natural]
         loads = {name: state.measures[f"conjugate {name}"] for name in names}

@@ -111,7 +111,7 @@ class _Run:
         def lead(scene: Scene, frames: Frames) -> Guide | None:
             return section.guide(scene, frames, case.actuator.length) if section else None
 
-        assembly = assemble(case, mesh, self.comm, lead)
+        assembly = assemble(case, mesh, self.comm, lead, watch=True)
         recorder, recording = self._recording(assembly, again)
         remark = winding_remark(case)
         if remark is not None and "NOT" in remark:

@@ -7,6 +7,7 @@ load too: processes, locks and folders are real.
 from __future__ import annotations
 
 import csv
+import functools
 import json
 import os
 import signal
@@ -114,6 +115,8 @@ class Lab:
             stderr=subprocess.PIPE,
             text=True,
             start_new_session=True,
+            # a shell's background job, and all that it starts, would ignore Ctrl-C
+            preexec_fn=functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
         )
 
     def run(self, *arguments: str, **acts: str) -> tuple[int, str, str]:
