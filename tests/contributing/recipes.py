@@ -20,6 +20,8 @@ from tests.conftest import ROOT
 
 PAGE = ROOT / "CONTRIBUTING.md"
 PACKAGES = ("materials", "geometry", "analytic", "fem", "fiberbend")
+TESTS = ("tests/__init__.py", "tests/conftest.py", "tests/materials", "pyproject.toml")
+"""What comes with the source, so that recipes can add to the tests."""
 _BLOCK = re.compile(r"(?:^`([^`\n]+)`\n\n)?^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 USE = '''
@@ -89,6 +91,7 @@ def recipe(title: str) -> Recipe:
             files[path] = content
         elif kind == "diff":
             name, hunks = _hunks(content)
+            assert name not in diffs
             diffs[name] = hunks
         elif kind == "yaml":
             case |= yaml.safe_load(content)
@@ -124,9 +127,13 @@ class House:
 
     def __init__(self, folder: Path, title: str) -> None:
         self._folder, self.recipe = folder, recipe(title)
-        for package in PACKAGES:
-            ignore = shutil.ignore_patterns("__pycache__")
-            shutil.copytree(ROOT / package, folder / package, ignore=ignore)
+        ignore = shutil.ignore_patterns("__pycache__")
+        (folder / "tests").mkdir()
+        for part in (*PACKAGES, *TESTS):
+            if (ROOT / part).is_dir():
+                shutil.copytree(ROOT / part, folder / part, ignore=ignore)
+            else:
+                shutil.copy(ROOT / part, folder / part)
         for path, text in self.recipe.files.items():
             assert not (folder / path).exists()
             (folder / path).write_text(text, encoding="utf-8")
@@ -138,7 +145,7 @@ class House:
             (folder / path).write_text(text, encoding="utf-8")
 
     def touched(self) -> dict[str, int]:
-        """Lines added, by file; nothing is taken away."""
+        """Lines added to the source, by file; nothing is taken away."""
         found = {}
         for package in PACKAGES:
             for path in sorted((self._folder / package).rglob("*.py")):
@@ -153,12 +160,10 @@ class House:
         return found
 
     def lint(self) -> str:
-        """What ruff has against the files touched; nothing where it is content."""
-        shutil.copy(ROOT / "pyproject.toml", self._folder)
+        """What ruff has against the files of the recipe; nothing where it is content."""
         said = ""
         for command in (["check", "--no-cache"], ["format", "--no-cache", "--diff"]):
-            line = [sys.executable, "-m", "ruff", *command, *self.touched()]
-            done = subprocess.run(line, cwd=self._folder, capture_output=True, text=True)
+            done = self._python("-m", "ruff", *command, *self.recipe.files, *self.recipe.diffs)
             if done.returncode:
                 said += done.stdout + done.stderr
         return said
@@ -190,15 +195,24 @@ class House:
         for name, case in cases.items():
             path = self._folder / f"{name}.yaml"
             path.write_text(yaml.safe_dump(case), encoding="utf-8")
+        done = self._python("-c", USE + more)
+        assert done.returncode == 0, done.stderr
+        found: dict[str, Any] = json.loads((self._folder / "found.json").read_text("utf-8"))
+        return found
+
+    def tests(self, *arguments: str) -> str:
+        """What pytest says last of tests in the copy."""
+        done = self._python("-m", "pytest", "-q", "-p", "no:cacheprovider", *arguments)
+        return done.stdout.rstrip().splitlines()[-1]
+
+    def _python(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+        """Run Python in the copy, which is where all is imported from."""
         search = os.pathsep.join([str(self._folder), os.environ.get("PYTHONPATH", "")])
-        done = subprocess.run(
-            [sys.executable, "-c", USE + more],
+        return subprocess.run(
+            [sys.executable, *arguments],
             cwd=self._folder,
             env=os.environ | {"PYTHONPATH": search},
             capture_output=True,
             text=True,
             timeout=600,
         )
-        assert done.returncode == 0, done.stderr
-        found: dict[str, Any] = json.loads((self._folder / "found.json").read_text("utf-8"))
-        return found
