@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from fiberbend.columns import table
+from fiberbend.models.choice import MODELS
 
 ROOT = Path(__file__).resolve().parent.parent
 BEGIN, END = "<!-- columns, by `make docs` -->", "<!-- end of columns -->"
@@ -22,7 +23,7 @@ def written(page: str, beside: bool) -> str:
     text = (ROOT / page).read_text(encoding="utf-8")
     before, _, rest = text.partition(BEGIN)
     _, _, after = rest.partition(END)
-    return "\n".join([before + BEGIN, *table(beside), END]) + after
+    return "\n".join([before + BEGIN, *table(MODELS.values(), beside), END]) + after
 
 
 if __name__ == "__main__":

@@ -104,10 +104,11 @@ class Driven(Hook):
 
     def __init__(self, hard: Hard, model: str, mesh: MeshData | None = None) -> None:
         self.case = parse_case(hard.case(model))
-        mesh = mesh or meshed(self.case).mesh(self.case)
+        kind = meshed(self.case)
+        mesh = mesh or kind.mesh(self.case)
         self.built = assemble(self.case, mesh, MPI.COMM_SELF)
         self.scene, self.newton, self.march = self.built.scene, self.built.newton, self.built.march
-        self.recorder = Recorder(self.scene, self.built.observables.gauge(), model, self.march.rest)
+        self.recorder = Recorder(self.scene, self.built.observables.gauge(), kind, self.march.rest)
         self.extra: list[Floats] = []
         self.tip = Tip(self.scene.body) if model == "body" else None
         self._note()

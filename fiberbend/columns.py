@@ -1,6 +1,7 @@
-"""Every column of history.csv: its name, unit, meaning, and the models that fill it.
+"""Every column of history.csv: its name, unit, meaning, and who fills it.
 
-A new column is a function and a line in `COLUMNS`. What is not in the table is not written.
+A new column is a function and a line in `COLUMNS`. What is not in the table is not written. Columns
+form groups; a model says which groups it fills, and no model is named here.
 """
 
 from __future__ import annotations
@@ -8,8 +9,8 @@ from __future__ import annotations
 import dataclasses
 import functools
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from typing import Any, ClassVar, Protocol
 
 STEP = "step"
 PRESSURE = "pressure_kPa"
@@ -35,15 +36,31 @@ MODES = "unstable_modes"
 BALANCE_FORCE = "balance_force"
 BALANCE_MOMENT = "balance_moment"
 
-UNIFORM = ("section", "cell")
-BODY = ("body",)
-MESHED = (*UNIFORM, *BODY)
-ALL = ("analytic", *MESHED)
+RUN = "run"
+"""Columns of every model."""
+MIDDLE = "middle"
+"""Columns of a model that separates the bend of the middle from that of the ends."""
+ELEMENTS = "elements"
+"""Columns of a model of finite elements."""
+UNIFORM = "uniform"
+"""Columns of a model whose curvature and stretch are global unknowns."""
+BODY = "body"
+"""Columns of a body in space, with its supports and obstacles."""
 
 Row = Mapping[str, Any]
 """A row of history.csv: values by the names of their columns; None or absent: not known."""
-Read = Callable[[Any, Any], float]
-"""Reads a value off a `fem.scene.Scene` and the `fem.march.records.State` at which it is."""
+Read = Callable[[Any, Any], float | None]
+"""Reads a value off a `fem.scene.Scene` and the `fem.march.records.State` at which it is; None
+where there is none, and the row then has no such column."""
+
+
+class Filler(Protocol):
+    """A model, as far as columns go."""
+
+    name: ClassVar[str]
+    """What a case calls it."""
+    fills: ClassVar[frozenset[str]]
+    """Groups of columns that it fills."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -54,7 +71,7 @@ class Column:
         name: as in the file's head; a part in braces stands for a name of the case.
         unit: of its values; empty for a number without one.
         meaning: what it is.
-        models: names of the models that may fill it.
+        group: models fill it that have the group among `fills`.
         always: the file has it, and in this order, also where no value is known.
         beside: it is another model's answer at the same row.
         read: gives the value; None where the model's gauge or the recorder fills it.
@@ -63,7 +80,7 @@ class Column:
     name: str
     unit: str
     meaning: str
-    models: tuple[str, ...] = ALL
+    group: str = RUN
     always: bool = False
     beside: bool = False
     read: Read | None = None
@@ -83,19 +100,21 @@ COLUMNS = (
     Column(VOLUME, "mm³", "volume of the chamber", always=True),
     Column(TIP_FORCE, "N", "force of the tip on the post; kept straight: M / L_f", always=True),
     Column(ITERATIONS, "", "Newton iterations of the step", always=True),
-    Column(DET_F, "", "least det F at a point of quadrature", MESHED, always=True),
-    Column(FIBER_MIN, "N", "least axial force of a fiber, of each line of a ribbon", MESHED, True),
-    Column(FIBER_MAX, "N", "greatest of them", MESHED, True),
-    Column(UNIFORM_ANGLE, "°", "L times the curvature of the middle half", ("analytic", *BODY)),
+    Column(DET_F, "", "least det F at a point of quadrature", ELEMENTS, always=True),
+    Column(
+        FIBER_MIN, "N", "least axial force of a fiber, of each line of a ribbon", ELEMENTS, True
+    ),
+    Column(FIBER_MAX, "N", "greatest of them", ELEMENTS, True),
+    Column(UNIFORM_ANGLE, "°", "L times the curvature of the middle half", MIDDLE),
     Column(AXIS_STRETCH, "", "stretch λ0 of the line y = 0", UNIFORM),
     Column(CROWN_STRETCH, "", "stretch of the highest line", UNIFORM),
     Column(TWIST, "°", "twist of the whole length", UNIFORM),
-    Column(WORK, "mJ", "work of the loads since rest, Σ ∫ q dQ", MESHED),
-    Column(STORED, "mJ", "stored energy", MESHED),
-    Column("energy {effect} mJ", "mJ", "potential of an effect", MESHED),
-    Column("load {load}", "MPa", "value of a load; of gravity its share, without unit", MESHED),
-    Column("conjugate {load}", "mm³", "what it does work on: the chamber's volume", MESHED),
-    Column(MODES, "", "unstable modes with every load kept at its value", MESHED),
+    Column(WORK, "mJ", "work of the loads since rest, Σ ∫ q dQ", ELEMENTS),
+    Column(STORED, "mJ", "stored energy", ELEMENTS),
+    Column("energy {effect} mJ", "mJ", "potential of an effect", ELEMENTS),
+    Column("load {load}", "MPa", "value of a load; of gravity its share, without unit", ELEMENTS),
+    Column("conjugate {load}", "mm³", "what it does work on: the chamber's volume", ELEMENTS),
+    Column(MODES, "", "unstable modes with every load kept at its value", ELEMENTS),
     Column(ROOF_FORCE, "N", "force of the roof on the body", BODY),
     Column("clamp_force_y_N", "N", "force of the clamp on the body along y", BODY),
     Column("clamp_moment_x_Nmm", "N mm", "its moment about x", BODY),
@@ -157,35 +176,38 @@ def column(key: str) -> Column:
     raise KeyError(f"column {key!r} is not in the table of columns")
 
 
-def check(keys: Iterable[str], model: str) -> None:
+def check(keys: Iterable[str], model: Filler) -> None:
     """Refuse keys of a row that the table does not have, or not for a model.
 
     Raises:
         KeyError: with its name.
     """
     for key in keys:
-        if model not in column(key).models:
-            raise KeyError(f"column {key!r} is not one of model {model}")
+        if column(key).group not in model.fills:
+            raise KeyError(f"column {key!r} is not one of model {model.name}")
 
 
-def read(model: str, scene: Any, state: Any) -> dict[str, float]:
+def read(model: Filler, scene: Any, state: Any) -> dict[str, float]:
     """Values of the columns that read themselves off a state, for a model."""
-    return {
+    values = {
         known.name: known.read(scene, state)
         for known in COLUMNS
-        if known.read is not None and model in known.models
+        if known.read is not None and known.group in model.fills
     }
+    return {name: value for name, value in values.items() if value is not None}
 
 
-def table(beside: bool) -> Iterator[str]:
+def table(models: Collection[Filler], beside: bool) -> Iterator[str]:
     """The columns as lines of a Markdown table.
 
     Args:
+        models: every model.
         beside: those of other models beside a run, or the run's own.
     """
     yield "| column | unit | meaning | models |"
     yield "|---|---|---|---|"
     for known in COLUMNS:
         if known.beside == beside:
-            models = "all" if known.models == ALL else ", ".join(known.models)
-            yield f"| `{known.name}` | {known.unit} | {known.meaning} | {models} |"
+            fillers = [model.name for model in models if known.group in model.fills]
+            names = "all" if len(fillers) == len(models) else ", ".join(fillers)
+            yield f"| `{known.name}` | {known.unit} | {known.meaning} | {names} |"

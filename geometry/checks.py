@@ -113,7 +113,7 @@ def check(
     if winding is not None:
         fibers = embed(mesh, actuator, winding)
         expected = len(winding.hands) * winding.curve_length(actuator)
-        if not mesh.half or len(winding.hands) == 2:
+        if not mesh.half or winding.mirrored:
             pairs["winding length"] = (float(fibers.length @ fibers.share), part * expected)
 
     report = {

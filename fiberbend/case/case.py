@@ -19,6 +19,7 @@ from pydantic import (
 )
 
 from fiberbend.case.coefficients import coefficient_fields
+from fiberbend.case.names import MODELS
 from fiberbend.effects.effect import Effect, Inflation, Turns, keep_straight
 from fiberbend.effects.table import EffectEntry, unwrap
 from fiberbend.schema.quantities import (
@@ -38,8 +39,10 @@ E = TypeVar("E", bound=Effect)
 if TYPE_CHECKING:
     AnyEffect = Effect
     LawName = str
+    ModelName = str
 else:
     LawName = Literal[tuple(LAWS)]
+    ModelName = Literal[(*MODELS, "auto")]
     AnyEffect = Annotated[EffectEntry, AfterValidator(unwrap)]
 
 
@@ -196,7 +199,7 @@ class Case(Spec):
     """What acts on the body; loads are applied in this order, earlier ones kept."""
     support: Literal["clamped-root"] = "clamped-root"
     """How the body is supported."""
-    model: Literal["analytic", "section", "cell", "body", "auto"] = "auto"
+    model: ModelName = "auto"
     """Model to solve; auto takes the cheapest that supports every effect."""
     mesh: Mesh = Mesh()
     """Elements."""

@@ -22,12 +22,16 @@ from fiberbend.effects.effect import (
 from fiberbend.schema.problems import Problem, found, meant
 from fiberbend.schema.quantities import Length, LengthOrZero, Modulus, Spec
 from fiberbend.schema.units import show
+from geometry.winding.patterns import PATTERNS
 
 if TYPE_CHECKING:
+    PatternName = str
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
     from geometry.winding.helix import Winding
     from materials.fiber import Fiber
+else:
+    PatternName = Literal[tuple(PATTERNS)]
 
 DEFAULT_LINES = 5
 _POINTS_A_TURN = 24
@@ -102,7 +106,7 @@ class WindingEffect(Effect):
 
     name = "winding"
 
-    pattern: Literal["double-helix", "single-helix-right", "single-helix-left"]
+    pattern: PatternName
     """Double helix: one right-handed and one left-handed, crossing on the plane of symmetry."""
     pitch: Length
     """Length along the axis of one turn."""
@@ -121,7 +125,7 @@ class WindingEffect(Effect):
 
     @property
     def _twists(self) -> bool:
-        return self.pattern != "double-helix"
+        return not PATTERNS[self.pattern].mirrored
 
     def needs(self) -> dict[str, str]:
         """Turns where every one is to lie by itself, twist where the pattern has a hand."""
@@ -140,7 +144,8 @@ class WindingEffect(Effect):
 
     def mirror_breaker(self) -> str:
         """A pattern with a hand."""
-        return "a single helix is not its own mirror image" if self._twists else ""
+        meaning = PATTERNS[self.pattern].meaning
+        return f"{meaning} is not its own mirror image" if self._twists else ""
 
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
         """Pitch, ribbon and thread."""
@@ -189,7 +194,7 @@ class WindingEffect(Effect):
         """Rigid, without pitch and twist."""
         yield "the winding fixes the circumference; its pitch does not enter"
         if self._twists:
-            yield "the twist of a single helix is not in it"
+            yield f"the twist of {PATTERNS[self.pattern].meaning} is not in it"
 
     def curves(self, actuator: Actuator) -> list[Floats]:
         """The axis of every fiber."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from fiberbend.case.case import Case
+from fiberbend.columns import MIDDLE
 from fiberbend.effects.effect import ARC, ENDS, HOOPS
 from fiberbend.models.model import ModelKind, Objection
 from fiberbend.models.uniform import not_uniform
@@ -15,6 +16,8 @@ class Analytic(ModelKind):
 
     name = "analytic"
     offers = frozenset({ARC, ENDS, HOOPS})
+    line = "zero-fit"
+    fills = ModelKind.fills | {MIDDLE}
     agreement = 11.0
     start_s = 1.5
     pictures_s = (1.0, 0.0)
@@ -65,3 +68,6 @@ class Analytic(ModelKind):
             "on the baseline (docs/crosscheck.md)"
         )
         yield "fitted to an experiment: up to 11 % in pressure (Polygerinos et al. 2015)"
+
+
+MODEL = Analytic()

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.columns import BODY, MIDDLE
 from fiberbend.effects.effect import (
     ENDS,
     SPACE,
@@ -48,6 +49,7 @@ class Body(MeshedModel):
 
     name = "body"
     offers = frozenset({SPACE, ENDS, STRIPS, VOLUME, TWIST, THREAD, TURNS})
+    fills = MeshedModel.fills | {MIDDLE, BODY}
     shared = True
     resumes = True
     takes_mesh_as_given = True
@@ -159,3 +161,6 @@ class Body(MeshedModel):
             yield from effect.uncertainties(case.straight)
         if not case.straight and not any(effect.alone() for effect in case.effects):
             yield f"ends: {ENDS_BEND}: see uniform_angle_deg"
+
+
+MODEL = Body()

@@ -108,3 +108,6 @@ class Cell(UniformModel):
         half, _ = self.half(case)
         layers = self.slice(case, half)[1] / (1 if half else 2)
         return next(error for least, error in _ERRORS if layers >= least)
+
+
+MODEL = Cell()

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+import importlib
 import itertools
 from collections.abc import Iterator
 
+from fiberbend.case import names
 from fiberbend.case.case import Case
-from fiberbend.models.analytic import Analytic
-from fiberbend.models.body import Body
-from fiberbend.models.cell import Cell
 from fiberbend.models.model import MeshedModel, ModelKind, Objection
-from fiberbend.models.section import Section
 
 MODELS: dict[str, ModelKind] = {
-    model.name: model for model in (Analytic(), Section(), Cell(), Body())
+    name: importlib.import_module(f"fiberbend.models.{name.replace('-', '_')}").MODEL
+    for name in names.MODELS
 }
-"""From the cheapest to the dearest. A new model is a file here and a word in this line."""
+"""From the cheapest to the dearest. A new model is a file here and a word in that table."""
 
 
 def choose_model(case: Case) -> tuple[ModelKind, str]:

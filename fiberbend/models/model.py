@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from fiberbend.case.case import Case, Mesh
+from fiberbend.columns import ELEMENTS, RUN
 from fiberbend.effects.effect import mirror_breakers
 
 if TYPE_CHECKING:
@@ -90,6 +91,10 @@ class ModelKind(ABC):
     """What a case calls it."""
     offers: ClassVar[frozenset[str]]
     """What effects may ask for, see `fiberbend.effects.effect`."""
+    fills: ClassVar[frozenset[str]] = frozenset({RUN})
+    """Groups of columns of history.csv, see `fiberbend.columns`; others are refused."""
+    line: ClassVar[str] = ""
+    """Where it has no elements: its name among `fiberbend.models.closed_form.analytic_curves`."""
     ends: ClassVar[bool] = False
     """It has the caps, and the bend near them."""
     gives_blocked_force: ClassVar[bool] = False
@@ -163,6 +168,7 @@ class ModelKind(ABC):
 class MeshedModel(ModelKind):
     """A model of finite elements."""
 
+    fills = frozenset({RUN, ELEMENTS})
     shared: ClassVar[bool] = False
     """All ranks solve it together; else one rank does."""
     resumes: ClassVar[bool] = False

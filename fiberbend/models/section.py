@@ -88,3 +88,6 @@ class Section(UniformModel):
     def mesh_error(self, case: Case) -> float:
         """By refinement."""
         return next(error for n, error in _ERRORS if case.mesh.section >= n)
+
+
+MODEL = Section()

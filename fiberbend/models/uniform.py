@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.columns import UNIFORM
 from fiberbend.models.model import (
     ENDS_BEND,
     MeshedModel,
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 class UniformModel(MeshedModel):
     """Curvature and stretch, and twist where the winding has a hand, are global unknowns."""
 
+    fills = MeshedModel.fills | {UNIFORM}
     gives_blocked_force = True
     agreement = 0.5
     straight_start = 1 / 20

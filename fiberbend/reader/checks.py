@@ -115,7 +115,8 @@ def _effects(parts: ValidParts) -> Iterator[Problem]:
             )
         first.setdefault(effect.name, index)
     if not parts.broken_effects and not any(effect.load for effect in parts.effects.values()):
-        yield Problem("effects", "no load, expected pressure or gravity")
+        names = " or ".join(name for name, effect in EFFECTS.items() if effect.load)
+        yield Problem("effects", f"no load, expected {names}")
 
 
 def _materials(parts: ValidParts) -> Iterator[Problem]:

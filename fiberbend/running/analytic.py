@@ -35,7 +35,7 @@ _STEPS = 40
 def run_analytic(
     case: Case, folder: RunFolder | None, progress: Progress, section: Curve | None = None
 ) -> RunResult:
-    """Answer a case by its zero-fit line; every rank computes, the folder's own rank writes.
+    """Answer a case by its model's line; every rank computes, the folder's own rank writes.
 
     Args:
         case: a case that `no_analytic` has no objection to.
@@ -45,13 +45,16 @@ def run_analytic(
 
     Raises:
         ValueError: the closed form does not support the case.
+        NotImplementedError: the case's model has no closed form.
     """
     why = no_analytic(case)
     if why is not None:
         raise ValueError(why)
-    progress.phase("solve")
     kind, _ = choose_model(case)
-    model = analytic_curves(case)["zero-fit"]
+    if not kind.line:
+        raise NotImplementedError(f"model {kind.name} has neither elements nor a closed form")
+    progress.phase("solve")
+    model = analytic_curves(case)[kind.line]
     if case.straight:
         rows, status, reason = _blocked_rows(case, model), "converged", ""
     else:
@@ -76,7 +79,7 @@ def run_analytic(
         {"numpy": np.__version__},
     )
     run["analytic"] = {
-        "line": "zero-fit",
+        "line": kind.line,
         "kappa_mm3": model.kappa,
         "assumptions": assumptions(case),
     }

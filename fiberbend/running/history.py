@@ -28,7 +28,7 @@ class Recorder:
     Args:
         scene: the scene whose states are recorded.
         gauge: what the model reads off a state.
-        model: name of the model, by which the columns are checked.
+        model: the model, by which the columns are checked.
         rest: the state before any load, at which the scene is unless there are rows.
         rows: those of a run that is resumed.
 
@@ -40,7 +40,7 @@ class Recorder:
         self,
         scene: Scene,
         gauge: Gauge,
-        model: str,
+        model: col.Filler,
         rest: State,
         rows: list[dict[str, Any]] | None = None,
     ) -> None:

@@ -174,7 +174,7 @@ class _Run:
         if saved is not None:
             march.resume(saved.position)
         rows = None if saved is None else saved.rows
-        recorder = Recorder(assembly.scene, gauge, self.model.name, march.rest, rows)
+        recorder = Recorder(assembly.scene, gauge, self.model, march.rest, rows)
         recording = Recording(
             self.case,
             assembly,

@@ -71,6 +71,7 @@ KINDS = {
         "60 MPa/mm",
         {"MPa/mm": "1", "kPa/mm": "1e-3", "N/mm^3": "1"},
     ),
+    "force": Kind("a force", "N", "N", "0.1 N", {"N": "1", "mN": "1e-3", "kN": "1e3"}),
     "time": Kind("a time", "s", "ms", "5 ms", {"s": "1", "ms": "1e-3"}),
     "frequency": Kind("a frequency", "Hz", "Hz", "100 Hz", {"Hz": "1", "kHz": "1e3"}),
     "conductance": Kind(

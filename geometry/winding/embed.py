@@ -91,7 +91,7 @@ def embed(mesh: MeshData, actuator: Actuator, winding: Winding, q: int = 3) -> E
     rows = []
     for helix, hand in enumerate(winding.hands):
         slope = -hand * winding.pitch / actuator.winding_perimeter
-        for line, rise in enumerate(winding.rises(actuator)):
+        for line, rise in enumerate(winding.rises(actuator, helix)):
             facet, c = _candidates(facets, slope, winding.pitch, rise)
             low, high = _clip(facets, facet, slope, c)
             kept = high - low > _SHORTEST

@@ -10,25 +10,19 @@ import numpy as np
 from geometry.actuator import Actuator
 from geometry.mesh.data import Floats
 from geometry.winding.outline import position, tangent
-
-PATTERNS: dict[str, tuple[int, ...]] = {
-    "double-helix": (1, -1),
-    "single-helix-right": (1,),
-    "single-helix-left": (-1,),
-}
-"""Hand of each helix: 1 right-handed about +z, −1 left-handed."""
+from geometry.winding.patterns import PATTERNS
 
 
 @dataclasses.dataclass(frozen=True)
 class Winding:
-    """A winding of one or two helices, each starting at the top (x = 0) at z = 0.
+    """The helices of a pattern, wound around the whole length.
 
     On the developed surface (arc length s of the outline, z) a helix is a straight line that rises
     by the pitch over one perimeter. s runs clockwise seen from +z, so a right-handed helix is
-    z = −pitch s / S + k pitch. A fiber is a ribbon: parallel lines spread over its width.
+    z = −pitch s / S + (start + k) pitch. A fiber is a ribbon: parallel lines spread over its width.
 
     Attributes:
-        pattern: "double-helix", "single-helix-right" or "single-helix-left".
+        pattern: name in `geometry.winding.patterns.PATTERNS`.
         pitch: rise of a turn in mm.
         width: width of the ribbon in mm; 0 gives a single line.
         lines: number of lines of a ribbon.
@@ -55,7 +49,12 @@ class Winding:
     @property
     def hands(self) -> tuple[int, ...]:
         """Hand of each helix."""
-        return PATTERNS[self.pattern]
+        return tuple(helix.hand for helix in PATTERNS[self.pattern].helices)
+
+    @property
+    def mirrored(self) -> bool:
+        """Whether the planes of symmetry of the actuator are its own."""
+        return PATTERNS[self.pattern].mirrored
 
     @property
     def lines_per_fiber(self) -> int:
@@ -67,11 +66,17 @@ class Winding:
         """Number of curves: helices × lines; curve = helix number × lines + line."""
         return len(self.hands) * self.lines_per_fiber
 
-    def rises(self, actuator: Actuator) -> Floats:
-        """Shift along z in mm of each line of a ribbon, (lines,): its offset is perpendicular."""
+    def rises(self, actuator: Actuator, helix: int) -> Floats:
+        """z at s = 0 in mm of each line of a ribbon, (lines,): its offset is perpendicular.
+
+        Args:
+            actuator: dimensions.
+            helix: number of the helix in the pattern.
+        """
         n, s = self.lines_per_fiber, actuator.winding_perimeter
         offsets = (np.arange(n) - (n - 1) / 2) * self.width / n
-        return offsets * math.hypot(s, self.pitch) / s
+        start = PATTERNS[self.pattern].helices[helix].start * self.pitch
+        return start + offsets * math.hypot(s, self.pitch) / s
 
     def turn_length(self, actuator: Actuator) -> float:
         """Length of one turn in mm, √(S² + pitch²)."""
@@ -96,8 +101,8 @@ class Winding:
         Returns:
             Points (number, 3) in mm and unit tangents (number, 3) toward growing z.
         """
-        hand = self.hands[curve // self.lines_per_fiber]
-        rise = self.rises(actuator)[curve % self.lines_per_fiber]
+        helix, line = divmod(curve, self.lines_per_fiber)
+        hand, rise = self.hands[helix], self.rises(actuator, helix)[line]
         perimeter = actuator.winding_perimeter
         z = np.linspace(0.0, actuator.length, number)
         s = -hand * (z - rise) * perimeter / self.pitch

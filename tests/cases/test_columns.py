@@ -9,14 +9,20 @@ import pytest
 
 from bench import columns as pages
 from fiberbend import columns
-from fiberbend.columns import ALL, COLUMNS, Column, check, column
+from fiberbend.columns import BODY, COLUMNS, RUN, UNIFORM, Column, check, column
 from fiberbend.models.choice import MODELS
+from fiberbend.models.model import ModelKind
 from fiberbend.running.folder import RunFolder
 
 
-def test_models_are_those_that_there_are() -> None:
-    assert tuple(MODELS) == ALL
-    assert all(set(known.models) <= set(ALL) for known in COLUMNS)
+def test_every_group_is_filled_and_every_model_fills_those_that_there_are() -> None:
+    groups = {known.group for known in COLUMNS}
+    assert groups == set().union(*(model.fills for model in MODELS.values()))
+    assert all(RUN in model.fills for model in MODELS.values())
+
+
+def test_a_model_of_which_nothing_is_known_fills_what_every_run_has() -> None:
+    assert ModelKind.fills == {RUN}
 
 
 def test_every_column_is_said_once_and_in_full() -> None:
@@ -38,7 +44,7 @@ def test_a_part_in_braces_stands_for_a_name() -> None:
 )
 def test_what_the_table_does_not_have_is_refused(key: str, model: str) -> None:
     with pytest.raises(KeyError, match=key):
-        check([key], model)
+        check([key], MODELS[model])
 
 
 def test_no_file_has_an_unknown_column(tmp_path: Path) -> None:
@@ -58,16 +64,19 @@ def test_a_made_up_column_works_by_its_line_in_the_table(monkeypatch: pytest.Mon
     from tests.run.conftest import small
 
     made = Column(
-        "greatest_v_mm", "mm", "greatest v", ("section",), read=lambda _scene, s: float(s.w.max())
+        "greatest_v_mm", "mm", "greatest v", UNIFORM, read=lambda _scene, s: float(s.w.max())
     )
     monkeypatch.setattr(columns, "COLUMNS", (*COLUMNS, made))
     column.cache_clear()
     short = {"pressure": {"angle": "20 deg"}}
     case = small(model="section", mesh={}, output={})
     case["effects"][0] = short
-    for model, there in (("section", True), ("cell", False)):
-        rows = run(case | {"model": model}).rows
-        assert all(("greatest_v_mm" in row) is there for row in rows)
-    column.cache_clear()
-    monkeypatch.setattr(columns, "COLUMNS", (*COLUMNS, dataclasses.replace(made, models=())))
-    assert "greatest_v_mm" not in run(case).rows[-1]
+    assert all("greatest_v_mm" in row for row in run(case).rows)
+    # of a group that the model does not fill, or without a value: no such column
+    for other in (
+        dataclasses.replace(made, group=BODY),
+        dataclasses.replace(made, read=lambda _scene, _state: None),
+    ):
+        column.cache_clear()
+        monkeypatch.setattr(columns, "COLUMNS", (*COLUMNS, other))
+        assert "greatest_v_mm" not in run(case).rows[-1]

@@ -17,6 +17,7 @@ from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
 from geometry.winding.outline import arc_length, position
+from geometry.winding.patterns import PATTERNS, Helix, Pattern
 from geometry.winding.segments import EmbeddedFibers
 from geometry.winding.smear import smear
 
@@ -59,6 +60,47 @@ def test_double_helix_crosses_on_the_mirror_plane() -> None:
     assert first[:, 0] == pytest.approx(0, abs=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("helices", "mirrored"),
+    [
+        ([Helix(1), Helix(-1)], True),
+        ([Helix(1)], False),
+        ([Helix(1), Helix(1, 0.5)], False),
+        ([Helix(1), Helix(1), Helix(-1)], False),
+        ([Helix(hand, start) for hand in (1, -1) for start in (0, 0.5)], True),
+        ([Helix(hand, start / 3) for hand in (1, -1) for start in range(3)], True),
+        # its own image in x, but not in the end of a half pitch
+        ([Helix(1, 0.25), Helix(-1, 0.25)], False),
+        # crosses beside x = 0
+        ([Helix(1), Helix(-1, 0.5)], False),
+        ([Helix(1, 1.0), Helix(-1, -3)], True),
+    ],
+)
+def test_a_pattern_knows_its_mirrors(helices: list[Helix], mirrored: bool) -> None:
+    assert Pattern("made up", tuple(helices)).mirrored is mirrored
+
+
+def test_a_pattern_has_helices_with_a_hand() -> None:
+    with pytest.raises(ValueError, match="hand 0"):
+        Helix(0)
+    with pytest.raises(ValueError, match="made up: expected at least one helix"):
+        Pattern("made up", ())
+
+
+def test_a_helix_starts_where_its_pattern_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(PATTERNS, "two", Pattern("two", (Helix(1), Helix(1, 0.5))))
+    two, one = Winding("two", 4, 0.4, lines=3), Winding("single-helix-right", 4, 0.4, lines=3)
+    assert two.rises(BODY, 0) == pytest.approx(one.rises(BODY, 0), abs=1e-12)
+    assert two.rises(BODY, 1) == pytest.approx(one.rises(BODY, 0) + 2, abs=1e-12)
+    # on the mesh half the helices cross x = 0 half a pitch higher
+    fibers = embed(_meshes(half=False)[0], BODY, dataclasses.replace(two, width=0.0))
+    for curve in range(2):
+        mine = fibers.curve == curve
+        phase = (fibers.z[mine] + 4 * fibers.s[mine] / BODY.winding_perimeter) / 4 % 1
+        assert np.abs((phase - 0.5 * curve + 0.5) % 1 - 0.5).max() < 1e-9
+        assert fibers.length[mine].sum() == pytest.approx(one.curve_length(BODY), rel=2e-5)
+
+
 @pytest.mark.parametrize("winding", [DOUBLE, *SINGLES])
 def test_embedded_length_is_exact_on_any_full_mesh(winding: Winding) -> None:
     # coarse and fine, hexes and tets: nothing lost at seams, doubled at borders
@@ -95,9 +137,9 @@ def test_points_lie_on_the_outline_and_tangents_along_the_helix(build: object) -
 
 def test_ribbon_lines_are_parallel_and_apart() -> None:
     ribbon = Winding("single-helix-left", 3, 0.4, lines=4)
-    spacing = np.diff(ribbon.rises(BODY)) * BODY.winding_perimeter / ribbon.turn_length(BODY)
+    spacing = np.diff(ribbon.rises(BODY, 0)) * BODY.winding_perimeter / ribbon.turn_length(BODY)
     assert spacing == pytest.approx(0.1)
-    assert ribbon.rises(BODY).sum() == pytest.approx(0, abs=1e-12)
+    assert ribbon.rises(BODY, 0).sum() == pytest.approx(0, abs=1e-12)
     fibers = embed(_meshes(half=False)[0], BODY, ribbon)
     assert np.all(fibers.share == 0.25)
     assert dataclasses.replace(ribbon, width=0.0).curves == 1

@@ -20,7 +20,13 @@ RUBBERS = {
     ),
 }
 """By the name of the law; Ogden's numbers are near his own for Treloar's rubber."""
-MODULI = {"neo-hooke": 0.3, "mooney-rivlin": 0.28, "yeoh": 0.22, "gent": 0.3, "ogden": 0.436}
+MODULI = {
+    "neo-hooke": 0.3,
+    "mooney-rivlin": 0.28,
+    "yeoh": 0.22,
+    "gent": 0.3,
+    "ogden": 0.436,
+}
 """Shear moduli at rest, MPa."""
 
 

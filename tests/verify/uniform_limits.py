@@ -18,7 +18,8 @@ from fem.scene import Scene
 from fem.solver.newton import Newton, Settings
 from geometry.sections.circle import CircleActuator
 from geometry.sections.hemicircle import HemicircleActuator
-from geometry.winding.helix import PATTERNS, Winding
+from geometry.winding.helix import Winding
+from geometry.winding.patterns import PATTERNS
 from geometry.winding.smear import smear
 from materials.material import Material
 from tests.exact.solutions import Torsion, closed_tube
@@ -143,7 +144,7 @@ def _wound(n: int, pattern: str, pitch: float, straight: bool) -> Scene:
     effects = [*rubber({"wall": YEOH}), ChamberPressure(), fibers]
     if straight:
         effects.append(StraightAxis())
-    return section(where, TUBE, effects, twisted=len(PATTERNS[pattern]) == 1)
+    return section(where, TUBE, effects, twisted=not PATTERNS[pattern].mirrored)
 
 
 def extending_tube(n: int, pitch: float, stretch: float) -> float:
