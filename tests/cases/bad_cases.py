@@ -2,6 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+from fiberbend.case.names import MODELS
+from geometry.sections.table import SECTIONS
+from materials.laws.table import LAWS
+
+
+def one_of(names: Iterable[str]) -> str:
+    """Names as a message lists them."""
+    *most, last = names
+    return f"{', '.join(most)} or {last}"
+
+
 BAD_SETTINGS = [
     # unknown keys
     ("actuator.radios=8 mm", "actuator.radios: unknown key, expected one of section, radius"),
@@ -47,16 +60,16 @@ BAD_SETTINGS = [
     ("materials.wall=chewing-gum", 'materials.wall: "chewing-gum", expected '),
     (
         "materials.wall={law: hooke, c1: 1 MPa}",
-        'materials.wall.law: "hooke", expected yeoh, neo-hooke, mooney-rivlin, ogden or gent',
+        f'materials.wall.law: "hooke", expected {one_of(LAWS)}',
     ),
     ("effects.1.winding.fiber=rope", 'effects.1.winding.fiber: "rope", expected '),
     ("effects.2.friction.mu=0.3", "effects.2.friction: unknown key, expected one of pressure"),
     ("effects.1.winding.pattern=braid", 'effects.1.winding.pattern: "braid", expected '),
     ("support=hinge", 'support: "hinge", expected clamped-root'),
-    ("model=beam", 'model: "beam", expected analytic, section, cell, body or auto'),
+    ("model=beam", f'model: "beam", expected {one_of([*MODELS, "auto"])}'),
     (
         "actuator.section=square",
-        'actuator.section: "square", expected hemicircle, rectangle or circle',
+        f'actuator.section: "square", expected {one_of(SECTIONS)}',
     ),
     # dimensions that a section misses or has no use for
     ("actuator.section=rectangle", "actuator.width: missing, expected the width of a rectangle"),

@@ -40,7 +40,9 @@ from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
 from geometry.winding.smear import smear
+from materials.laws.table import LAWS
 from tests.exact.solids import tube_sector
+from tests.materials.rubber import RUBBERS
 
 Floats = npt.NDArray[np.float64]
 CELLS = ("hexahedron", "tetrahedron")
@@ -70,18 +72,13 @@ def sector(cell: str) -> Domain:
 
 
 def law(name: str, regions: Sequence[str], scale: float = 1.0) -> Elastic:
-    """An elastic effect with numbers of a rubber."""
-    parameters = {
-        "neo-hooke": {"mu": 0.22 * scale},
-        "mooney-rivlin": {"c10": 0.09 * scale, "c01": 0.03 * scale},
-        "yeoh": {"c1": 0.11 * scale, "c2": 0.02 * scale, "c3": 0.003 * scale},
-        "gent": {"mu": 0.22 * scale, "jm": 30.0},
-        "ogden": {
-            **{"mu1": 0.2 * scale, "alpha1": 1.3, "mu2": 0.01 * scale, "alpha2": 5.0},
-            **{"mu3": 0.03 * scale, "alpha3": -2.0},
-        },
+    """An elastic effect with the numbers of a rubber, its stresses scaled."""
+    units = {parameter.name: parameter.unit for parameter in LAWS[name].parameters}
+    numbers = {
+        key: value * scale if units[key] == "MPa" else value
+        for key, value in RUBBERS[name].parameters.items()
     }
-    return Elastic(name, dict.fromkeys(regions, parameters[name]))
+    return Elastic(name, dict.fromkeys(regions, numbers))
 
 
 def winding(domain: Domain, width: float, tension_only: bool = False) -> Discrete:
