@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
-import shlex
 import subprocess
 import sys
 import types
@@ -14,12 +12,10 @@ from typing import Any
 
 import pytest
 
-from fiberbend import __version__
-from fiberbend.cli import app, main
+from fiberbend.cli import main
 from fiberbend.reader.reader import read_case
 from fiberbend.running import launch
 from fiberbend.running.folder import RunFolder
-from fiberbend.sweep.points import read_sweep
 from tests.cases import bad_cases
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -90,85 +86,6 @@ def test_wrong_command_line_ends_with_1(
     assert out == ""
     assert err.startswith(f"fiberbend: {line}")
     assert err.count("\n") == 1
-
-
-@pytest.mark.parametrize("arguments", [["version"], ["--version"]])
-def test_version(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(arguments) == 0
-    assert capsys.readouterr().out.strip() == __version__
-
-
-COMMANDS = ("validate", "plan", "run", "sweep", "control", "completion")
-
-
-@pytest.mark.parametrize("flag", ["--help", "-h"])
-def test_help_lists_the_commands(flag: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main([flag]) == 0
-    out = capsys.readouterr().out
-    for command in (*COMMANDS, "schema", "version"):
-        assert f" {command} " in out
-
-
-@pytest.mark.parametrize("command", COMMANDS)
-def test_help_of_a_command_has_examples_that_can_be_read(
-    command: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main([command, "--help"]) == 0
-    _, _, examples = capsys.readouterr().out.partition("Examples:")
-    lines = [line for line in examples.splitlines() if f"fiberbend {command}" in line]
-    assert len(lines) >= 2
-    for line in lines:
-        _, _, text = line.partition("fiberbend ")
-        words = shlex.split(text.partition(" >")[0].removesuffix(")"))
-        _, bound, _ = app.parse_args(words, exit_on_error=False, print_error=False)
-        if command != "completion":
-            path = ROOT / str(bound.args[0])
-            settings = bound.kwargs.get("settings", ())
-            read = read_sweep if command == "sweep" else read_case
-            read(path, settings)  # type: ignore[operator]
-
-
-@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
-def test_completion_names_commands_and_options(
-    shell: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["completion", shell]) == 0
-    script = capsys.readouterr().out
-    for word in ("validate", "overwrite", "dead-zone-divisor"):
-        assert word in script
-    if shell == "bash":
-        done = subprocess.run(["bash", "-n"], input=script, text=True, capture_output=True)
-        assert (done.returncode, done.stderr) == (0, "")
-
-
-COMPLETE = """
-source /dev/stdin <<< "$SCRIPT"
-COMP_WORDS=($WORDS "$LAST"); COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
-_fiberbend; printf '%s\\n' "${COMPREPLY[@]}"
-"""
-
-
-@pytest.mark.parametrize(
-    ("words", "last", "expected"),
-    [
-        ("fiberbend", "va", "validate"),
-        ("fiberbend run", "--ov", "--overwrite"),
-        ("fiberbend control --plant", "s", "section"),
-        ("fiberbend run", "cases/section.ya", "cases/section.yaml"),
-        ("fiberbend sweep", "cases/sweeps/radius_len", "cases/sweeps/radius_length_wall.yaml"),
-    ],
-)
-def test_bash_completes(
-    words: str, last: str, expected: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["completion", "bash"]) == 0
-    environment = os.environ | {
-        "SCRIPT": capsys.readouterr().out, "WORDS": words, "LAST": last
-    }  # fmt: skip
-    done = subprocess.run(
-        ["bash", "-c", COMPLETE], env=environment, cwd=ROOT, capture_output=True, text=True
-    )
-    assert (done.stdout.split(), done.stderr) == ([expected], "")
 
 
 @pytest.mark.parametrize("command", ["validate", "plan", "run", "control"])

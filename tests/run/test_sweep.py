@@ -30,8 +30,8 @@ from fiberbend.sweep.points import read_sweep
 from fiberbend.sweep.store import MARK, Store
 from fiberbend.sweep.table import where
 from fiberbend.sweep.trends import groups, sign
+from tests.conftest import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 SWEEP: dict[str, Any] = {
     "title": "Six actuators",
     "case": str(ROOT / "cases" / "free_bending_smeared.yaml"),
