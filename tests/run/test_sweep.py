@@ -1,7 +1,6 @@
 """Sweeps: no point twice, none lost, whatever is killed; and the table says what the runs say.
 
-Most of it runs with a solver of a few lines in place of the real one, which the worker processes
-load too: processes, locks and folders are real.
+Most of it runs with a solver of a few lines, but in real processes, locks and folders.
 """
 
 from __future__ import annotations
