@@ -246,9 +246,7 @@ def test_wrong_obstacles_are_named(contact: dict[str, Any], complaint: str) -> N
 def test_roof_and_post_hold_or_push_but_not_both() -> None:
     case = _case(HELD)
     case["effects"].append({"blocked-tip": {}})
-    with pytest.raises(
-        CaseError, match=r"effects\.2\.contact\.roof: effects\.3\.blocked-tip has"
-    ):
+    with pytest.raises(CaseError, match=r"effects\.2\.contact\.roof: effects\.3\.blocked-tip has"):
         as_case(case)
 
 
