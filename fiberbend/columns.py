@@ -75,6 +75,9 @@ class Column:
         always: the file has it, and in this order, also where no value is known.
         beside: it is another model's answer at the same row.
         read: gives the value; None where the model's gauge or the recorder fills it.
+
+    Raises:
+        ValueError: it reads itself off a scene, in the group of every model.
     """
 
     name: str
@@ -84,6 +87,10 @@ class Column:
     always: bool = False
     beside: bool = False
     read: Read | None = None
+
+    def __post_init__(self) -> None:
+        if self.read is not None and self.group == RUN:
+            raise ValueError(f"column {self.name}: a closed form has no scene to read it off")
 
     def names(self, key: str) -> bool:
         """Whether it is the column that a row calls so."""
@@ -208,6 +215,6 @@ def table(models: Collection[Filler], beside: bool) -> Iterator[str]:
     yield "|---|---|---|---|"
     for known in COLUMNS:
         if known.beside == beside:
-            fillers = [model.name for model in models if known.group in model.fills]
+            fillers = [each.name for each in models if known.group in each.fills]
             names = "all" if len(fillers) == len(models) else ", ".join(fillers)
             yield f"| `{known.name}` | {known.unit} | {known.meaning} | {names} |"

@@ -160,6 +160,12 @@ class FiberPotential:
         self._second = None
 
     @property
+    def slack(self) -> npt.NDArray[np.bool_]:
+        """Which segments are shorter than at rest, (n,); they are slack where they cannot push."""
+        slack: npt.NDArray[np.bool_] = self.strain < -ROUND_OFF
+        return slack
+
+    @property
     def force(self) -> Floats:
         """Axial force of every segment, N; zero where a tension-only fiber is slack."""
         force: Floats = self.stiffness * self.strain
@@ -230,7 +236,7 @@ class FiberPotential:
         if self._predicted is not None:
             force = np.maximum(self._predicted, 0) if self.tension_only else self._predicted
         if self.tension_only:
-            stiffness = np.where(self.strain > -ROUND_OFF, stiffness, 0.0)
+            stiffness = np.where(self.slack, 0.0, stiffness)
         n = self._direction
         across = np.eye(3) - n[..., :, None] * n[..., None, :]
         pull = self.length[:, None] * force[:, None] * self._share

@@ -30,6 +30,8 @@ from fem.solver.side_conditions import Functional
 JUMPED = "Newton went to another branch"
 BEYOND = "the load falls from here on"
 CREEPS = "increments shrink to nothing, each of them converging slowly"
+REACHED = 1e-12
+"""Part of a target by which round-off may miss it."""
 
 
 class March:
@@ -106,7 +108,7 @@ class March:
             if not self._ramp(ramp):
                 break
             position.ramp += 1
-            position.increment = None
+            position.increment = position.begin = position.first = None
             position.path_following = False
         return position.report
 
@@ -165,8 +167,10 @@ class March:
 
     def _ramp(self, ramp: Ramp) -> bool:
         position = self.position
-        span = ramp.target - self.states[-1].measures[ramp.key]
-        if span == 0:
+        if position.begin is None:
+            position.begin = self.states[-1].measures[ramp.key]
+        span = ramp.target - position.begin
+        if self._done(ramp, span):
             return True
         if position.increment is None:
             base = self.states[-1]
@@ -176,12 +180,12 @@ class March:
             position.increment = min(size, abs(ramp.largest or np.inf), abs(span))
         requests = Requests(ramp)
         # a load that hardly bends begins with tiny increments of the angle
-        first = position.increment
+        first = position.first = position.first or position.increment
         failures = 0
         slow: Outcome | None = None
         while True:
             state = self.states[-1]
-            if abs(ramp.target - state.measures[ramp.key]) <= 1e-9 * abs(span):
+            if self._done(ramp, span):
                 return True
             way = self._way(ramp, span)
             now = state.measures[way.key]
@@ -237,8 +241,18 @@ class March:
             position.increment = size
             for hook in self._called:
                 hook.after_step(self, new, outcome)
-            if kind == "control" and ramp.until is not None and aim >= ramp.until - 1e-9:
-                return True
+
+    def _done(self, ramp: Ramp, span: float) -> bool:
+        """Whether a ramp has reached its end, or the value at which it ends early.
+
+        Driven by its conjugate or by the control quantity, Newton's method hits the end within its
+        tolerance, not exactly; a run that is resumed at the end has nothing to do.
+        """
+        now = self.states[-1].measures
+        missed = abs(ramp.target - now[ramp.key])
+        if missed <= 1e-9 * abs(span) or missed <= REACHED * abs(ramp.target):
+            return True
+        return ramp.until is not None and now["control"] >= ramp.until - 1e-9
 
     def _attempt(
         self, ramp: Ramp, span: float, kind: str, aim: float

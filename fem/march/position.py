@@ -14,6 +14,8 @@ class Position:
     Attributes:
         states: the last converged states, oldest first, from which the next one is extrapolated.
         increment: of the driven quantity, to try next; None at the start of a ramp.
+        begin: what the ramp under way drives, where it began; None before it has begun.
+        first: its first increment.
         ramp: number of the ramp under way.
         path_following: the ramp under way has turned from the value of its scalar to the
             conjugate (volume control), which grows also where the value falls.
@@ -22,6 +24,8 @@ class Position:
 
     states: list[State]
     increment: float | None = None
+    begin: float | None = None
+    first: float | None = None
     ramp: int = 0
     path_following: bool = False
     report: Report = dataclasses.field(default_factory=Report)

@@ -167,7 +167,7 @@ class Diagnosis:
         comm = self._scene.domain.comm
         for item in self._scene.discrete.values():
             if isinstance(item, FiberPotential) and item.tension_only:
-                lengths = np.array([item.length[item.strain <= 0].sum(), item.length.sum()])
+                lengths = np.array([item.length[item.slack].sum(), item.length.sum()])
                 slack, whole = total(comm, lengths)
                 if slack > SLACK * whole:
                     return [f"the winding is slack over {100 * slack / whole:.0f} % of its length"]

@@ -15,6 +15,10 @@ from geometry.mesh.reference import area_vectors, facet_rules, shape_functions
 Floats = npt.NDArray[np.float64]
 
 
+ROUND_OFF = 1e-9
+"""mm. A gap that is zero at rest comes out as ±4e-16."""
+
+
 @dataclasses.dataclass(frozen=True)
 class Touch:
     """A contact at a state, of the whole body.
@@ -26,6 +30,11 @@ class Touch:
 
     gap: float
     area: float
+
+    @property
+    def touches(self) -> bool:
+        """Whether anything touches: round-off of a gap that is zero at rest does not."""
+        return self.gap < -ROUND_OFF
 
 
 def probes(scene: Scene) -> dict[str, Probe]:
@@ -67,5 +76,5 @@ class Probe:
         x = np.einsum("nqa,nai->inq", self._values, nodes)
         gap = np.asarray(self._obstacle.gap(x, self._numbers))
         least = comm.allreduce(float(gap.min(initial=np.inf)), MPI.MIN)
-        area = comm.allreduce(float(self._area[gap < 0].sum()), MPI.SUM)
+        area = comm.allreduce(float(self._area[gap < -ROUND_OFF].sum()), MPI.SUM)
         return Touch(least, body.symmetry_factor * area)

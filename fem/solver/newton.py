@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from collections.abc import Mapping, Sequence
-from typing import Protocol
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +13,7 @@ from petsc4py import PETSc
 
 from fem.solver.bordered import BorderedSystem, SideCondition
 from fem.solver.factor import Factor
+from fem.solver.problem import Problem
 
 Floats = npt.NDArray[np.float64]
 
@@ -21,60 +21,11 @@ NEAR, NEAR_RATIO, CHORD_RATIO = 1e-3, 0.02, 0.1
 """A factor is used again below this residual, after this reduction, and while it reduces so."""
 
 INVERTED = "an element turned inside out (least det F {:.3g})"
+VALUELESS = "a law has no value at some point: its rubber is beyond its limiting stretch"
 FADED = 1e-3
 """Forces count no less than so much of the greatest before: unloaded, nothing else is left."""
 PATIENCE = 6
 """Iterations after which a residual that grows makes Newton take the true tangent."""
-
-
-class Problem(Protocol):
-    """What Newton needs of a scene.
-
-    Attributes:
-        matrix: storage of K.
-        free: local dofs that no constraint fixes, (local,).
-        volumetric: owned dofs whose residual is a volume, not a force, (owned,).
-        volume_scale: what those are measured by, mm³.
-        force_noise: norm of the forces that round-off makes, N.
-    """
-
-    matrix: PETSc.Mat
-    free: npt.NDArray[np.bool_]
-    volumetric: npt.NDArray[np.bool_]
-    volume_scale: float
-    force_noise: float
-
-    def set(self, w: Floats) -> None:
-        """Take the owned coefficients as the state."""
-
-    def set_scalar(self, name: str, value: float) -> None:
-        """Set a global scalar."""
-
-    def scalar(self, name: str) -> float:
-        """Value of a global scalar."""
-
-    def residual(self) -> tuple[Floats, float]:
-        """R, owned part, (owned,), and a scale of the forces in it, N."""
-
-    def assemble_tangent(self) -> PETSc.Mat:
-        """K at the present state."""
-
-    def load(self, name: str) -> Floats:
-        """∂R/∂q of a scalar, owned part, (owned,)."""
-
-    def det_f(self) -> float:
-        """Least det F over all ranks."""
-
-    def norm(self, values: Floats) -> float:
-        """Euclidean norm over all ranks."""
-
-    def predict(
-        self, correction: Floats | None, scalars: Mapping[str, float] | None = None
-    ) -> None:
-        """Take the last correction, owned part, which the next tangent may use; None: none yet."""
-
-    def raise_force_floor(self, floor: float) -> None:
-        """Measure forces by no less than this from now on, N."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -325,13 +276,17 @@ class _Solve:
         if self.newton.settings.hybrid:
             self.problem.predict(-a, dict(zip(self.unknown, -q, strict=True)))
 
+    def _not_a_number(self) -> str:
+        """Why the residual has no value."""
+        return VALUELESS if self.least > 0 else INVERTED.format(self.least)
+
     def test(self, _snes: PETSc.SNES, iteration: int, _norms: tuple[float, ...]) -> int:
         """Force, volume and side conditions, each for itself."""
         reasons = PETSc.SNES.ConvergedReason
         force, volume, side = self.history[-1]
         tolerance = self.newton.settings.tolerance
         if not np.isfinite(force):
-            self.reason = INVERTED.format(self.least)
+            self.reason = self._not_a_number()
             return int(reasons.DIVERGED_FNORM_NAN)
         resolved = max(tolerance, self.problem.force_noise / self.scale)
         if force <= resolved and volume <= tolerance and side <= tolerance:
@@ -379,7 +334,7 @@ class _Solve:
             converged = snes.getConvergedReason() > 0 and not self.reason
             if not converged and not self.reason:
                 # SNES stops at a starting guess that is not a number without asking the test
-                self.reason = INVERTED.format(self.least)
+                self.reason = self._not_a_number()
             if converged:
                 self.problem.raise_force_floor(FADED * self.scale)
         except (PETSc.Error, ZeroDivisionError, np.linalg.LinAlgError) as error:

@@ -18,6 +18,7 @@ from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.compare.others import OtherModel
 from fiberbend.effects.effect import tip_strips
+from fiberbend.models import lines
 from fiberbend.models.closed_form import (
     analytic_curves,
     floor_limits,
@@ -84,7 +85,7 @@ def find_causes(
         return [*_ends(model, row, other), *found]
     if model.elements() is None:
         seen = {col.ANGLE: row[col.ANGLE], col.PRESSURE: value}
-        found = _of_closed_form(case, model, seen, curves["zero-fit"], curves)
+        found = _of_closed_form(case, model, seen, curves[lines.ZERO_FIT], curves)
         return [cause.reversed() for cause in found]
     return [*_ends(model, row, other), *_fibers(case, model, row)]
 
@@ -116,11 +117,11 @@ def _of_closed_form(
     case: Case, model: ModelKind, row: col.Row, closed: Hemicircle, curves: Mapping[str, Hemicircle]
 ) -> list[Cause]:
     """What sets a finite-element model apart from a section that keeps its shape."""
-    own, wide = curves["zero-fit"], curves["winding"]
+    own, wide = curves[lines.ZERO_FIT], curves[lines.WINDING]
     angle = math.radians(row[col.ANGLE])
     needs = float(closed.pressure(angle))
     found = []
-    if closed is curves["paper"]:
+    if closed is curves[lines.PAPER]:
         percent = 100 * (float(own.pressure(angle)) / needs - 1)
         text = f"the paper's μ̄ was calibrated; wall and sheath by their own laws: {percent:+.0f} %"
         found.append(Cause("effective modulus", percent, text))
@@ -173,7 +174,7 @@ def _of_force(case: Case, row: col.Row, force: float) -> list[Cause]:
     lever, pressure = lever_arm(case), 1e-3 * row[col.PRESSURE]
     kappa, reach = force * lever / pressure, row[col.TIP_FORCE] * lever / pressure
     curves, found = analytic_curves(case), []
-    wide = curves["winding"].kappa if curves else kappa
+    wide = curves[lines.WINDING].kappa if curves else kappa
     if kappa < reach <= 1.1 * wide:
         text = (
             f"F L_f/P is {reach:.0f} mm³, beyond {kappa:.0f} mm³: the pressure acts on more than "

@@ -12,16 +12,10 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 from analytic.bending import Hemicircle
 from analytic.stress import Floats
 from fiberbend.case.case import Case
+from fiberbend.models import lines
 from fiberbend.models.closed_form import analytic_curves, lever_arm
 from fiberbend.models.result import Curve
 
-ANALYTIC = {"zero-fit": "analytic", "winding": "analytic_winding", "paper": "analytic_paper"}
-"""What columns and run.json call the analytical models."""
-_LABELS = {
-    "zero-fit": "analytic (own rubber)",
-    "winding": "analytic (area to winding)",
-    "paper": "analytic (paper's μ̄)",
-}
 _TOLERANCE = 1e-6
 
 
@@ -68,7 +62,7 @@ def bending_models(case: Case, model: str, section: Curve | None) -> list[OtherM
     if section is not None:
         others.append(OtherModel("section", "section model", _through_curve(section)))
     for line, closed in analytic_curves(case).items():
-        others.append(OtherModel(ANALYTIC[line], _LABELS[line], _closed(closed), line))
+        others.append(OtherModel(lines.NAMES[line], lines.LABELS[line], _closed(closed), line))
     return [other for other in others if other.name != model]
 
 
@@ -82,12 +76,17 @@ def force_models(case: Case, model: str, straight: StraightSection | None) -> li
     curves = analytic_curves(case)
     if curves:
         others += [
-            OtherModel("analytic", "κP/L_f", _force(curves["zero-fit"], lever), "zero-fit"),
             OtherModel(
-                "analytic_winding",
+                lines.NAMES[lines.ZERO_FIT],
+                "κP/L_f",
+                _force(curves[lines.ZERO_FIT], lever),
+                lines.ZERO_FIT,
+            ),
+            OtherModel(
+                lines.NAMES[lines.WINDING],
                 "κP/L_f (area to winding)",
-                _force(curves["winding"], lever),
-                "winding",
+                _force(curves[lines.WINDING], lever),
+                lines.WINDING,
             ),
         ]
     return [other for other in others if other.name != model]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -51,6 +52,9 @@ def run_control(
     Raises:
         CaseError: a case, settings or a folder that cannot be used.
     """
+    problems = list(left_out(case))
+    if problems:
+        raise CaseError(problems)
     comm = _world()
     if out is not None:
         _check_folder(out, overwrite)
@@ -77,6 +81,15 @@ def run_control(
     if out is not None:
         _write(result, case, RunFolder.create(out, case, overwrite, comm))
     return result
+
+
+def left_out(case: Case) -> Iterator[Problem]:
+    """Effects of a case that neither plant has: the loop inflates a chamber that bends freely."""
+    for index, effect in enumerate(case.effects):
+        known = effect.inflation() or effect.beside() or effect.fixes_circumference()
+        if not known:
+            text = "control bends the actuator freely, without it: leave it out"
+            yield Problem(f"effects.{index}.{effect.name}", text)
 
 
 def plant_curve(case: Case, settings: ControlSettings) -> tuple[ActuatorCurve, str]:

@@ -149,7 +149,7 @@ def read_settings(given: Mapping[str, Any]) -> ControlSettings:
         options = Options.model_validate(given)
     except ValidationError as error:
         raise CaseError(
-            Problem(f"--{problem.path.partition('.')[0]}", problem.text)
+            Problem(f"--{problem.path.partition('.')[0].replace('_', '-')}", problem.text)
             for problem in from_pydantic(error, Options)
         ) from None
     with refusals():

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from geometry.winding.segments import EmbeddedFibers
     from materials.material import Material
 
+CHAMBER = "chamber"
+"""A model has the chamber that a pressure inflates."""
+WOUND = "wound"
+"""A model has the thread around the body, in turns, spread, or as a fixed circumference."""
 ARC = "arc"
 """A model bends uniformly all along, so that it can be kept straight all along."""
 SPACE = "space"
@@ -222,7 +226,7 @@ class Effect(Spec):
         Args:
             straight: some effect keeps the actuator from bending.
         """
-        yield from ()
+        yield f"{self.name}: what it adds to the error is not known"
 
     def curves(self, actuator: Actuator) -> list[Floats]:
         """Polylines in space, (n, 3), mm, that are to be seen in the mesh file."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Literal
 
 from fiberbend.effects.effect import SPACE, Built, Effect, Requests, Site
@@ -34,6 +35,10 @@ class GravityEffect(Effect):
     def follows_section(self) -> bool:
         """It bends a body little beside the pressure."""
         return True
+
+    def uncertainties(self, straight: bool) -> Iterator[str]:
+        """None: the model's own errors were measured with it."""
+        yield from ()
 
     def alone(self) -> str:
         """No section has weight."""

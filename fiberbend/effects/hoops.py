@@ -38,6 +38,10 @@ class HoopsEffect(Effect):
         """A section has no constraint for them."""
         return "the section model beside it needs a winding with pitch and fiber"
 
+    def uncertainties(self, straight: bool) -> Iterator[str]:
+        """None: the model's own errors were measured with it."""
+        yield from ()
+
     def alone(self) -> str:
         """Closed forms have them too."""
         return ""

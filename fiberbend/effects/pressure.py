@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from fiberbend.effects.effect import VOLUME, Built, Draft, Effect, Inflation, Requests, Site
+from fiberbend.effects.effect import (
+    CHAMBER,
+    VOLUME,
+    Built,
+    Draft,
+    Effect,
+    Inflation,
+    Requests,
+    Site,
+)
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Angle, SignedPressure, Volume
 
@@ -27,10 +36,11 @@ class PressureEffect(Effect):
     """Bending angle at the end; the pressure is found. Never meets a pressure limit."""
 
     def needs(self) -> dict[str, str]:
-        """A volume that is given."""
-        if self.volume is None:
-            return {}
-        return {VOLUME: "the closed form bends by pressure or angle, not by volume"}
+        """A chamber, and its volume where that is given."""
+        needed = {CHAMBER: "it has no chamber to inflate"}
+        if self.volume is not None:
+            needed[VOLUME] = "the closed form bends by pressure or angle, not by volume"
+        return needed
 
     def mirror_breaker(self) -> str:
         """None: it acts on both sides alike."""
@@ -51,6 +61,10 @@ class PressureEffect(Effect):
     def follows_section(self) -> bool:
         """The section is solved under it."""
         return True
+
+    def uncertainties(self, straight: bool) -> Iterator[str]:
+        """None: the model's own errors were measured with it."""
+        yield from ()
 
     def alone(self) -> str:
         """The section is solved under it."""

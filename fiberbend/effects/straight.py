@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, Literal
 
 from fiberbend.effects.effect import ARC, Built, Effect, Requests, Site
@@ -34,6 +34,10 @@ class StraightEffect(Effect):
     def fixed_scalars(self) -> tuple[str, ...]:
         """Curvature, and stretch where that is fixed."""
         return ("curvature",) if self.stretch == "free" else ("curvature", "stretch")
+
+    def uncertainties(self, straight: bool) -> Iterator[str]:
+        """None: the model's own errors were measured with it."""
+        yield from ()
 
     def alone(self) -> str:
         """The section beside a case that is kept straight is kept straight too."""

@@ -12,6 +12,7 @@ from fiberbend.effects.effect import (
     THREAD,
     TURNS,
     TWIST,
+    WOUND,
     Built,
     Draft,
     Effect,
@@ -129,7 +130,7 @@ class WindingEffect(Effect):
 
     def needs(self) -> dict[str, str]:
         """Turns where every one is to lie by itself, twist where the pattern has a hand."""
-        needed = {}
+        needed = {WOUND: "it has no thread around the body"}
         if self.representation == "discrete":
             needed[TURNS] = (
                 "only cell and body have turns (as: smeared, or leave `as` to the model)"
@@ -209,6 +210,10 @@ class WindingEffect(Effect):
     def beside(self) -> WindingEffect:
         """The same thread, spread."""
         return self.model_copy(update={"representation": "smeared", "width": None, "lines": None})
+
+    def uncertainties(self, straight: bool) -> Iterator[str]:
+        """None: the model's own errors were measured with it."""
+        yield from ()
 
     def alone(self) -> str:
         """The section has it too."""

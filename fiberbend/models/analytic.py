@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from fiberbend.case.case import Case
 from fiberbend.columns import MIDDLE
-from fiberbend.effects.effect import ARC, ENDS, HOOPS
+from fiberbend.effects.effect import ARC, CHAMBER, ENDS, HOOPS, WOUND
+from fiberbend.models import lines
 from fiberbend.models.model import ModelKind, Objection
 from fiberbend.models.uniform import not_uniform
 
@@ -15,8 +16,8 @@ class Analytic(ModelKind):
     """Uniform bending of a section that keeps its shape."""
 
     name = "analytic"
-    offers = frozenset({ARC, ENDS, HOOPS})
-    line = "zero-fit"
+    offers = frozenset({CHAMBER, WOUND, ARC, ENDS, HOOPS})
+    line = lines.ZERO_FIT
     fills = ModelKind.fills | {MIDDLE}
     agreement = 11.0
     start_s = 1.5

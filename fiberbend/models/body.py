@@ -11,6 +11,7 @@ from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.columns import BODY, MIDDLE
 from fiberbend.effects.effect import (
+    CHAMBER,
     ENDS,
     SPACE,
     STRIPS,
@@ -18,6 +19,7 @@ from fiberbend.effects.effect import (
     TURNS,
     TWIST,
     VOLUME,
+    WOUND,
     tip_strips,
 )
 from fiberbend.models.model import (
@@ -48,7 +50,7 @@ class Body(MeshedModel):
     """Everything that can act on an actuator acts on it here."""
 
     name = "body"
-    offers = frozenset({SPACE, ENDS, STRIPS, VOLUME, TWIST, THREAD, TURNS})
+    offers = frozenset({CHAMBER, WOUND, SPACE, ENDS, STRIPS, VOLUME, TWIST, THREAD, TURNS})
     fills = MeshedModel.fills | {MIDDLE, BODY}
     shared = True
     resumes = True

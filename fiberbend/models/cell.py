@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.effect import ARC, THREAD, TURNS, TWIST, VOLUME
+from fiberbend.effects.effect import ARC, CHAMBER, THREAD, TURNS, TWIST, VOLUME, WOUND
 from fiberbend.models.model import ProblemSize, completed_mesh, count
 from fiberbend.models.uniform import UniformModel, twists
 
@@ -31,7 +31,7 @@ class Cell(UniformModel):
     """Half a pitch between mirror planes, or a whole pitch with tied ends."""
 
     name = "cell"
-    offers = frozenset({ARC, VOLUME, TWIST, THREAD, TURNS})
+    offers = frozenset({CHAMBER, WOUND, ARC, VOLUME, TWIST, THREAD, TURNS})
     turn = math.radians(45)
     first_turn = math.radians(10)
     memory = 4

@@ -9,6 +9,7 @@ from analytic.stress import Stress, wound
 from fiberbend.case import convert
 from fiberbend.case.case import Case, MaterialSpec
 from fiberbend.effects.effect import tip_strips
+from fiberbend.models import lines
 
 SHAPE = "hemicircle"
 """The section that has a closed form."""
@@ -54,9 +55,9 @@ def analytic_curves(case: Case) -> dict[str, Hemicircle]:
     if sheath is not None and materials.sheath is not None:
         own |= {"sheath": sheath, "sheath_stress": _stress(materials.sheath)}
     return {
-        "zero-fit": Hemicircle(*size, **own),
-        "winding": Hemicircle(*size, **own, acts="winding"),
-        "paper": Hemicircle(*size),
+        lines.ZERO_FIT: Hemicircle(*size, **own),
+        lines.WINDING: Hemicircle(*size, **own, acts="winding"),
+        lines.PAPER: Hemicircle(*size),
     }
 
 

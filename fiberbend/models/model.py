@@ -89,8 +89,8 @@ class ModelKind(ABC):
 
     name: ClassVar[str]
     """What a case calls it."""
-    offers: ClassVar[frozenset[str]]
-    """What effects may ask for, see `fiberbend.effects.effect`."""
+    offers: ClassVar[frozenset[str]] = frozenset()
+    """What effects may ask for, see `fiberbend.effects.effect`; nothing unless said."""
     fills: ClassVar[frozenset[str]] = frozenset({RUN})
     """Groups of columns of history.csv, see `fiberbend.columns`; others are refused."""
     line: ClassVar[str] = ""
@@ -190,6 +190,18 @@ class MeshedModel(ModelKind):
         """The model itself."""
         return self
 
+    def limits(self, case: Case) -> Iterator[Objection]:
+        """Requests that a march would not meet: it looks for them while the angle grows."""
+        load, output = case.inflation, case.output
+        if load is None or load.angle is not None:
+            return
+        asked = {f"output.at_angles.{i}": angle for i, angle in enumerate(output.at_angles)}
+        if output.stop_at_angle is not None:
+            asked["output.stop_at_angle"] = output.stop_at_angle
+        for path, angle in asked.items():
+            if angle < 0:
+                yield path, "an angle below zero is met where the pressure has an angle only"
+
     @abstractmethod
     def mesh_size(self, case: Case, half: bool) -> MeshSize:
         """Fineness of its mesh, of x ≥ 0 only or of all."""
@@ -228,7 +240,10 @@ class MeshedModel(ModelKind):
 
     def largest_turn(self, case: Case) -> float:
         """Greatest change of the angle in a step, rad."""
-        turn = case.solver.max_turn or self.turn
+        return self.bounded_turn(case, case.solver.max_turn or self.turn)
+
+    def bounded_turn(self, case: Case, turn: float) -> float:
+        """A change of the angle in a step, rad, or the greatest that the case's effects allow."""
         length, cap = case.actuator.length, case.actuator.cap
         return min(turn, *(effect.largest_turn(length, cap) for effect in case.effects))
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import dataclasses
 import functools
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.effect import ARC, THREAD, TWIST, VOLUME, mirror_breakers
-from fiberbend.models.model import ProblemSize, completed_mesh, count
+from fiberbend.effects.effect import ARC, CHAMBER, THREAD, TWIST, VOLUME, WOUND
+from fiberbend.models.model import Objection, ProblemSize, completed_mesh, count
 from fiberbend.models.uniform import UniformModel, twists
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ class Section(UniformModel):
     """Nothing depends on z in the frame that turns with the section."""
 
     name = "section"
-    offers = frozenset({ARC, VOLUME, TWIST, THREAD})
+    offers = frozenset({CHAMBER, WOUND, ARC, VOLUME, TWIST, THREAD})
     turn = math.radians(10)
     first_turn = math.radians(10)
     memory = 5
@@ -46,6 +47,15 @@ class Section(UniformModel):
     def half(self, case: Case) -> tuple[bool, str]:
         """Always: half a turn about y maps a section onto itself whose winding has a hand."""
         return True, "the section is its own image, by mirror or by half a turn about y"
+
+    def limits(self, case: Case) -> Iterator[Objection]:
+        """No uniform bend, and no effect that breaks the symmetry otherwise than a hand does."""
+        yield from super().limits(case)
+        for index, effect in enumerate(case.effects):
+            turns, reason = effect.turns(), effect.mirror_breaker()
+            known = self.offers.issuperset(effect.needs())
+            if known and reason and not (turns is not None and turns.twists):
+                yield f"effects.{index}.{effect.name}", f"half a section is solved, and {reason}"
 
     def unused(self, case: Case) -> dict[str, set[str]]:
         """What concerns the axis and the other half."""
@@ -77,7 +87,7 @@ class Section(UniformModel):
     def size(self, case: Case) -> ProblemSize:
         """Of the mesh itself."""
         mesh = self.mesh(case)
-        components = 3 if any(mirror_breakers(case.effects)) else 2
+        components = 3 if twists(case) else 2
         unknowns = count(mesh, components, 3)
         return ProblemSize(len(mesh.cells), "quadrilaterals", unknowns, self.scalars(case), 1.0)
 

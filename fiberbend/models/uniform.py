@@ -32,6 +32,7 @@ class UniformModel(MeshedModel):
 
     def limits(self, case: Case) -> Iterator[Objection]:
         """No uniform bend."""
+        yield from super().limits(case)
         yield from not_uniform(case)
 
     def observables(self, case: Case, scene: Scene) -> Observables:
@@ -87,6 +88,6 @@ def not_uniform(case: Case) -> Iterator[Objection]:
 
 
 def twists(case: Case) -> bool:
-    """Whether the winding may twist the body."""
-    turns = case.turns
-    return turns is not None and turns.twists
+    """Whether a winding may twist the body."""
+    found = (effect.turns() for effect in case.effects)
+    return any(turns.twists for turns in found if turns is not None)

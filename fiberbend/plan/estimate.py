@@ -11,6 +11,7 @@ import os
 from pathlib import Path
 
 from fiberbend.case.case import Case
+from fiberbend.models import lines
 from fiberbend.models.model import MACHINE, MeshedModel, ModelKind, ProblemSize
 
 _GROWTH = 1.5
@@ -165,14 +166,11 @@ def expected_angle(case: Case) -> float | None:
         return load.angle
     from fiberbend.models.closed_form import analytic_curves
 
-    curve = analytic_curves(case).get("zero-fit")
+    curve = analytic_curves(case).get(lines.ZERO_FIT)
     if curve is None or load.to is None:
         return stop
-    import numpy as np
+    from analytic.inverse import first_angle
 
-    sign = math.copysign(1.0, load.to)
-    angles = sign * np.radians(np.arange(0.0, 541.0 if sign > 0 else 91.0, 5.0))
-    reached = sign * curve.pressure(angles)
-    rising = int(np.argmax(np.append(np.diff(reached) <= 0, True))) + 1
-    angle = float(np.interp(abs(load.to), reached[:rising], angles[:rising]))
+    low, high = curve.angles
+    angle = first_angle(curve.pressure, load.to, high if load.to > 0 else low).angle
     return angle if stop is None or abs(stop) > abs(angle) else stop

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from geometry.sections.size import MeshSize
 
 
-@dataclasses.dataclass
+@dataclasses.dataclass(frozen=True)
 class ValidParts:
     """The parts of a case that are valid by themselves; the others are None or absent."""
 

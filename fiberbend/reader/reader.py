@@ -111,17 +111,17 @@ def parse_case(data: Mapping[str, Any]) -> Case:
 
 
 def _valid_parts(data: Mapping[str, Any]) -> ValidParts:
-    parts = ValidParts(model=str(data.get("model")))
+    valid: dict[str, Any] = {}
     for name, part in _PARTS.items():
         try:
-            setattr(parts, name, part.model_validate(data.get(name, {})))
+            valid[name] = part.model_validate(data.get(name, {}))
         except ValidationError:
             continue
     entries: Any = data.get("effects")
-    parts.broken_effects = not isinstance(entries, list)
-    for index, entry in enumerate([] if parts.broken_effects else entries):
+    broken, effects = not isinstance(entries, list), {}
+    for index, entry in enumerate([] if broken else entries):
         try:
-            parts.effects[index] = unwrap(EffectEntry.model_validate(entry))
+            effects[index] = unwrap(EffectEntry.model_validate(entry))
         except ValidationError:
-            parts.broken_effects = True
-    return parts
+            broken = True
+    return ValidParts(model=str(data.get("model")), effects=effects, broken_effects=broken, **valid)

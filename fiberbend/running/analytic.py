@@ -61,6 +61,8 @@ def run_analytic(
         rows, status, reason = _free_rows(case, model)
     check = crosscheck(case, kind, rows, section, read_measured(case))
     rows = check.beside(rows)
+    for row in rows:
+        col.check(row, kind)
     progress.phase("output")
     last = rows[-1]
     run = entries(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fem.march.hooks import Hook, Marching
 from fem.march.records import Ramp, State
-from fem.results.touch import probes
+from fem.results.touch import Touch, probes
 from fem.scene import Scene
 from fem.solver.newton import Outcome
 
@@ -29,34 +29,42 @@ class Approach(Hook):
     def __init__(self, scene: Scene) -> None:
         self._probes = probes(scene)
         self._usual: float | None = None
+        self._ramp: Ramp | None = None
+        self._before: tuple[State, dict[str, Touch]] | None = None
 
-    def _gaps(self) -> dict[str, float]:
-        """Least gap to each obstacle, mm."""
-        return {name: probe.read().gap for name, probe in self._probes.items()}
+    def _touches(self) -> dict[str, Touch]:
+        """How each obstacle is met at the present state."""
+        return {name: probe.read() for name, probe in self._probes.items()}
 
     def before_ramp(self, march: Marching, ramp: Ramp) -> None:
         """See what touches where the ramp begins, or where a run goes on."""
+        if ramp != self._ramp:
+            # the increment of another load
+            self._usual = None
         self._ramp = ramp
-        self._before = march.position.states[-1], self._gaps()
-        march.extrapolate_in_frames(not _touching(self._before[1]))
+        touches = self._touches()
+        self._before = march.position.states[-1], touches
+        march.extrapolate_in_frames(not _touching(touches))
 
     def after_step(self, march: Marching, state: State, outcome: Outcome) -> None:
         """Shorten the next step to where touch is foreseen, or start anew after a kink."""
-        gaps = self._gaps()
-        (earlier, former), self._before = self._before, (state, gaps)
-        march.extrapolate_in_frames(not _touching(gaps))
-        position, ramp = march.position, self._ramp
+        touches, ramp, before = self._touches(), self._ramp, self._before
+        assert ramp is not None
+        assert before is not None
+        (earlier, former), self._before = before, (state, touches)
+        march.extrapolate_in_frames(not _touching(touches))
+        position = march.position
         if position.path_following or position.increment is None:
             return
-        if _touching(gaps) != _touching(former):
+        if _touching(touches) != _touching(former):
             march.restart_from_response(ramp.scalar, self._usual or position.increment)
             self._usual = None
             return
         driven = state.measures[ramp.key] - earlier.measures[ramp.key]
         increments = [
-            gap / (former[name] - gap) * abs(driven)
-            for name, gap in gaps.items()
-            if 0 < gap < former[name]
+            touch.gap / (former[name].gap - touch.gap) * abs(driven)
+            for name, touch in touches.items()
+            if 0 < touch.gap < former[name].gap
         ]
         to_touch = (1 + DEPTH) * min(increments, default=float("inf"))
         if to_touch < position.increment:
@@ -64,6 +72,6 @@ class Approach(Hook):
             march.limit_increment(to_touch)
 
 
-def _touching(gaps: dict[str, float]) -> list[str]:
+def _touching(touches: dict[str, Touch]) -> list[str]:
     """Names of the obstacles that are touched."""
-    return [name for name, gap in gaps.items() if gap < 0]
+    return [name for name, touch in touches.items() if touch.touches]

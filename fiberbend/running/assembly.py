@@ -103,21 +103,18 @@ def rules(case: Case, model: MeshedModel, guided: bool) -> Rules:
         model: its model.
         guided: there is a guide: a short first step, from which the ends are learnt.
     """
-    turn = model.largest_turn(case)
+    turn, first, given = model.turn, model.first_turn, case.solver.max_turn
+    if guided:
+        turn, first = GUIDED_TURN, given or GUIDED_FIRST
+    turn = model.bounded_turn(case, given or turn)
     found = Rules(
         cutbacks=case.solver.max_cutbacks,
         turn=turn,
-        first_turn=min(turn, model.first_turn),
+        first_turn=min(turn, first),
         memory=model.memory,
     )
+    if guided:
+        found = dataclasses.replace(found, grow=GUIDED_GROWTH)
     for effect in case.effects:
         found = effect.rules(found, case.straight)
-    if not guided:
-        return found
-    given = case.solver.max_turn
-    return dataclasses.replace(
-        found,
-        turn=given or GUIDED_TURN,
-        first_turn=given or GUIDED_FIRST,
-        grow=GUIDED_GROWTH,
-    )
+    return found

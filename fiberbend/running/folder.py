@@ -40,6 +40,7 @@ RUN_KEYS = (
 CASE_FILE = "case.resolved.yaml"
 RUN_FILE = "run.json"
 HISTORY_FILE = "history.csv"
+CHECKPOINT = "checkpoint.npz"
 
 
 class RunFolder:

@@ -11,10 +11,9 @@ import numpy as np
 from fem.march.position import Position
 from fem.results.checkpoint import Archive
 from fiberbend import columns as col
-from fiberbend.running.folder import RunFolder
+from fiberbend.running.folder import CHECKPOINT, RunFolder
+from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.states.snapshot import Snapshot
-
-CHECKPOINT = "checkpoint.npz"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -59,6 +58,9 @@ def load(folder: RunFolder, archive: Archive) -> Saved | None:
         return None
     with np.load(path) as file:
         arrays = dict(file)
+    if "rows" not in arrays:
+        text = "of another version of fiberbend, cannot be resumed: expected --overwrite"
+        raise CaseError([Problem(str(path), text)])
     rows = json.loads(str(arrays.pop("rows")))
     snapshots = []
     for shot in sorted((folder.path / "snapshots").glob("*.npz")):

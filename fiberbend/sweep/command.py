@@ -10,12 +10,12 @@ from types import FrameType
 
 from fiberbend.running import launch
 from fiberbend.running.folder import RunFolder
+from fiberbend.running.launch import FAILED
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.sweep.points import Sweep, read_sweep
 from fiberbend.sweep.store import Store
 from fiberbend.sweep.workers import Event, WorkerPool, work
 
-FAILED = 2
 INTERRUPTED = 130
 Say = Callable[[str], None]
 

@@ -12,7 +12,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, field_validator
 from pydantic_core import PydanticCustomError
 
-from fiberbend.schema.problems import Problem
+from fiberbend.columns import COLUMNS, column
+from fiberbend.schema.problems import Problem, found, meant
 from fiberbend.schema.quantities import Angle, Pressure, Spec
 
 MapKind = Literal["pressure", "stretch", "blocked-force"]
@@ -70,6 +71,13 @@ def contradictions(file: SweepFile) -> Iterator[Problem]:
         for path, values in fields.items():
             if not values:
                 yield Problem(f"{part}.{path}", "no value, expected at least one")
+    for index, name in enumerate(file.report.history):
+        try:
+            column(name)
+        except KeyError:
+            known = [each.name for each in COLUMNS]
+            text = f"no column of history.csv{meant(name, known)}"
+            yield Problem(f"report.history.{index}", f"{found(name)}, {text}")
     for index, settings in enumerate(file.points):
         if not settings:
             yield Problem(f"points.{index}", "nothing set, expected paths with values")

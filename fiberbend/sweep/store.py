@@ -19,6 +19,7 @@ from typing import Any
 
 from fiberbend.case.case import Case
 from fiberbend.running.folder import (
+    CHECKPOINT,
     HISTORY_FILE,
     RUN_FILE,
     RunFolder,
@@ -32,7 +33,6 @@ MARK = "sweep"
 BLOCKED = "blocked"
 """Folder within that of a point with the same body kept straight."""
 _LOCKS = ".locks"
-_CHECKPOINT = "checkpoint.npz"
 
 
 class Store:
@@ -136,7 +136,7 @@ class Store:
             run = self.result(point)
             if mine and run is not None and run["status"] == "failed":
                 (self.folder(point) / RUN_FILE).unlink()
-                (self.folder(point) / _CHECKPOINT).unlink(missing_ok=True)
+                (self.folder(point) / CHECKPOINT).unlink(missing_ok=True)
 
     def _finish(self, point: Point, run: dict[str, Any], wall: float) -> dict[str, Any]:
         run = run | {MARK: {"point": point.name, "digest": point.digest, "wall_s": round(wall, 3)}}
@@ -148,7 +148,7 @@ def _run(case: Case, folder: Path) -> dict[str, Any]:
     """Solve a case, from the last state of a killed run of the same case if it left one."""
     from fiberbend.running.runner import run_case
 
-    if (folder / _CHECKPOINT).exists():
+    if (folder / CHECKPOINT).exists():
         try:
             return run_case(case, folder, resume=True).run
         except Exception:  # another case, or of another version: from the start

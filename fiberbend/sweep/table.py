@@ -14,6 +14,7 @@ from analytic.bending import Hemicircle
 from analytic.stress import CALIBRATED_MODULUS
 from fiberbend import columns as col
 from fiberbend.case.case import Case
+from fiberbend.models import lines
 from fiberbend.models.closed_form import analytic_curves, lever_arm
 from fiberbend.schema.units import show
 from fiberbend.sweep.file import ReportSpec
@@ -23,7 +24,7 @@ from fiberbend.sweep.store import BLOCKED, MARK, Store
 History = Sequence[Mapping[str, float | None]]
 TableRow = dict[str, Any]
 
-LINES = {"paper": "paper", "zero-fit": "zero_fit", "winding": "winding"}
+LINES = {lines.PAPER: "paper", lines.ZERO_FIT: "zero_fit", lines.WINDING: "winding"}
 """Analytical lines in the table, with their names in it."""
 CAPTIONS = {
     "paper": f"analytical, eq. (19), μ̄ = {CALIBRATED_MODULUS:g} MPa",
@@ -207,10 +208,13 @@ def _analytic(case: Case, report: ReportSpec) -> TableRow:
 
 def _pressure(model: Hemicircle | None, angle: float) -> float | None:
     """Pressure at an angle in kPa, None beyond what a closed form can bend."""
+    if model is None:
+        return None
     try:
-        return None if model is None else 1e3 * float(model.pressure(angle))
+        pressure = 1e3 * float(model.pressure(angle))
     except ValueError:
         return None
+    return pressure if math.isfinite(pressure) else None
 
 
 def _cell(value: Any) -> Any:

@@ -96,6 +96,9 @@ class WorkerPool:
             try:
                 while self._left:
                     self._begin(pool)
+                    if not self._running:
+                        # other processes have what is left; nothing to wait for returns at once
+                        time.sleep(_PAUSE)
                     ended, _ = wait(self._running, _PAUSE, FIRST_COMPLETED)
                     for future in ended:
                         self._ended(self._running.pop(future), future)

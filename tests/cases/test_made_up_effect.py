@@ -8,9 +8,11 @@ import pytest
 
 from fiberbend.case.case import Case
 from fiberbend.case.section_beside import as_section
+from fiberbend.control.command import left_out
 from fiberbend.effects.effect import Effect
 from fiberbend.effects.pressure import inflate
 from fiberbend.models.choice import MODELS, choose_model, problems
+from fiberbend.models.model import ModelKind
 from fiberbend.plan.estimate import steps_of
 from fiberbend.plan.plan import make_plan
 from fiberbend.reader.checks import ValidParts, check
@@ -81,3 +83,43 @@ def test_no_phase_takes_it_for_granted() -> None:
 def test_it_is_not_built_as_nothing() -> None:
     with pytest.raises(NotImplementedError, match="tip-load cannot be built"):
         TipLoad().build(None, None, None)  # type: ignore[arg-type]
+
+
+class Lopsided(TipLoad):
+    """One that a section is said to have, and of whose symmetry nothing is said."""
+
+    name = "lopsided"
+
+    def needs(self) -> dict[str, str]:
+        """Nothing in particular."""
+        return {}
+
+
+def test_half_a_section_refuses_what_may_not_be_symmetric() -> None:
+    base = case("section")
+    made = base.model_copy(update={"effects": (*base.effects[:2], Lopsided())})
+    (problem,) = problems(made)
+    assert problem == (
+        "effects.2.lopsided",
+        "model section does not support it: half a section is solved, and lopsided is not known "
+        "to be mirror-symmetric",
+    )
+
+
+def test_control_has_no_effect_that_it_does_not_know() -> None:
+    (problem,) = left_out(case("body"))
+    assert str(problem).startswith(f"{PATH}: control bends the actuator freely, without it")
+
+
+def test_a_model_that_says_nothing_supports_nothing() -> None:
+    class Bare(ModelKind):
+        name = "bare"
+
+    base = case("body")
+    refused = [path for path, _ in Bare().refuses(base)]
+    assert refused == ["effects.0.pressure", "effects.1.winding", PATH]
+
+
+def test_its_error_is_not_known() -> None:
+    text = " ".join(" ".join(make_plan(case("body")).lines()).split())
+    assert "tip-load: what it adds to the error is not known" in text

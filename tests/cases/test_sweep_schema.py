@@ -220,6 +220,10 @@ BAD: list[tuple[dict[str, Any], list[str]]] = [
         ],
     ),
     (
+        {"report": {"history": ["axis_strech"]}, "vary": {"actuator.wall": ["2 mm"]}},
+        ['report.history.0: "axis_strech", no column of history.csv; did you mean axis_stretch?'],
+    ),
+    (
         {"report": {"angles": [90], "maps": ["colour"]}},
         [
             'report.angles.0: 90, expected an angle with its unit such as "90 deg"',

@@ -20,7 +20,7 @@ from fem.march.hooks import AfterStep, Hook
 from fem.march.march import March
 from fem.march.records import Ramp, Rules, State
 from fem.results.measures import balance
-from fem.results.touch import Probe
+from fem.results.touch import Probe, Touch
 from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome, Settings
 from tests.exact.solids import box
@@ -158,3 +158,10 @@ def test_gaps_are_distances() -> None:
 def test_stiffness_must_be_positive() -> None:
     with pytest.raises(ValueError, match="expected a positive value"):
         Contact("it", Cylinder((0, 0), 1), ("outer",), 0.0)
+
+
+@pytest.mark.parametrize("gap", [0.0, -4.4e-16, 4.4e-16])
+def test_a_gap_of_zero_at_rest_touches_nothing(gap: float) -> None:
+    # the sign of round-off changed with the thickness of the sheath
+    assert not Touch(gap, 0.0).touches
+    assert Touch(-1e-6, 1.0).touches

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 from collections.abc import Sequence
 from typing import Any
@@ -12,6 +13,7 @@ from scipy.interpolate import CubicSpline
 
 from fem.march.hooks import Hook, Marching
 from fem.march.march import Ramp, Rules, State
+from fem.march.position import Position
 from fem.solver.newton import Newton, Outcome, SideCondition
 from tests.fem.parts import Bender, Floats, bender
 
@@ -77,6 +79,40 @@ def test_until_ends_the_ramp_at_an_angle() -> None:
     report = body.run([Ramp("pressure", 1.0, until=ANGLES[0])])
     assert report.status == "converged", report.reason
     assert body.angle.value() == pytest.approx(ANGLES[0], abs=1e-8)
+
+
+class _Kept(Hook):
+    """The position after every step, as a checkpoint would have it."""
+
+    def __init__(self) -> None:
+        self.positions: list[Position] = []
+
+    def after_step(self, march: Marching, state: State, outcome: Outcome) -> None:
+        self.positions.append(copy.deepcopy(march.position))
+
+
+@pytest.mark.parametrize("drive", ["value", "conjugate", "control", "until"])
+def test_a_ramp_that_had_ended_is_not_gone_on_with(drive: str) -> None:
+    # killed after its last step: its end is hit within round-off, and nothing is left to do
+    body, kept = bender(Rules(turn=np.deg2rad(2.0), first_turn=np.deg2rad(1.0))), _Kept()
+    volume = body.march.rest.measures["conjugate pressure"]
+    ramp = {
+        "value": Ramp("pressure", TARGET, largest=TARGET / 2),
+        "conjugate": Ramp("pressure", 1.05 * volume, drive="conjugate", largest=0.02 * volume),
+        "control": Ramp("pressure", 0.2, drive="control"),
+        "until": Ramp("pressure", 1.0, until=ANGLES[1]),
+    }[drive]
+    assert body.march.run([ramp], [kept]).status == "converged"
+    end = kept.positions[-1]
+    assert end.report.steps > 1
+    body.march.resume(copy.deepcopy(end))
+    report = body.march.run([ramp])
+    assert (report.status, report.steps) == ("converged", end.report.steps)
+    # killed one step before, it takes that step
+    body.march.resume(copy.deepcopy(kept.positions[-2]))
+    report = body.march.run([ramp])
+    assert (report.status, report.steps) == ("converged", end.report.steps)
+    assert body.march.states[-1].w == pytest.approx(end.states[-1].w, rel=1e-6, abs=1e-9)
 
 
 class _Flaky:

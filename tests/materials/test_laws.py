@@ -188,3 +188,10 @@ def test_named_materials_are_the_papers() -> None:
     assert NAMED["elastosil-m4601"].mass_density == pytest.approx(1.13e-9)
     with pytest.raises(ValueError, match="elastosil-m4601"):
         named_material("elastosil")
+
+
+@pytest.mark.parametrize("c", [0.1, 0.3, 1.0])
+def test_stiffness_that_cancels_is_none(c: float) -> None:
+    # Σ μi is zero but for round-off, whose sign decides nothing
+    with pytest.raises(ValueError, match="initial shear modulus"):
+        Material("ogden", {"mu1": c, "alpha1": 2.0, "mu2": -c, "alpha2": -2.0})

@@ -1,0 +1,62 @@
+"""What Newton's method needs of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+from petsc4py import PETSc
+
+Floats = npt.NDArray[np.float64]
+
+
+class Problem(Protocol):
+    """What Newton needs of a scene.
+
+    Attributes:
+        matrix: storage of K.
+        free: local dofs that no constraint fixes, (local,).
+        volumetric: owned dofs whose residual is a volume, not a force, (owned,).
+        volume_scale: what those are measured by, mm³.
+        force_noise: norm of the forces that round-off makes, N.
+    """
+
+    matrix: PETSc.Mat
+    free: npt.NDArray[np.bool_]
+    volumetric: npt.NDArray[np.bool_]
+    volume_scale: float
+    force_noise: float
+
+    def set(self, w: Floats) -> None:
+        """Take the owned coefficients as the state."""
+
+    def set_scalar(self, name: str, value: float) -> None:
+        """Set a global scalar."""
+
+    def scalar(self, name: str) -> float:
+        """Value of a global scalar."""
+
+    def residual(self) -> tuple[Floats, float]:
+        """R, owned part, (owned,), and a scale of the forces in it, N."""
+
+    def assemble_tangent(self) -> PETSc.Mat:
+        """K at the present state."""
+
+    def load(self, name: str) -> Floats:
+        """∂R/∂q of a scalar, owned part, (owned,)."""
+
+    def det_f(self) -> float:
+        """Least det F over all ranks."""
+
+    def norm(self, values: Floats) -> float:
+        """Euclidean norm over all ranks."""
+
+    def predict(
+        self, correction: Floats | None, scalars: Mapping[str, float] | None = None
+    ) -> None:
+        """Take the last correction, owned part, which the next tangent may use; None: none yet."""
+
+    def raise_force_floor(self, floor: float) -> None:
+        """Measure forces by no less than this from now on, N."""
