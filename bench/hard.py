@@ -102,7 +102,7 @@ def row(hard: Hard, record: dict[str, Any]) -> str:
 HEAD = """\
 # Hard cases
 
-Made by `make hard` (`bench/hard.py`) from the table of cases in `tests/hard/cases.py`; each runs in
+Made by `make hard` (`bench/hard.py`) from the table of cases in `bench/hard_cases.py`; each runs in
 a process of its own, at most {limit} s. What is fast is part of `make test`. The body is
 80 mm long by default, so that 180° bend it as much as 360° the paper's
 actuator; bodies are coarse (elements of 8 mm) with their winding spread over its surface.
