@@ -91,7 +91,7 @@ class Hard:
             None where that is no measure.
         against: by model, another case, a model of it, and how far the angles may be apart,
             relative.
-        procedure: name of what is done with it in tests/hard/procedures.py.
+        procedure: name of what is done with it in bench/hard_procedures.py.
         fast: models that take less than ten seconds.
         stable: no unstable mode at the end of what is reached.
         balance: greatest relative gap of ∫ P dV (and what other loads do) from the stored energy.
