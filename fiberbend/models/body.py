@@ -44,6 +44,8 @@ _TOUCHING_ITERATIONS = 6.0
 """The same with roof and post, under which the sheath yields, and along obstacles."""
 _RESOLVED = ((0.5, 1.0), (2 / 3, 0.85), (4 / 3, 0.2))
 """Length of the elements over the pitch, and the part of the bulging between turns they give."""
+_END = 1 + 1e-9
+"""The last of them counts, whatever a quotient rounds to."""
 
 
 class Body(MeshedModel):
@@ -115,7 +117,8 @@ class Body(MeshedModel):
         if turns is None or not turns.discrete:
             return 0.0
         sizes, parts = zip(*_RESOLVED, strict=True)
-        return float(np.interp(case.mesh.axial / turns.pitch, sizes, parts, right=0.0))
+        ratio = case.mesh.axial / turns.pitch
+        return 0.0 if ratio > _END * sizes[-1] else float(np.interp(ratio, sizes, parts))
 
     def size(self, case: Case) -> ProblemSize:
         """Of a body from the block layout, which is that of gmsh's hexahedra."""

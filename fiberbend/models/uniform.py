@@ -83,6 +83,8 @@ def not_uniform(case: Case) -> Iterator[Objection]:
     """Why a case does not bend uniformly, beside its effects."""
     if case.inflation is None:
         yield "effects", "nothing bends it uniformly but a pressure"
+    elif case.straight and case.inflation.angle is not None:
+        yield "effects", "kept straight, it reaches no angle: expected a pressure by its value"
     if case.mesh.element == "tetrahedron":
         yield "mesh.element", "tetrahedra are for a body"
 

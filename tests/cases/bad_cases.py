@@ -224,6 +224,15 @@ WEIGHT = [
 UNFIT_MODELS = [
     # turns, twist and ends
     (
+        [
+            "model=section",
+            "effects.0={pressure: {angle: 90 deg}}",
+            "effects.2.straight={}",
+            "output={}",
+        ],
+        "effects: model section does not support it: kept straight, it reaches no angle",
+    ),
+    (
         ["model=section", "effects.1.winding.as=discrete"],
         "effects.1.winding: model section does not support it: only cell and body have turns",
     ),
