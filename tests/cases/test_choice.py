@@ -116,3 +116,10 @@ def test_half_or_full() -> None:
     assert choose_half(case("model=section", SMEARED, SINGLE))[0] is True
     assert choose_half(case("mesh.symmetry=full")) == (False, "given in the case")
     assert choose_half(case(*WEIGHT, "effects.2.gravity.direction=+x"))[0] is False
+
+
+@pytest.mark.parametrize("pitch", [3.0, 3.9, 3.3, 5.1])
+def test_the_coarsest_mesh_that_counts_hangs_on_no_quotient(pitch: float) -> None:
+    # elements of 4/3 of the pitch give 0.2 of the bulging; 5.2/3.9 rounds to a little more
+    coarse = case(f"effects.1.winding.pitch={pitch} mm", f"mesh.axial={4 / 3 * pitch:.10g} mm")
+    assert MODELS["body"].resolved_bulging(coarse) == pytest.approx(0.2, rel=1e-6)
