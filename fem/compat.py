@@ -160,9 +160,17 @@ class PointValues:
         return values.reshape(len(self._cells), self._points, -1)
 
 
+def quadrature(
+    cell_type: str, degree: int
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Points (q, d) and weights (q,) of a measure of this degree; bridges make_quadrature."""
+    points, weights = basix.make_quadrature(_basix_cell(cell_type), degree)
+    return np.asarray(points), np.asarray(weights)
+
+
 def quadrature_points(cell_type: str, degree: int) -> npt.NDArray[np.float64]:
-    """Points (q, d) of the scheme of a measure of this degree; bridges make_quadrature."""
-    return np.asarray(basix.make_quadrature(_basix_cell(cell_type), degree)[0])
+    """Points (q, d) of the scheme of a measure of this degree."""
+    return quadrature(cell_type, degree)[0]
 
 
 def dirichlet(space: Any, dofs: npt.NDArray[np.int32]) -> Any:

@@ -22,6 +22,8 @@ TIP_FORCE = "tip_force_N"
 ROOF_FORCE = "roof_force_N"
 ITERATIONS = "newton_iterations"
 DET_F = "min_det_F"
+VOLUME_ERROR_ELEMENT = "volume_error_element"
+VOLUME_ERROR = "volume_error"
 FIBER_MIN = "fiber_min_N"
 FIBER_MAX = "fiber_max_N"
 UNIFORM_ANGLE = "uniform_angle_deg"
@@ -107,11 +109,24 @@ COLUMNS = (
     Column(VOLUME, "mm³", "volume of the chamber", always=True),
     Column(TIP_FORCE, "N", "force of the tip on the post; kept straight: M / L_f", always=True),
     Column(ITERATIONS, "", "Newton iterations of the step", always=True),
-    Column(DET_F, "", "least det F at a point of quadrature", ELEMENTS, always=True),
+    Column(
+        DET_F,
+        "",
+        "least det F at a point of quadrature; low beside a fiber, it tells of the mesh",
+        ELEMENTS,
+        always=True,
+    ),
     Column(
         FIBER_MIN, "N", "least axial force of a fiber, of each line of a ribbon", ELEMENTS, True
     ),
     Column(FIBER_MAX, "N", "greatest of them", ELEMENTS, True),
+    Column(
+        VOLUME_ERROR_ELEMENT,
+        "",
+        "greatest ∫ (J − 1) dV / V of an element, no sign; with a bulk modulus J − 1 − p/κ",
+        ELEMENTS,
+    ),
+    Column(VOLUME_ERROR, "", "the same of all rubber together", ELEMENTS),
     Column(UNIFORM_ANGLE, "°", "L times the curvature of the middle half", MIDDLE),
     Column(AXIS_STRETCH, "", "stretch λ0 of the line y = 0", UNIFORM),
     Column(CROWN_STRETCH, "", "stretch of the highest line", UNIFORM),

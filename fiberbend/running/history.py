@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from fem.march.records import MODES, State
 from fem.results.measures import fiber_forces
+from fem.results.volume import VolumeProbe
 from fem.scene import Scene
 from fem.solver.newton import Outcome
 from fiberbend import columns as col
@@ -47,6 +48,7 @@ class Recorder:
         self._scene, self._model = scene, model
         self._gauge = gauge
         self._factor = scene.body.symmetry_factor
+        self._volume = VolumeProbe.of(scene)
         self.rows = rows if rows is not None else [self._row(0, rest, None)]
 
     def add(self, state: State, outcome: Outcome) -> dict[str, Any]:
@@ -83,6 +85,9 @@ class Recorder:
         row |= self._gauge.columns(state)
         row[col.ITERATIONS] = outcome.iterations if outcome else 0
         row[col.DET_F] = outcome.least_det_f if outcome else 1.0
+        if self._volume is not None:
+            kept = self._volume.read()
+            row |= {col.VOLUME_ERROR_ELEMENT: kept.element, col.VOLUME_ERROR: kept.whole}
         forces = fiber_forces(scene)
         if forces is not None:
             row[col.FIBER_MIN], row[col.FIBER_MAX] = forces

@@ -53,9 +53,11 @@ def body_grid(
 
     Nodes are doubled where regions meet. Point data: displacement_mm, pressure_MPa (−p),
     cauchy_stress_MPa (3×3), von_mises_MPa, principal_stretch (3, descending),
-    max_principal_log_strain, max_principal_nominal_strain, det_F. Cell data: material, a number
-    whose name stands at that place of the field data material_names. ParaView bends the body with
-    its filter "Warp By Vector".
+    max_principal_log_strain, max_principal_nominal_strain, det_F (of a point, as the mesh resolves
+    it; the volume is kept by elements). Cell data: volume_error, the volume an element has gained
+    beyond what its material asks, over that at rest; material, a number whose name stands at that
+    place of the field data material_names. ParaView bends the body with its filter "Warp By
+    Vector".
 
     Args:
         model_mesh: mesh and materials.
@@ -81,6 +83,7 @@ def body_grid(
     names = sorted(mesh.regions, key=mesh.regions.__getitem__)
     place = np.zeros(max(mesh.regions.values()) + 1, dtype=np.int32)
     place[[mesh.regions[name] for name in names]] = np.arange(len(names))
+    grid.cell_data["volume_error"] = fields.volume_error
     grid.cell_data["material"] = place[mesh.cell_region]
     grid.field_data["material_names"] = names
     grid.field_data[col.PRESSURE] = [snapshot.pressure_kpa]

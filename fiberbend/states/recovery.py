@@ -14,9 +14,10 @@ from geometry.mesh.data import (
     MeshData,
     reference_nodes,
 )
-from geometry.mesh.reference import gauss, shape_functions
+from geometry.mesh.reference import cell_rule, gauss, jacobians, shape_functions
 from materials.material import Material
 
+_CHUNK = 20_000
 _LEAST_STRETCH = 1e-3
 """What extrapolation may leave in a cell that is crushed."""
 
@@ -59,19 +60,21 @@ def split_nodes(mesh: MeshData) -> SplitNodes:
 
 @dataclasses.dataclass(frozen=True)
 class NodalFields:
-    """A state at n nodes, each the copy of one region.
+    """A state at n nodes, each the copy of one region, and in m cells.
 
     Attributes:
         jacobian: det F, (n,).
         stretches: principal stretches, descending, (n, 3).
         cauchy: Cauchy stress, (n, 3, 3), MPa.
         multiplier: p, a pressure counted positive in tension, (n,), MPa.
+        volume_error: of every cell, see `volume_errors`, (m,).
     """
 
     jacobian: Floats
     stretches: Floats
     cauchy: Floats
     multiplier: Floats
+    volume_error: Floats
 
     @property
     def log_strain(self) -> Floats:
@@ -178,6 +181,30 @@ def cauchy_stress(material: Material, f: Floats, multiplier: Floats) -> Floats:
     return multiplier[..., None, None] * np.eye(3) + _deviator(shape) / jacobian
 
 
+def volume_errors(model_mesh: ModelMesh, snapshot: Snapshot) -> Floats:
+    """∫ (J − 1 − p/κ) dV / V of every cell, (m,): the volume gained beyond what the material asks.
+
+    1/κ is zero in incompressible rubber. What is kept in an equilibrium is this, not J at a point.
+    """
+    mesh = model_mesh.mesh
+    points, weights = cell_rule(mesh.cell_type)
+    values = shape_functions(mesh.cell_type, points)[0]
+    compliance = np.zeros(max(mesh.regions.values()) + 1)
+    for name, number in mesh.regions.items():
+        bulk = model_mesh.materials[name].bulk
+        compliance[number] = 0.0 if bulk is None else 1 / bulk
+    errors = np.zeros(len(mesh.cells))
+    for start in range(0, len(errors), _CHUNK):
+        some = slice(start, start + _CHUNK)
+        part = dataclasses.replace(mesh, cells=mesh.cells[some])
+        excess = np.linalg.det(deformation_gradients(part, snapshot, points)) - 1
+        excess -= compliance[mesh.cell_region[some], None] * snapshot.multiplier[some] @ values.T
+        jacobian = jacobians(part, np.arange(len(part.cells)), points)[1]
+        volume = weights * np.linalg.det(jacobian)
+        errors[some] = (volume * excess).sum(axis=1) / volume.sum(axis=1)
+    return errors
+
+
 def recover(
     model_mesh: ModelMesh, snapshot: Snapshot, nodes: SplitNodes | None = None
 ) -> NodalFields:
@@ -224,6 +251,7 @@ def recover(
         stretches=nodes.average(np.sqrt(np.maximum(squares, _LEAST_STRETCH**2))),
         cauchy=nodes.average(at_nodes(stress)),
         multiplier=nodes.average(snapshot.multiplier),
+        volume_error=volume_errors(model_mesh, snapshot),
     )
 
 

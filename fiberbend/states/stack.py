@@ -86,6 +86,7 @@ class Stack:
             stretches=fields.stretches[source],
             cauchy=rotation @ stress @ rotation.swapaxes(1, 2),
             multiplier=fields.multiplier[source],
+            volume_error=fields.volume_error[self.cell],
         )
 
     @functools.cached_property

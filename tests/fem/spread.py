@@ -9,9 +9,10 @@ from mpi4py import MPI
 
 from fem.kinematics.domain import Domain
 from fem.march.march import Ramp
+from fem.results.volume import VolumeProbe
 from geometry.bodies.extrude import hexahedral_body
 from geometry.sections.size import MeshSize
-from tests.fem.parts import SHORT, bender
+from tests.fem.parts import SHORT, bender, set_positions
 
 ANGLE = np.deg2rad(4.0)
 
@@ -25,7 +26,7 @@ def measure(comm: MPI.Comm) -> dict[str, float]:
     bent = next(s for s in body.states if abs(s.measures["control"] - ANGLE) < 1e-9)
     low, high = body.scene.discrete["SmearedWinding"].force_range()  # type: ignore[attr-defined]
     tip = body.tip.position()
-    return {
+    found = {
         "pressure at the angle": bent.scalars["pressure"],
         "angle": body.angle.value(),
         "tip y": float(tip[1]),
@@ -37,6 +38,18 @@ def measure(comm: MPI.Comm) -> dict[str, float]:
         "energy": sum(body.scene.energies().values()),
         "unknowns": float(body.scene.body.size),
     }
+    # widened away from the one end, then from the other: the greatest error is on either rank
+    probe = VolumeProbe.of(body.scene)
+    assert probe is not None
+    z = domain.data.nodes[:, 2]
+    for end, start in (("tip", z.min()), ("root", z.max())):
+        wide = domain.data.nodes.copy()
+        wide[:, 0] *= 1 + 1e-3 * (z - start)
+        set_positions(body.scene, wide)
+        kept = probe.read()
+        found[f"volume error of an element, {end}"] = kept.element
+        found[f"volume error, {end}"] = kept.whole
+    return found
 
 
 if __name__ == "__main__":

@@ -53,6 +53,20 @@ def test_uniaxial_stretch(material: Material, element: str) -> None:
     assert fields.von_mises == pytest.approx(expected)
 
 
+@pytest.mark.parametrize("element", ["hexahedron", "tetrahedron"])
+def test_volume_error_is_what_the_bulk_modulus_does_not_ask_for(element: str) -> None:
+    # J = 1.03³ is all error in incompressible rubber, and none under p = κ (J − 1)
+    rubber, change, bulk = Material("neo-hooke", {"mu": 0.5}), 1.03**3 - 1, 20.0
+    soft = dataclasses.replace(rubber, bulk=bulk)
+    f, p = 1.03 * np.eye(3), bulk * change
+    assert homogeneous(f, rubber, p, element).volume_error == pytest.approx(change)
+    assert homogeneous(f, soft, p, element).volume_error == pytest.approx(0, abs=1e-13)
+    assert homogeneous(f, soft, 0.0, element).volume_error == pytest.approx(change)
+    # a loss is negative
+    squeezed = homogeneous(np.diag([1.0, 1.0, 0.9]), rubber, 0.0, element)
+    assert squeezed.volume_error == pytest.approx(-0.1)
+
+
 def test_simple_shear() -> None:
     # σ12 = 2 (ψ1 + ψ2) γ, σ11 − σ22 = γ σ12 (Rivlin), whatever the pressure
     gamma, material = 0.8, Material("mooney-rivlin", {"c10": 0.2, "c01": 0.1})

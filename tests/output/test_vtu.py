@@ -86,6 +86,13 @@ def test_fields_of_the_file(tmp_path: Path) -> None:
         "max_principal_nominal_strain": (),
         "det_F": (),
     }
+    assert read.cell_data.keys() == ["volume_error", "material"]
+    # pure bending about the floor: the wall above it is longer than at rest, by its height
+    heights = read.cell_centers().points[:, 1]
+    inside = np.ptp(read.points[read.cells.reshape(read.n_cells, -1)[:, 1:], 2], axis=1) < 4.1
+    inside &= (read.cell_centers().points[:, 2] > 0) & (read.cell_centers().points[:, 2] < 24)
+    stretch = np.pi / 4 / SHORT.length * (heights - 1)
+    assert read.cell_data["volume_error"][inside] == pytest.approx(stretch[inside], abs=0.01)
     assert read.field_data["angle_deg"] == pytest.approx(45.0)
 
 

@@ -74,6 +74,10 @@ def test_history_is_physical(small_run: RunResult) -> None:
     assert rows[0]["tip_y_mm"] > rows[-1]["tip_y_mm"]
     assert all(row["unstable_modes"] == 0 for row in rows[1:])
     assert all(0 < row["min_det_F"] <= 1.0 for row in rows)
+    # a point loses volume beside a fiber, an element does not: Newton stops at 1e-8
+    assert rows[-1]["min_det_F"] < 0.99
+    for column in ("volume_error_element", "volume_error"):
+        assert all(0 <= row[column] < 1e-6 for row in rows)
     # a hoop carries about P (a + t) pitch / 2 = 0.9 N; bending and the floor's contraction more
     assert 0.5 < rows[-1]["fiber_max_N"] < 10.0
 
