@@ -6,9 +6,15 @@ import itertools
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
-from fem.solver.newton import Outcome, Settings
-from tests.fem.parts import Bender, Floats, bender
+from fem.effects.incompressible import Incompressible
+from fem.effects.supports import Symmetry
+from fem.kinematics.domain import Domain
+from fem.scene import Scene
+from fem.solver.newton import Newton, Outcome, Settings
+from tests.exact.solids import box
+from tests.fem.parts import Bender, Floats, bender, law, set_positions
 
 PRESSURE = 0.004
 """MPa; the body turns by some 2°, enough for the fibers' geometric stiffness to matter."""
@@ -106,3 +112,42 @@ def test_an_inverted_start_is_refused() -> None:
     outcome = body.newton.solve(w)
     assert not outcome.converged
     assert outcome.least_det_f < 0
+
+
+def _block() -> Scene:
+    """A cube on three mirror planes, whose forces count from 1 N on."""
+    domain = Domain(box((4.0, 4.0, 4.0), (1, 1, 1)), MPI.COMM_SELF)
+    planes = {"left": 0, "front": 1, "bottom": 2}
+    supports = [Symmetry(surface, component) for surface, component in planes.items()]
+    scene = Scene(domain, [law("yeoh", ["solid"]), Incompressible(), *supports])
+    scene.raise_force_floor(1.0)
+    return scene
+
+
+@pytest.mark.parametrize("factor", [1.01, 1 + 1e-7])
+def test_a_volume_without_a_force_is_no_equilibrium(factor: float) -> None:
+    # rubber of an isochoric law that is only dilated has no stress: volume alone tells
+    scene = _block()
+    set_positions(scene, factor * scene.domain.data.nodes)
+    outcome = Newton(scene, MPI.COMM_SELF, Settings()).solve(scene.w.copy())
+    assert outcome.converged, outcome.reason
+    force, volume, _ = outcome.history[0]
+    assert force < 1e-12
+    # ∫ (J − 1) φ dX over ∫ φ dX
+    assert volume == pytest.approx(factor**3 - 1, rel=1e-6)
+    assert outcome.iterations > 0
+    assert outcome.history[-1][1] <= Settings().tolerance
+    assert np.abs(scene.body.displacement()).max() < 1e-7
+
+
+def test_a_force_without_a_volume_is_no_equilibrium() -> None:
+    # the other way round: a pressure that no boundary holds
+    scene = _block()
+    w = scene.w.copy()
+    w[scene.volumetric] = 1e-3
+    outcome = Newton(scene, MPI.COMM_SELF, Settings()).solve(w)
+    assert outcome.converged, outcome.reason
+    force, volume, _ = outcome.history[0]
+    assert force > 1e-4
+    assert volume < 1e-14
+    assert np.abs(scene.w[scene.volumetric]).max() < 1e-8
