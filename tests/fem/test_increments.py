@@ -95,3 +95,17 @@ def test_slow_ones_that_shrink_to_nothing_end_with_that_reason() -> None:
     # 1, 0.6, 0.36, 0.216, 0.13, and 0.078 is less than a tenth of the first
     assert (report.status, report.steps) == ("failed", 5)
     assert "increments shrink to nothing" in report.reason
+
+
+def test_where_a_body_meets_itself_lies_between_two_states(monkeypatch: pytest.MonkeyPatch) -> None:
+    # a quarter of the way through the second increment; the first one is clear
+    shares = iter([None, 0.25])
+    monkeypatch.setattr("fem.march.march.first_contact", lambda *_: next(shares))
+    body = bender()
+    monkeypatch.setattr(body.march, "_rod", object())
+    report = body.run([Ramp("pressure", 3 * FIRST, first=FIRST, largest=FIRST)])
+    old, new = (state.measures for state in body.states[1:3])
+    assert report.self_contact is not None
+    assert report.self_contact.keys() == old.keys()
+    for name, value in report.self_contact.items():
+        assert value == pytest.approx(0.75 * old[name] + 0.25 * new[name], rel=1e-12), name
