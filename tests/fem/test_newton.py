@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import types
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Symmetry
 from fem.kinematics.domain import Domain
 from fem.scene import Scene
-from fem.solver.newton import Newton, Outcome, Settings
+from fem.solver.newton import INVERTED, Newton, Outcome, Settings, _Solve
 from tests.exact.solids import box
 from tests.fem.parts import Bender, Floats, bender, law, set_positions
 
@@ -151,3 +152,48 @@ def test_a_force_without_a_volume_is_no_equilibrium() -> None:
     assert force > 1e-4
     assert volume < 1e-14
     assert np.abs(scene.w[scene.volumetric]).max() < 1e-8
+
+
+@pytest.mark.parametrize(
+    ("sizes", "iteration", "reason"),
+    [
+        # so many times the least, and large in itself
+        ([1e-2, 1.0, 1.0, 1.0, 11.0], 4, "the residual grows"),
+        ([1e-2, 1.0, 1.0, 1.0, 9.0], 4, ""),
+        ([1e-6, 1e-3, 1e-3, 1e-3, 0.9], 4, ""),
+        # the first few may
+        ([1e-2, 1.0, 1.0, 11.0], 3, ""),
+        ([1.0] * 12, 11, "no convergence in 11 iterations"),
+        ([1.0] * 11, 10, ""),
+        ([1.0, 1.0, np.nan], 2, "an element turned inside out (least det F -0.5)"),
+    ],
+)
+def test_when_newton_gives_up(sizes: list[float], iteration: int, reason: str) -> None:
+    # the residual of the volumes alone is as good as that of the forces
+    solve = types.SimpleNamespace(
+        history=[(1e-9, size, 0.0) if np.isfinite(size) else (size,) * 3 for size in sizes],
+        newton=types.SimpleNamespace(settings=Settings()),
+        problem=types.SimpleNamespace(force_noise=0.0),
+        scale=1.0,
+        reason="",
+        _not_a_number=lambda: INVERTED.format(-0.5),
+    )
+    found = _Solve.test(solve, None, iteration, ())  # type: ignore[arg-type]
+    assert solve.reason == reason
+    assert (found < 0) == bool(reason)
+    assert found <= 0
+
+
+@pytest.mark.parametrize("row", [(1e-7, 0, 0), (0, 1e-7, 0), (0, 0, 1e-7), (0, 0, 0)])
+@pytest.mark.parametrize("noise", [0.0, 1e-6])
+def test_each_residual_is_below_the_tolerance(row: tuple[float, ...], noise: float) -> None:
+    # forces no finer than round-off: 1e-7 of 2 N is less than 1e-6 N
+    solve = types.SimpleNamespace(
+        history=[row],
+        newton=types.SimpleNamespace(settings=Settings()),
+        problem=types.SimpleNamespace(force_noise=noise),
+        scale=2.0,
+    )
+    found = _Solve.test(solve, None, 1, ())  # type: ignore[arg-type]
+    small = (row[0] == 0 or noise > 0) and row[1] == row[2] == 0
+    assert (found > 0) == small

@@ -60,10 +60,10 @@ def test_rows_and_slopes_are_derivatives(name: str) -> None:
         scene.set(w + h * v if key is None else w)
         return condition.value()
 
-    for key, found in rates.items():
+    for which, found in rates.items():
         h = 1e-4
-        exact = sum(c * (along(k * h, key) - along(-k * h, key)) for k, c in STENCIL) / h
-        assert found == pytest.approx(exact, rel=1e-6, abs=1e-9), key
+        exact = sum(c * (along(k * h, which) - along(-k * h, which)) for k, c in STENCIL) / h
+        assert found == pytest.approx(exact, rel=1e-6, abs=1e-9), which
         along(0.0, None)
 
 
