@@ -9,9 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fem.march.hooks import AfterStep
 from fem.march.march import Ramp, Rules
+from fem.march.records import Critical, State
 from fem.solver.newton import Newton, Outcome, SideCondition
 from tests.fem.parts import Floats, bender
+from tests.fem.test_limit import sphere
 
 FIRST = 1e-3
 """MPa; far below any other limit of an increment."""
@@ -109,3 +112,26 @@ def test_where_a_body_meets_itself_lies_between_two_states(monkeypatch: pytest.M
     assert report.self_contact.keys() == old.keys()
     for name, value in report.self_contact.items():
         assert value == pytest.approx(0.75 * old[name] + 0.25 * new[name], rel=1e-12), name
+
+
+def test_the_way_beyond_a_limit_point_ends_by_that_point_alone() -> None:
+    # not by a bifurcation, by another load's limit, or by where the load rises again
+    volume = 1e-3
+    others = [
+        Critical("bifurcation", "pressure", 0.01, volume, None, 0, 1),
+        Critical("limit", "gravity", 0.01, volume, None, 0, 1),
+        Critical("limit", "pressure", 0.01, volume, None, 1, 0),
+    ]
+    found: list[Critical] = []
+
+    def add(_state: State, _outcome: Outcome) -> None:
+        critical = body.march.report.critical
+        if critical and not found:
+            found.extend(critical)
+            critical.extend(others)
+
+    body = sphere(hooks=[AfterStep(add)])
+    report = body.march.run([Ramp("pressure", 0.03)])
+    assert report.status == "stopped"
+    end = body.states[-1].measures["conjugate pressure"]
+    assert end == pytest.approx(Rules().beyond * found[0].conjugate, rel=1e-9)

@@ -10,17 +10,17 @@ from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Clamp, Symmetry
 from fem.results.measures import Resultant, balance, resultant
 from fem.scene import Scene
-from tests.fem.parts import STUB, law, perturb, stub
+from tests.fem.parts import STUB, Floats, law, perturb, stub
 
 REGIONS = ("wall", "floor")
-FORCE, LEVER = np.array([1.0, -2.0, 3.0]), np.array([0.3, 0.5, -0.7])
+FORCE: Floats = np.array([1.0, -2.0, 3.0])
+MOMENT: Floats = np.array([0.3, 0.5, -0.7])
 
 
 def test_resultants_add_up() -> None:
-    one = Resultant(FORCE, np.cross(LEVER, FORCE))
-    both = one + Resultant(2 * FORCE, np.cross(-LEVER, 2 * FORCE))
+    both = Resultant(FORCE, MOMENT) + Resultant(2 * FORCE, -2 * MOMENT)
     assert both.force == pytest.approx(3 * FORCE)
-    assert both.moment == pytest.approx(-np.cross(LEVER, FORCE))
+    assert both.moment == pytest.approx(-MOMENT)
 
 
 @pytest.mark.parametrize("half", [False, True])
