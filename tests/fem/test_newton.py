@@ -197,3 +197,26 @@ def test_each_residual_is_below_the_tolerance(row: tuple[float, ...], noise: flo
     found = _Solve.test(solve, None, 1, ())  # type: ignore[arg-type]
     small = (row[0] == 0 or noise > 0) and row[1] == row[2] == 0
     assert (found > 0) == small
+
+
+@pytest.mark.parametrize(
+    ("tangents", "sizes", "again"),
+    [
+        ([], [1.0, 1e-5], False),
+        ([0], [1e-5], False),
+        # a factor of the iterate before: near the solution, and fast
+        ([1], [1.0, 1e-5], True),
+        ([1], [1e-2, 1e-3], False),
+        ([1], [1.0, 2e-3], False),
+        ([1], [1e-3, 5e-4], False),
+        # an older one: as long as it reduces tenfold
+        ([0], [1.0, 1e-1 - 1e-9], True),
+        ([0], [1.0, 1e-1 + 1e-9], False),
+    ],
+)
+def test_a_factor_is_used_again_where_it_is_fast(
+    tangents: list[int], sizes: list[float], again: bool
+) -> None:
+    # the greatest of the three residuals tells
+    solve = types.SimpleNamespace(tangents=tangents, history=[(0.0, s, s / 2) for s in sizes])
+    assert _Solve.fast(solve) == again  # type: ignore[arg-type]

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import types
+
 import numpy as np
 import pytest
+from mpi4py import MPI
 from scipy.spatial.transform import Rotation
 
 from fem import compat
+from fem.kinematics.cell import Cell
+from fem.kinematics.domain import Domain
 from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
 from fem.scene import Scene
+from geometry.bodies.extrude import hexahedral_slice
 from geometry.mesh.data import reference_nodes
-from tests.fem.parts import Floats
+from geometry.sections.size import MeshSize
+from tests.fem.parts import SHORT, Floats
 from tests.fem.test_uniform import _scene
 
 K, LAMBDA, TAU = 0.03, 1.1, 0.02
@@ -66,3 +73,13 @@ def test_a_screw_along_itself_changes_nothing(name: str, model: str, twisted: bo
     moved, after = read()
     assert moved == pytest.approx(turn @ f, abs=1e-11)
     assert after == pytest.approx(energies, rel=1e-9)
+
+
+def test_tied_ends_are_refused_on_several_ranks(monkeypatch: pytest.MonkeyPatch) -> None:
+    # the two ends of a pair may lie on two ranks, of which neither knows the other's dofs
+    mesh = hexahedral_slice(SHORT, MeshSize(section=1, half=False), 3.0, 1)
+    domain = Domain(mesh, MPI.COMM_SELF)
+    assert len(Cell(domain, ["u"], SHORT.length).ties[0])
+    monkeypatch.setattr(domain, "comm", types.SimpleNamespace(size=2))
+    with pytest.raises(ValueError, match="one rank"):
+        Cell(domain, ["u"], SHORT.length)
