@@ -15,8 +15,8 @@ from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST, CurvatureAngle
 from fem.scene import Scene
 from fem.solver.bordered import SideCondition
 from fem.solver.side_conditions import GivenConjugate, GivenFunctional, Stationary
-from tests.fem.parts import SHORT, law, perturb
-from tests.fem.test_uniform import REGIONS, STENCIL, _domain
+from tests.fem.parts import SHORT, perturb
+from tests.fem.test_uniform import STENCIL, _domain, _effects
 
 SCALE = 0.37
 """N; a scale of forces that is not one."""
@@ -24,7 +24,8 @@ SCALE = 0.37
 
 @functools.cache
 def _scene() -> Scene:
-    effects = [law("yeoh", REGIONS), Incompressible(), ChamberPressure()]
+    # fibers: a potential with own code, in which no pressure enters
+    effects = [*_effects(_domain("section"), "smeared"), Incompressible(), ChamberPressure()]
     make = functools.partial(Section, length=SHORT.length, twisted=True)
     return Scene(_domain("section"), effects, make)
 
@@ -47,6 +48,7 @@ def test_rows_and_slopes_are_derivatives(name: str) -> None:
     for key, value in at.items():
         scene.set_scalar(key, value)
     scene.force_scale = SCALE
+    scene.predict(None)
     condition = CONDITIONS[name](scene)
     rng = np.random.default_rng(2)
     v = np.where(scene.free[: len(w)], rng.uniform(-1, 1, len(w)), 0.0)
