@@ -113,6 +113,7 @@ def test_an_inverted_start_is_refused() -> None:
     outcome = body.newton.solve(w)
     assert not outcome.converged
     assert outcome.least_det_f < 0
+    assert outcome.reason == INVERTED.format(outcome.least_det_f)
 
 
 def _block() -> Scene:
@@ -136,6 +137,7 @@ def test_a_volume_without_a_force_is_no_equilibrium(factor: float) -> None:
     assert force < 1e-12
     # ∫ (J − 1) φ dX over ∫ φ dX
     assert volume == pytest.approx(factor**3 - 1, rel=1e-6)
+    assert outcome.reason == ""
     assert outcome.iterations == len(outcome.history) - 1 > 0
     assert outcome.history[-1][1] <= Settings().tolerance
     assert np.abs(scene.body.displacement()).max() < 1e-7

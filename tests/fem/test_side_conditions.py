@@ -76,6 +76,8 @@ def test_values_are_relative() -> None:
     volume = scene.conjugate("pressure")
     assert GivenConjugate(scene, "pressure", volume / 2).value() == pytest.approx(1.0)
     assert GivenConjugate(scene, "pressure", -volume).value() == pytest.approx(2.0)
+    # also by a small one: an actuator of a tenth of a millimetre
+    assert GivenConjugate(scene, "pressure", 1e-3).value() == pytest.approx(1e3 * volume - 1)
     scene.force_scale = SCALE
     height, span = np.ptp(scene.domain.data.nodes[:, 1]), scene.body.span
     assert scene.body.size_of(STRETCH) == 1.0
