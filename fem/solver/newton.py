@@ -89,7 +89,10 @@ class Newton:
         self.problem = problem
         self.comm = comm
         self.settings = settings
-        self.factor = Factor(problem.matrix)
+        owned = len(problem.volumetric)
+        self.factor = Factor(
+            problem.matrix, volumetric=problem.volumetric, free=problem.free[:owned]
+        )
         self._assembly = {"residual": 0.0, "tangent": 0.0}
         self._b = problem.matrix.createVecRight()
         self._x = problem.matrix.createVecRight()
