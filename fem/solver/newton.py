@@ -87,6 +87,8 @@ class Newton:
 
     def __init__(self, problem: Problem, comm: MPI.Comm, settings: Settings) -> None:
         self.problem = problem
+        # under a load too small to be told from round-off, all is as good as converged
+        problem.raise_force_floor(problem.solid_noise / settings.tolerance)
         self.comm = comm
         self.settings = settings
         owned = len(problem.volumetric)
