@@ -241,6 +241,12 @@ class Scene:
         for discrete in self.discrete.values():
             discrete.predict(full, scalars)
 
+    @property
+    def undecided(self) -> bool:
+        """Whether the tangent hangs on the motion that is predicted, on any rank."""
+        mine = sum(discrete.undecided for discrete in self.discrete.values())
+        return bool(total(self.domain.comm, mine))
+
     def memory(self) -> dict[str, dict[str, Floats]]:
         """What a converged step must remember beside the unknowns, by effect; this rank's part."""
         return {key: discrete.state() for key, discrete in self.discrete.items()}
