@@ -22,6 +22,10 @@ from fem.ranks import total
 
 Floats = npt.NDArray[np.float64]
 
+PROBE = 1e-6
+"""Part of an element by which nodes are moved to see what moving them in the last digit does: the
+forces are linear in it to as many digits, and far above round-off."""
+
 
 def _differentiate(form: Any, variable: Any) -> Any:
     """∂/∂q of a lowered form for a global scalar q, by integrals; None where q is absent."""
@@ -50,7 +54,8 @@ class Scene:
         effects: the effects by these names.
         natural: global scalars in which the potential is stationary at an equilibrium.
         force_scale: scale of the forces in the last residual, N.
-        force_noise: norm of the forces that round-off in stiff discrete potentials makes, N.
+        force_noise: norm of the forces that round-off in all potentials makes at rest, N.
+        solid_noise: the part of it that is not of potentials with own code, N.
         free: local dofs (owned and ghosts) that no constraint fixes, (local,).
         discrete: by key, the potentials with own code.
 
@@ -96,7 +101,8 @@ class Scene:
         self.natural = tuple(name for name in self.body.natural if name not in fixed)
         self._compile(potentials)
         self._constrain(constraints)
-        self.force_noise = self._noise()
+        self.solid_noise = self._solid_noise()
+        self.force_noise = float(np.hypot(self._noise(), self.solid_noise))
 
     def __del__(self) -> None:
         if hasattr(self, "matrix") and may_free(self.matrix):
@@ -235,6 +241,12 @@ class Scene:
         for discrete in self.discrete.values():
             discrete.predict(full, scalars)
 
+    @property
+    def undecided(self) -> bool:
+        """Whether the tangent hangs on the motion that is predicted, on any rank."""
+        mine = sum(discrete.undecided for discrete in self.discrete.values())
+        return bool(total(self.domain.comm, mine))
+
     def memory(self) -> dict[str, dict[str, Floats]]:
         """What a converged step must remember beside the unknowns, by effect; this rank's part."""
         return {key: discrete.state() for key, discrete in self.discrete.items()}
@@ -315,6 +327,19 @@ class Scene:
             discrete.update(self.body.w.x.array)
             discrete.add_noise(noise)
         return float(np.sqrt(total(self.domain.comm, float(noise @ noise))))
+
+    def _solid_noise(self) -> float:
+        """Forces inside the solid where nodes are moved in their last digit."""
+        rest, body = self.w.copy(), self.body
+        moved = rest.copy()
+        moved[body.node_dofs[body.owned_nodes]] += PROBE * body.astray()
+        self.set(moved)
+        forces, _ = self._sum(self._forms["residual"], ())
+        for key in self.outside:
+            forces += self.force(key)
+        self.set(rest)
+        inside = self.free[: body.owned] & ~self.volumetric
+        return float(np.finfo(float).eps / PROBE * self.norm(forces[inside]))
 
     def residual(self) -> tuple[Floats, float]:
         """R = ∂Π/∂w at the present state.

@@ -10,6 +10,10 @@ import ufl
 from fem.effects.effect import Effect
 from fem.kinematics.kinematics import Kinematics
 
+ROUND_OFF = 1e-12
+"""Obstacles are so much nearer, as a part of the body: where one lies against the body at rest, all
+of its points are in the first tangent, not those whose gap of ±1e-16 round-off makes negative."""
+
 
 class Obstacle(Protocol):
     """A rigid body that keeps its place."""
@@ -108,6 +112,7 @@ class Contact(Effect):
         """The penalty as a form; all numbers are constants."""
         place = body.constants(self.obstacle.numbers())
         stiffness = body.constants([self.stiffness])[0]
-        depth = ufl.max_value(-self.obstacle.gap(body.x, place), 0.0)
+        nearer = body.constants([ROUND_OFF * body.span])[0]
+        depth = ufl.max_value(nearer - self.obstacle.gap(body.x, place), 0.0)
         density = stiffness / 2 * depth**2
         return sum((density * body.ds(name) for name in self.surfaces), ufl.Form([]))

@@ -42,6 +42,10 @@ class Discrete(Protocol):
 
     index: npt.NDArray[np.int64]
 
+    @property
+    def undecided(self) -> bool:
+        """Whether the tangent at the present state hangs on the motion that is predicted."""
+
     def update(self, w: Floats) -> None:
         """Take local coefficients of the fields (owned, then ghosts), (local,), as the state."""
 

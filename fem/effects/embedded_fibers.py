@@ -12,6 +12,7 @@ from petsc4py import PETSc
 
 from analytic.path import cross_matrix
 from fem.kinematics.kinematics import Kinematics
+from fem.ranks import total
 from geometry.mesh.data import facet_positions
 from geometry.mesh.reference import shape_functions
 from geometry.winding.segments import EmbeddedFibers
@@ -131,6 +132,8 @@ class FiberPotential:
         self._reference = rest.reshape(count, -1)
         self._predicted: Floats | None = None
         self._second: _Second | None = None
+        self._slackens = False
+        """The predicted motion shortens those fibers that are as long as at rest, as a whole."""
         self.strain = np.zeros(count)
 
     # --- state ---------------------------------------------------------------------------------
@@ -164,6 +167,17 @@ class FiberPotential:
         """Which segments are shorter than at rest, (n,); they are slack where they cannot push."""
         slack: npt.NDArray[np.bool_] = self.strain < -ROUND_OFF
         return slack
+
+    @property
+    def _at_rest(self) -> npt.NDArray[np.bool_]:
+        """Which segments are as long as at rest, (n,)."""
+        at_rest: npt.NDArray[np.bool_] = np.abs(self.strain) <= ROUND_OFF
+        return at_rest
+
+    @property
+    def undecided(self) -> bool:
+        """Whether the tangent hangs on where the next motion goes, on this rank."""
+        return bool(self.tension_only and self._at_rest.any())
 
     @property
     def force(self) -> Floats:
@@ -207,6 +221,7 @@ class FiberPotential:
     ) -> None:
         """Force EA (e + b·δw + e_q δq) from strain and gradient at the last tangent; None: EA e."""
         self._second = None
+        self._slackens = False
         if correction is None:
             self._predicted = None
             return
@@ -215,6 +230,10 @@ class FiberPotential:
             if name in self._e_q:
                 change += self._e_q[name] * value
         self._predicted = self.stiffness * (self.strain + change)
+        if self.tension_only:
+            # fiber by fiber it would be a set that the answer itself changes: all or none
+            pull = np.where(self._at_rest, self.length * self.stiffness * change, 0.0)
+            self._slackens = bool(total(self._body.domain.comm, float(pull.sum())) < 0)
 
     def _second_derivatives(self) -> _Second:
         """∂²Π of every segment in its own dofs and the scalars, at the present state.
@@ -236,7 +255,8 @@ class FiberPotential:
         if self._predicted is not None:
             force = np.maximum(self._predicted, 0) if self.tension_only else self._predicted
         if self.tension_only:
-            stiffness = np.where(self.slack, 0.0, stiffness)
+            slack = self.slack | self._at_rest if self._slackens else self.slack
+            stiffness = np.where(slack, 0.0, stiffness)
         n = self._direction
         across = np.eye(3) - n[..., :, None] * n[..., None, :]
         pull = self.length[:, None] * force[:, None] * self._share
@@ -300,6 +320,7 @@ class FiberPotential:
     def extrapolate(self, states: list[dict[str, Floats]], weights: Floats) -> None:
         """Predicted force from a weighted sum of remembered states."""
         self._second = None
+        self._slackens = False
         self._predicted = sum(
             (weight * state["force"] for weight, state in zip(weights, states, strict=True)),
             np.zeros(len(self.strain)),

@@ -206,6 +206,21 @@ class Kinematics:
         self.stand_ins[stand_in] = value
         return stand_in
 
+    def astray(self) -> Floats:
+        """A displacement of the owned nodes without sense, in mm, (len(owned_nodes), components).
+
+        Every component is the least extent of the elements around its node, with a sign by lot:
+        times the precision of double, it is what round-off makes of a displacement at rest. The
+        same on every machine and on any number of ranks.
+        """
+        data = self.domain.data
+        extent = np.ptp(data.nodes[data.cells], axis=1).min(axis=1)
+        around = np.full(len(data.nodes), np.inf)
+        np.minimum.at(around, data.cells, extent[:, None])
+        lots = np.random.default_rng(0).choice([-1.0, 1.0], (len(around), self.components))
+        values: Floats = (around[:, None] * lots)[self.owned_nodes]
+        return values
+
     # --- what measures and predictors ask for ---------------------------------------------
 
     def with_ghosts(self, owned: Floats) -> Floats:

@@ -14,6 +14,8 @@ from fem.solver.side_conditions import Functional, GivenConjugate, GivenFunction
 
 TINY = 1e-5
 """Strain of a perturbed state that shows a slope: its square is lost, round-off is not seen."""
+NOWHERE = 1e-30
+"""Part of a response that shows its direction, and adds nothing to a tangent."""
 
 
 class Equilibrium:
@@ -62,18 +64,30 @@ class Equilibrium:
         """One equation for each natural scalar."""
         return [Stationary(self.scene, name) for name in self.scene.natural]
 
-    def perturbed(self, base: State, scalar: str) -> State:
-        """A state perturbed along its linear response to a scalar; the scene is left at that."""
+    def perturbed(self, base: State, scalar: str, sign: float = 1.0) -> State:
+        """A state perturbed along its linear response to a scalar; the scene is left at that.
+
+        Args:
+            base: the state.
+            scalar: the load.
+            sign: where it goes: what is taut or slack hangs on that.
+        """
         scene, body = self.scene, self.scene.body
         self.restore(base)
         scene.predict(None)
         rate, natural = self.newton.response(scalar, scene.natural, self._natural())
+        if scene.undecided:
+            # forces without geometric stiffness: the motion may be as small as one likes
+            way = {name: sign * NOWHERE * value for name, value in natural.items()}
+            scene.predict(sign * NOWHERE * rate, way)
+            rate, natural = self.newton.response(scalar, scene.natural, self._natural())
+            scene.predict(None)
         nodal = body.with_ghosts(rate)[body.node_dofs[body.owned_nodes]]
         top = float(np.max(np.abs(nodal), initial=0.0))
         largest = max(scene.domain.comm.allgather(top)) / body.span
         for name, value in natural.items():
             largest = max(largest, abs(value) / body.size_of(name))
-        step = TINY / max(largest, 1e-300)
+        step = sign * TINY / max(largest, 1e-300)
         scene.set_scalar(scalar, base.scalars[scalar] + step)
         for name, value in natural.items():
             scene.set_scalar(name, base.scalars[name] + step * value)

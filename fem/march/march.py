@@ -174,7 +174,7 @@ class March:
             return True
         if position.increment is None:
             base = self.states[-1]
-            seed = self.equilibrium.perturbed(base, ramp.scalar)
+            seed = self.equilibrium.perturbed(base, ramp.scalar, np.sign(span))
             size = abs(ramp.first) if ramp.first else self._first_size(seed, ramp, abs(span))
             position.states = [seed, base]
             position.increment = min(size, abs(ramp.largest or np.inf), abs(span))

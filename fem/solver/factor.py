@@ -13,6 +13,10 @@ from fem.matrix import may_free
 
 Floats = npt.NDArray[np.float64]
 
+ROOM, MORE_ROOM = 60, 400
+"""Percent of workspace beyond MUMPS's own estimate, and where delayed pivots need more."""
+FULL = (-8, -9)
+"""INFOG(1) of a workspace that was too small."""
 ORDERING_AMD, ORDERING_PORD = 0, 4
 SMALL = 10_000
 """Unknowns below which a simple ordering is done sooner than a better one pays."""
@@ -24,18 +28,65 @@ class Factor:
     Args:
         matrix: the matrix; its values may change between calls of `renew`.
         symmetric: LDLᵀ; False: LU, for loads without a potential.
+        volumetric: owned rows of the multipliers of volume, whose unit is not that of the others;
+            without them nothing is balanced.
+        free: owned rows of what no constraint fixes.
 
     Attributes:
         seconds: wall time spent in factorisations and solves.
     """
 
-    def __init__(self, matrix: PETSc.Mat, symmetric: bool = True) -> None:
+    def __init__(
+        self,
+        matrix: PETSc.Mat,
+        symmetric: bool = True,
+        volumetric: npt.NDArray[np.bool_] | None = None,
+        free: npt.NDArray[np.bool_] | None = None,
+    ) -> None:
         self._matrix = matrix
         self._symmetric = symmetric
+        self._volumetric, self._free = volumetric, free
+        self._balance: Floats | None = None
         self._ksp: PETSc.KSP | None = None
         self.seconds = {"factor": 0.0, "solve": 0.0}
 
-    def _create(self) -> PETSc.KSP:
+    def _balanced(self) -> Floats:
+        """Factors of rows and columns that make pressures as stiff as displacements, (owned,).
+
+        K has entries μ h between displacements and h² between them and pressures (h: size of an
+        element): MUMPS takes other pivots, many of them late, for a soft or a large body. One power
+        of two on all pressures, found once, makes its choice the same and rounds nothing.
+        """
+        if self._balance is None:
+            factors = np.ones(self._matrix.getLocalSize()[0])
+            self._balance = factors
+            if self._volumetric is None or self._free is None:
+                return factors
+            sign, other = self._matrix.createVecs()
+            first = self._matrix.getOwnershipRange()[0]
+            parity = 1.0 - 2.0 * ((first + np.arange(len(factors))) % 2)
+            sign.array_w[:] = np.where(self._volumetric, parity, 0.0)
+            self._matrix.mult(sign, other)
+            shown = self._free & ~self._volumetric
+            other.array_w[:] = np.where(shown, other.array_r, 0.0)
+            across = other.norm()
+            self._matrix.getDiagonal(other)
+            other.array_w[:] = np.where(shown, other.array_r, 0.0)
+            within = other.norm()
+            if across > 0 and within > 0:  # exact: 0 where one of the two has no entry at all
+                factors[self._volumetric] = 2.0 ** np.round(np.log2(within / across))
+            sign.destroy()
+            other.destroy()
+        return self._balance
+
+    def _scale(self, factors: Floats) -> None:
+        """Multiply rows and columns of the matrix, in place."""
+        vector = self._matrix.createVecRight()
+        vector.array_w[:] = factors
+        self._matrix.diagonalScale(vector, vector)
+        vector.destroy()
+
+    def _create(self, room: int) -> PETSc.KSP:
         self._matrix.setOption(PETSc.Mat.Option.SYMMETRIC, self._symmetric)
         ksp = PETSc.KSP().create(self._matrix.getComm())
         ksp.setOperators(self._matrix)
@@ -51,7 +102,7 @@ class Factor:
             factor.setMumpsIcntl(7, ORDERING_PORD)
             factor.setMumpsIcntl(12, 1)  # else a serial LDLᵀ silently takes another ordering
         factor.setMumpsIcntl(13, 1)  # else the root front hides negative pivots from the count
-        factor.setMumpsIcntl(14, 60)
+        factor.setMumpsIcntl(14, room)
         factor.setMumpsIcntl(24, 0)
         return ksp
 
@@ -64,17 +115,30 @@ class Factor:
         """
         start = time.perf_counter()
         first = self._ksp is None
-        if self._ksp is None:
-            self._ksp = self._create()
-        self._ksp.setOperators(self._matrix)
-        self._ksp.setUp()
-        factor = self._ksp.getPC().getFactorMatrix()
+        balance = self._balanced()
+        unequal = self._volumetric is not None
+        if unequal:
+            self._scale(balance)
+        factor = self._set_up(ROOM)
+        if factor.getMumpsInfog(1) in FULL:
+            self.destroy()
+            factor = self._set_up(MORE_ROOM)
+        if unequal:
+            self._scale(1 / balance)
         large = self._matrix.getSize()[0] >= SMALL
         if first and large and factor.getMumpsInfog(7) != ORDERING_PORD:
             raise RuntimeError(f"MUMPS took ordering {factor.getMumpsInfog(7)} instead of PORD")
         if factor.getMumpsInfog(1) < 0:
             raise ZeroDivisionError(f"MUMPS: INFOG(1) = {factor.getMumpsInfog(1)}")
         self.seconds["factor"] += time.perf_counter() - start
+
+    def _set_up(self, room: int) -> PETSc.Mat:
+        """Factorise, with a workspace for it where there is none yet."""
+        if self._ksp is None:
+            self._ksp = self._create(room)
+        self._ksp.setOperators(self._matrix)
+        self._ksp.setUp()
+        return self._ksp.getPC().getFactorMatrix()
 
     @property
     def negative_pivots(self) -> int:
@@ -86,7 +150,12 @@ class Factor:
         """Solve K x = b with the last factor."""
         assert self._ksp is not None, "renew first"
         start = time.perf_counter()
-        self._ksp.solve(b, x)
+        balance = self._balanced()
+        b.array_w[:] *= balance
+        # not by KSP: it would factorise anew, as the matrix has its own scale again
+        self._ksp.getPC().getFactorMatrix().solve(b, x)
+        b.array_w[:] /= balance
+        x.array_w[:] *= balance
         self.seconds["solve"] += time.perf_counter() - start
 
     def __del__(self) -> None:
@@ -108,13 +177,15 @@ class Factor:
         own, size = self._matrix.getSizes()[0], len(columns)
         comm = self._matrix.getComm()
         shape = (own, (PETSc.DECIDE, size))
-        b = PETSc.Mat().createDense(shape, array=np.array(columns).T.copy("F"), comm=comm)
+        balance = self._balanced()
+        right = (balance * np.array(columns)).T.copy("F")
+        b = PETSc.Mat().createDense(shape, array=right, comm=comm)
         x = PETSc.Mat().createDense(shape, comm=comm)
         x.setUp()
         b.assemble()
         x.assemble()
         self._ksp.getPC().getFactorMatrix().matSolve(b, x)
-        found: Floats = x.getDenseArray().copy()
+        found: Floats = balance[:, None] * x.getDenseArray()
         b.destroy()
         x.destroy()
         self.seconds["solve"] += time.perf_counter() - start

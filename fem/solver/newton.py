@@ -87,9 +87,14 @@ class Newton:
 
     def __init__(self, problem: Problem, comm: MPI.Comm, settings: Settings) -> None:
         self.problem = problem
+        # under a load too small to be told from round-off, all is as good as converged
+        problem.raise_force_floor(problem.solid_noise / settings.tolerance)
         self.comm = comm
         self.settings = settings
-        self.factor = Factor(problem.matrix)
+        owned = len(problem.volumetric)
+        self.factor = Factor(
+            problem.matrix, volumetric=problem.volumetric, free=problem.free[:owned]
+        )
         self._assembly = {"residual": 0.0, "tangent": 0.0}
         self._b = problem.matrix.createVecRight()
         self._x = problem.matrix.createVecRight()

@@ -21,6 +21,7 @@ class Problem(Protocol):
         volumetric: owned dofs whose residual is a volume, not a force, (owned,).
         volume_scale: what those are measured by, mm³.
         force_noise: norm of the forces that round-off makes, N.
+        solid_noise: the part of it that is in the conditions on natural scalars too, N.
     """
 
     matrix: PETSc.Mat
@@ -28,6 +29,7 @@ class Problem(Protocol):
     volumetric: npt.NDArray[np.bool_]
     volume_scale: float
     force_noise: float
+    solid_noise: float
 
     def set(self, w: Floats) -> None:
         """Take the owned coefficients as the state."""

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fem.solver.newton import Settings
     from geometry.actuator import Actuator
     from geometry.mesh.data import MeshData
-    from geometry.sections.size import Strips
+    from geometry.sections.size import MeshSize, Strips
 
 STIFFNESS = 100.0
 """Obstacles are so many times as stiff as what touches them."""
@@ -35,6 +35,13 @@ BLOCKED_GROWTH = 3.0
 _REACH = 0.5
 """Part of the length by which the tip's lever grows while the body bends."""
 _ROUNDING = 1e-9
+"""Part of the height by which round-off may put an obstacle into the actuator."""
+_FELT = 0.5
+"""Least radius of a bar, in lengths of an element: it is felt at three points an element, and a
+thinner one goes between them."""
+_SUNK = 0.05
+"""Depth in an obstacle, as a part of the thickness of what touches it, that is worth a warning; by
+default it stays under 0.015 (docs/contact.md)."""
 
 
 def placed_obstacles(effects: Iterable[Effect], actuator: Actuator) -> dict[str, Obstacle]:
@@ -114,6 +121,18 @@ class ContactEffect(Effect):
                     "expected room for it",
                 )
 
+    def unresolved(self, size: MeshSize) -> Iterator[tuple[str, str]]:
+        """A bar thinner than an element."""
+        length = size.axial / (size.section if size.element == "tetrahedron" else 1)
+        bar, least = self.cylinder, _FELT * length
+        if bar is not None and bar.radius < least * (1 - _ROUNDING):
+            yield (
+                "cylinder.radius",
+                f'"{show(bar.radius, "length")}", expected at least "{show(least, "length")}", half '
+                f"an element: elements {show(length, 'length')} long do not feel a thinner bar "
+                "(mesh.axial)",
+            )
+
     def keeps_straight(self) -> bool:
         """Between roof and post."""
         return self.roof is not None and self.post is not None
@@ -190,10 +209,9 @@ class ContactEffect(Effect):
         if self.stiffness is not None:
             return self.stiffness
         sheath, material = site.actuator.sheath, site.materials["wall"]
-        thickness = site.actuator.wall if sheath is None else sheath
         if sheath is not None and not site.straight:
             material = site.materials.get("sheath", material)
-        return STIFFNESS * 3 * material.initial_shear_modulus / thickness
+        return STIFFNESS * 3 * material.initial_shear_modulus / _touching_layer(site)
 
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
         """One penalty for each obstacle."""
@@ -207,6 +225,24 @@ class ContactEffect(Effect):
             )
         )
 
+    def doubts(self, site: Site, rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+        """Obstacles so soft that the body sinks into them."""
+        thickness = _touching_layer(site)
+        for name in self.obstacles:
+            depth = self._depth(name, rows)
+            if depth > _SUNK * thickness:
+                yield (
+                    f"contact: the body sinks {depth:.3g} mm into the {name}, "
+                    f"{100 * depth / thickness:.0f} % of the {thickness:g} mm that touch it, as "
+                    f"obstacles yield with {self.yields(site):.3g} MPa/mm: expected something rigid "
+                    "(contact.stiffness, by default a hundred times that of what touches)"
+                )
+
+    @staticmethod
+    def _depth(name: str, rows: Sequence[Mapping[str, Any]]) -> float:
+        """Greatest depth in an obstacle over a history, mm."""
+        return max(0.0, *(-row.get(f"contact_{name}_gap_mm", 0.0) for row in rows))
+
     def summary(self, site: Site, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         """When each obstacle was touched and left, and the force on the body at the end."""
         strips = self.strips()
@@ -217,12 +253,17 @@ class ContactEffect(Effect):
         for name in self.obstacles:
             touching = [bool(row.get(f"contact_{name}_area_mm2")) for row in rows]
             changes = [i for i in range(1, len(rows)) if touching[i] != touching[i - 1]]
-            depth = max(-row.get(f"contact_{name}_gap_mm", 0.0) for row in rows)
             entry[name] = {
                 "touched_at_kPa": [rows[i][col.PRESSURE] for i in changes if touching[i]],
                 "left_at_kPa": [rows[i][col.PRESSURE] for i in changes if not touching[i]],
                 "force_y_N": rows[-1].get(f"contact_{name}_y_N"),
                 "force_z_N": rows[-1].get(f"contact_{name}_z_N"),
-                "greatest_depth_mm": max(depth, 0.0),
+                "greatest_depth_mm": self._depth(name, rows),
             }
         return {**tip, "contact": entry}
+
+
+def _touching_layer(site: Site) -> float:
+    """Thickness of what touches an obstacle, mm: the sheath, or the wall where there is none."""
+    sheath = site.actuator.sheath
+    return site.actuator.wall if sheath is None else sheath

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from fem.solver.newton import Settings
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
-    from geometry.sections.size import Strips
+    from geometry.sections.size import MeshSize, Strips
     from geometry.winding.segments import EmbeddedFibers
     from materials.material import Material
 
@@ -190,6 +190,17 @@ class Effect(Spec):
         """
         return self
 
+    def unresolved(self, size: MeshSize) -> Iterator[tuple[str, str]]:
+        """What of it a mesh is too coarse to feel.
+
+        Args:
+            size: fineness of the mesh.
+
+        Yields:
+            A key of this effect, and a message with what the mesh needs.
+        """
+        yield from ()
+
     # --- what it is to the rest of the program ---------------------------------------------------
 
     def inflation(self) -> Inflation | None:
@@ -287,6 +298,10 @@ class Effect(Spec):
             NotImplementedError: the effect cannot be built.
         """
         raise NotImplementedError(f"effect {self.name} cannot be built")
+
+    def doubts(self, site: Site, rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+        """What makes a run with it doubtful, a line each, from the rows of its history."""
+        yield from ()
 
     def summary(self, site: Site, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         """Entries of run.json on a body with it, from the rows of its history; may be empty."""

@@ -232,6 +232,8 @@ def size_problems(
     for part, text in thin:
         yield Problem(f"actuator.{part}", text)
     for path, effect in effects.items():
+        for key, text in effect.unresolved(size):
+            yield Problem(f"{path}.{key}", text)
         strips = effect.strips()
         if strips is not None and not thin:
             try:

@@ -64,7 +64,7 @@ class Approach(Hook):
         increments = [
             touch.gap / (former[name].gap - touch.gap) * abs(driven)
             for name, touch in touches.items()
-            if 0 < touch.gap < former[name].gap
+            if touch.apart and touch.gap < former[name].gap - touch.slack
         ]
         to_touch = (1 + DEPTH) * min(increments, default=float("inf"))
         if to_touch < position.increment:

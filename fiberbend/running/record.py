@@ -91,6 +91,12 @@ def of_effects(case: Case, rows: Sequence[col.Row]) -> dict[str, Any]:
     return found
 
 
+def doubts(case: Case, rows: Sequence[col.Row]) -> list[str]:
+    """What the effects of a case find doubtful in its history, a line each."""
+    site = convert.site(case)
+    return [line for effect in case.effects for line in effect.doubts(site, rows)]
+
+
 def beside(check: Check | None) -> dict[str, Any]:
     """How the run compares with other models, where that is known."""
     return {} if check is None else {"crosscheck": check.entry()}

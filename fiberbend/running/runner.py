@@ -198,6 +198,7 @@ class _Run:
         lines = [messages.jumped(rows[step - 1], rows[step]) for step in jumps]
         if status == "converged" and rows[-1].get(col.MODES):
             lines.append(messages.UNSTABLE_END)
+        lines += record.doubts(self.case, rows)
         recording.warn(lines)
 
     def _cross_check(

@@ -14,7 +14,7 @@ from pathlib import Path
 from geometry.mesh.data import Floats, MeshData
 from geometry.mesh.errors import MeshError
 from geometry.sections.shape import ShapedActuator
-from geometry.sections.size import MeshSize, Strips, check_size
+from geometry.sections.size import MeshSize, Strips, check_size, in_unit, own_unit
 
 _LAST_LINES = 5
 _MPI_VARIABLES = ("OMPI_", "PMIX_", "PMI_", "MPI_", "HYDRA_", "MPIEXEC_")
@@ -46,18 +46,24 @@ def build_body(
         MeshError: gmsh failed or did not end in time.
     """
     check_size(actuator, size, strips)
+    unit = own_unit(actuator)  # gmsh's tolerances are lengths: it never sees mm of an odd size
     with tempfile.TemporaryDirectory(prefix="fiberbend-mesh-") as folder:
         spec, out = Path(folder) / "spec.json", Path(folder) / "mesh.npz"
         description = {
-            "actuator": {"section": actuator.section, **dataclasses.asdict(actuator)},
-            "size": dataclasses.asdict(size),
-            "strips": dataclasses.asdict(strips) if strips else None,
-            "winding": [curve.tolist() for curve in winding or ()],
+            "unit": unit,
+            "actuator": {
+                "section": actuator.section,
+                **dataclasses.asdict(in_unit(actuator, unit)),
+            },
+            "size": dataclasses.asdict(in_unit(size, unit)),
+            "strips": dataclasses.asdict(in_unit(strips, unit)) if strips else None,
+            "winding": [(curve / unit).tolist() for curve in winding or ()],
             "msh_path": str(Path(msh_path).resolve()) if msh_path else None,
         }
         spec.write_text(json.dumps(description))
         _run([sys.executable, "-m", "geometry.bodies.gmsh_worker", str(spec), str(out)], time_limit)
-        return MeshData.load(out)
+        mesh = MeshData.load(out)
+        return dataclasses.replace(mesh, nodes=unit * mesh.nodes)
 
 
 def _run(command: list[str], time_limit: float) -> None:

@@ -177,7 +177,8 @@ def mesh_body(spec: dict[str, Any], out: Path) -> None:
     """Mesh the described body and write it to `out`.
 
     Args:
-        spec: dictionaries "actuator", "size", "strips" and lists "winding", path "msh_path".
+        spec: dictionaries "actuator", "size", "strips" and lists "winding", all lengths of them in
+            the "unit" (mm), in which the mesh too is written; path "msh_path" of a file in mm.
         out: .npz file for `MeshData.load`.
     """
     actuator, size = make_actuator(spec["actuator"]), MeshSize(**spec["size"])
@@ -199,6 +200,7 @@ def mesh_body(spec: dict[str, Any], out: Path) -> None:
     if spec["winding"]:
         add_winding(spec["winding"])
     if spec["msh_path"]:
+        gmsh.option.setNumber("Mesh.ScalingFactor", spec["unit"])
         gmsh.write(spec["msh_path"])
 
 

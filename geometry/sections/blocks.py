@@ -39,6 +39,7 @@ class Block:
 
 
 def _key(point: Point) -> Point:
+    """What corner this is: apart by less than 1e-9 of the unit in which a section is 3 to 30."""
     return (round(point[0], 9), round(point[1], 9))
 
 
@@ -130,6 +131,22 @@ class Layout:
         for name, number in self.named.items():
             full.name_point(name, self.points[number])
         return full
+
+    def scaled(self, unit: float) -> Layout:
+        """The same layout in mm, of one in another unit (mm); no corner can be added to it."""
+        if unit == 1.0:  # exact: a power of ten, and mm themselves
+            return self
+        scaled = Layout(self.half)
+        scaled.points = [(unit * x, unit * y) for x, y in self.points]
+        scaled.named = self.named
+        scaled.blocks = [
+            dataclasses.replace(
+                block,
+                centers=tuple(c and (unit * c[0], unit * c[1]) for c in block.centers),
+            )
+            for block in self.blocks
+        ]
+        return scaled
 
     def without_fill(self) -> Layout:
         """The same layout with an open chamber."""

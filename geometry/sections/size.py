@@ -5,10 +5,15 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterator
+from typing import TypeVar
 
 from geometry.actuator import Actuator
 
 MAX_ASPECT = 25.0
+_DIGITS = 14
+"""Digits of a length in an actuator's own unit: one fewer than a quotient keeps."""
+
+Lengths = TypeVar("Lengths", bound="Actuator | MeshSize | Strips")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -111,6 +116,28 @@ def check_size(actuator: Actuator, size: MeshSize, strips: Strips | None = None)
             f"post length {strips.post_length:g} mm: expected more than 0 and less than the cap, "
             f"{actuator.cap:g} mm"
         )
+
+
+def own_unit(actuator: Actuator) -> float:
+    """The power of ten in mm in which the half width of an actuator is about 3 to 30.
+
+    Corners and nodes are found by their coordinates, and gmsh has tolerances of its own: in this
+    unit a section of 8 µm or 8 m is laid out and meshed as one of 8 mm is.
+    """
+    return 10.0 ** round(math.log10(actuator.outer_half_width / 10))
+
+
+def in_unit(lengths: Lengths, unit: float) -> Lengths:
+    """Dimensions, a fineness or strips measured in a unit (mm), the same digits for every unit."""
+    if unit == 1.0:  # exact: a power of ten, and mm themselves
+        return lengths
+    given = {field.name: getattr(lengths, field.name) for field in dataclasses.fields(lengths)}
+    scaled = {
+        name: float(f"{value / unit:.{_DIGITS}g}")
+        for name, value in given.items()
+        if isinstance(value, float)
+    }
+    return dataclasses.replace(lengths, **scaled)
 
 
 def divisions(length: float, target: float) -> int:

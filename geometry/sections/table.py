@@ -10,7 +10,7 @@ from geometry.sections.circle import CircleActuator
 from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.rectangle import RectangleActuator
 from geometry.sections.shape import ShapedActuator
-from geometry.sections.size import MeshSize, Strips, check_size
+from geometry.sections.size import MeshSize, Strips, check_size, in_unit, own_unit
 
 SECTIONS: dict[str, type[ShapedActuator]] = {
     HemicircleActuator.section: HemicircleActuator,
@@ -79,7 +79,9 @@ def section_layout(
         ValueError: dimensions that this mesh cannot resolve.
     """
     check_size(actuator, size, strips)
-    layout = actuator.layout(size, strips)
+    unit = own_unit(actuator)
+    own = in_unit(actuator, unit)
+    layout = own.layout(in_unit(size, unit), in_unit(strips, unit) if strips else None)
     layout.name_point("pin", (0.0, 0.0))
-    layout.name_point("crown", (0.0, actuator.outline_top))
-    return layout if size.half else layout.mirrored()
+    layout.name_point("crown", (0.0, own.outline_top))
+    return (layout if size.half else layout.mirrored()).scaled(unit)

@@ -163,5 +163,5 @@ def test_stiffness_must_be_positive() -> None:
 @pytest.mark.parametrize("gap", [0.0, -4.4e-16, 4.4e-16])
 def test_a_gap_of_zero_at_rest_touches_nothing(gap: float) -> None:
     # the sign of round-off changed with the thickness of the sheath
-    assert not Touch(gap, 0.0).touches
-    assert Touch(-1e-6, 1.0).touches
+    assert not Touch(gap, 0.0, 1e-9).touches
+    assert Touch(-1e-6, 1.0, 1e-9).touches
