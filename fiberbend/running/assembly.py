@@ -25,7 +25,7 @@ from geometry.mesh.data import MeshData
 
 GUIDED_TURN = math.radians(90)
 """Greatest change of the angle in a step guided by the section, by default."""
-GUIDED_FIRST = math.radians(15)
+GUIDED_FIRST = math.radians(20)
 GUIDED_GROWTH = 3.0
 
 GuideFactory = Callable[[Scene, Frames], Guide | None]

@@ -9,6 +9,7 @@ import pytest
 
 from tests.verify import helix
 from tests.verify.ladder import Ladder, Rung, rates
+from tests.verify.mutants import mutants_section
 from tests.verify.problems import LADDERS
 from tests.verify.report import HEAD, helix_section, ladder_section, limits_section
 
@@ -35,7 +36,8 @@ class Book:
         sections = [ladder_section(x, self.climbed[x.title]) for x in LADDERS]
         PAGE.parent.mkdir(exist_ok=True)
         PAGE.write_text(
-            "\n".join([HEAD, *sections, self.helix, limits_section()]), encoding="utf-8"
+            "\n".join([HEAD, *sections, self.helix, limits_section(), mutants_section()]),
+            encoding="utf-8",
         )
 
 
