@@ -46,7 +46,7 @@ class UniformModel(MeshedModel):
         return Observables(
             None,
             CurvatureAngle(body),
-            lambda: UniformGauge(scene, actuator),
+            lambda: UniformGauge(body, scene.natural, actuator),
             lambda: UniformRod(body, case.actuator.cap),
         )
 
