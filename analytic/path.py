@@ -86,6 +86,31 @@ def centre_line(spin: Floats, stretch: complex, centre: Floats) -> tuple[Floats,
     return length, axes.T @ spin, axes
 
 
+def section_axes(a_x: Floats, a_y: Floats, along: Floats) -> Floats:
+    """Axes across a direction t, by what has become of a section's own axes.
+
+    d1 ∥ a_x + a_y × t (the part across t), d2 = t × d1: of all turned pairs the nearest to the
+    images a_x and a_y across t, the rotation of their polar decomposition in that plane. Analytic,
+    so that complex steps differentiate it.
+
+    Args:
+        a_x: images of e1, (..., 3).
+        a_y: images of e2, (..., 3).
+        along: directions ∥ t, of any length, (..., 3).
+
+    Returns:
+        Rotations with d1, d2 and t as columns, (..., 3, 3).
+    """
+    t = _unit(along)
+    d1 = _unit(a_x - np.sum(a_x * t, axis=-1, keepdims=True) * t + np.cross(a_y, t))
+    return np.stack([d1, np.cross(t, d1), t], axis=-1)
+
+
+def _unit(vectors: Floats) -> Floats:
+    unit: Floats = vectors / np.sqrt(np.sum(vectors * vectors, axis=-1, keepdims=True))
+    return unit
+
+
 @dataclasses.dataclass(frozen=True)
 class CentreLine:
     """The line of the sections' centroids in a body that bends and twists uniformly.
@@ -98,6 +123,8 @@ class CentreLine:
         rates: turn of the tangent about d1 and d2, and of the section about the tangent, (3,),
             rad a mm of z.
         axes: d1, d2 and the tangent t in the frame, as columns, (3, 3).
+        section: axes of the section and its normal in the frame, as columns, (3, 3). Where a body
+            bends and twists it is sheared too: the normal is not the tangent.
     """
 
     spin: Floats
@@ -106,12 +133,24 @@ class CentreLine:
     stretch: float
     rates: Floats
     axes: Floats
+    section: Floats
 
     @classmethod
-    def of(cls, spin: Floats, carried: float, centre: Floats) -> CentreLine:
-        """By frame and centroid, see `centre_line`."""
+    def of(
+        cls, spin: Floats, carried: float, centre: Floats, a_x: Floats, a_y: Floats
+    ) -> CentreLine:
+        """By frame and section, see `centre_line` and `section_axes`.
+
+        Args:
+            spin: ω, (3,), rad/mm.
+            carried: λ.
+            centre: c, (3,), mm.
+            a_x: image in the frame of the section's axis x, (3,).
+            a_y: of its axis y.
+        """
         stretch, rates, axes = centre_line(spin, carried, centre)
-        return cls(spin, carried, centre, float(stretch), rates, axes)
+        section = section_axes(a_x, a_y, np.cross(a_x, a_y))
+        return cls(spin, carried, centre, float(stretch), rates, axes, section)
 
     def advance(self, position: Floats) -> Floats:
         """∂x/∂z of points that keep their place in the frame, λ e3 + ω × x'.
@@ -125,31 +164,32 @@ class CentreLine:
         along: Floats = np.cross(self.spin, position) + np.array([0.0, 0.0, self.carried])
         return along
 
-    def frames(self, z: Floats) -> tuple[Floats, Floats]:
-        """Axes d1, d2, t along the line, which starts in the origin along e3 with d1 = e1.
+    def turning(self, z: Floats) -> tuple[Floats, Floats]:
+        """The turning frame in space, its section at z = 0 held by a clamp across e3.
 
         Args:
             z: stations, (n,), mm.
 
         Returns:
-            Rotations with d1, d2 and t as columns, (n, 3, 3), and points of the line, (n, 3), mm.
+            Rotations from the frame to space, (n, 3, 3), and places of the centroids, the first
+            one the origin, (n, 3), mm.
         """
-        return screw(z, self.rates, self.stretch)
+        along, line = screw(z, self.rates, self.stretch)
+        # from the axes of the line, which start as e1, e2, e3, to a section that does
+        held = self.section.T @ self.axes
+        return held @ along @ self.axes.T, line @ held.T
 
-    def place(self, position: Floats, z: Floats) -> Floats:
-        """Points of the sections in space, the line's start in the origin along e3.
+    def sections(self, z: Floats) -> tuple[Floats, Floats]:
+        """The sections themselves: their axes and normal, e1, e2 and e3 at z = 0, and places.
 
         Args:
-            position: x' in the turning frame, (n, 3), mm.
-            z: their stations, (n,), mm.
+            z: stations, (n,), mm.
 
         Returns:
-            Array (n, 3), mm.
+            Rotations, (n, 3, 3), and centroids, (n, 3), mm.
         """
-        rotation, line = self.frames(z)
-        across = (position - self.centre) @ self.axes
-        placed: Floats = line + np.einsum("nij,nj->ni", rotation, across)
-        return placed
+        rotation, place = self.turning(z)
+        return rotation @ self.section, place
 
 
 def arc(

@@ -20,7 +20,7 @@ import numpy.typing as npt
 import ufl
 
 from analytic.path import CentreLine, centre_line
-from fem.kinematics.centroid import Centroid
+from fem.kinematics.centroid import SectionFit
 from fem.kinematics.domain import Domain
 from fem.kinematics.kinematics import Carry, Kinematics
 
@@ -133,15 +133,16 @@ class Uniform(Kinematics):
         return Carry(values[STRETCH], spin, rates)
 
     @functools.cached_property
-    def centroid(self) -> Centroid:
-        """Of what lies inside the winding."""
-        return Centroid(self)
+    def fit(self) -> SectionFit:
+        """Centroid and axes of what lies inside the winding."""
+        return SectionFit(self)
 
     def centre_line(self) -> CentreLine:
         """The centroids' line at the present state; collective."""
         carry = self.carry()
-        centre = self.centroid.position(self.w.x.array[: self.owned])
-        return CentreLine.of(carry.spin, carry.stretch, centre)
+        return CentreLine.of(
+            carry.spin, carry.stretch, *self.fit.read(self.w.x.array[: self.owned])
+        )
 
 
 class CurvatureAngle:
@@ -169,7 +170,7 @@ class CurvatureAngle:
         body = self._body
         if not body.twisted:
             return np.zeros(body.owned)
-        return body.centroid.row(np.array([self._slope(centre=i) for i in range(3)]))
+        return body.fit.row(np.array([self._slope(centre=i) for i in range(3)]))
 
     def slope(self, scalar: str) -> float:
         """∂θ/∂q of a global scalar."""

@@ -169,17 +169,15 @@ class UniformRod:
         w = (1 - share) * old.w + share * new.w
         spin = np.array([scalars[CURVATURE], 0.0, scalars.get(TWIST, 0.0)])
         along = np.clip(self._z, 0.0, self._body.length)
-        centroid = self._body.centroid
-        line = CentreLine.of(spin, scalars[STRETCH], centroid.position(w))
-        rotation, centre = line.frames(along)
+        fit = self._body.fit
+        line = CentreLine.of(spin, scalars[STRETCH], *fit.read(w))
+        rotation, centre = line.sections(along)
         centre = centre + rotation[:, :, 2] * (self._z - along)[:, None]
         bent = (self._z >= 0) & (self._z <= self._body.length)
         moved = self._nodes.copy()
         moved[:, : self._dofs.shape[1]] += w[self._dofs]
-        across = (moved - line.centre) @ line.axes
-        reach = np.where(
-            bent[:, None], self._reach(across), self._reach(self._nodes - centroid.rest)
-        )
+        across = (moved - line.centre) @ line.section
+        reach = np.where(bent[:, None], self._reach(across), self._reach(self._nodes - fit.rest))
         return Pose(self._z, centre, rotation, reach)
 
     def _reach(self, position: Floats) -> Floats:

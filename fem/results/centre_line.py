@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from analytic.path import section_axes
 from fem.kinematics.kinematics import Kinematics
 from fem.ranks import total
 from geometry.mesh.centroid import winding_weights
@@ -31,14 +32,12 @@ class CentreLine:
         x ≈ c(z) + (X − X̄) a_x(z) + (Y − Ȳ) a_y(z),
 
     c, a_x and a_y cubic splines, by least squares with the weights of `geometry.mesh.centroid`, so
-    that c is the centroid of what lies inside. Stations stand at the knots, t ∥ c' there. At the
-    two ends stand the plane sections z = 0 and z = L themselves, each with its own least squares
-    and with t its normal a_x × a_y. Everywhere the section's own axes across t are
-
-        d1 ∥ a_x + a_y × t (its part across t),      d2 = t × d1,
-
-    the rotation nearest to the section's image (polar decomposition in the plane across t). The
-    rotation vectors from station to station, on (d1, d2, t), add up to the three turns. Of a body
+    that c is the centroid of what lies inside. Stations stand at the knots, t ∥ c' there. Before
+    the first and behind the last one stand the plane sections z = 0 and z = L themselves, each
+    with its own least squares and with t its normal a_x × a_y. Everywhere the section's own axes
+    across t are d1 and d2 of
+    `analytic.path.section_axes`. The rotation vectors from station to station, on (d1, d2, t), add
+    up to the three turns. Of a body
     that bends and twists evenly they are exact whatever the distance of the stations, and they
     are those of `analytic.path.centre_line`; of a body that stays in its plane they add up to the
     rotation of the section z = L against z = 0. Nothing wraps, as long as neighbouring stations
@@ -161,7 +160,7 @@ class _RodFit:
         tip: z of the last one.
 
     Attributes:
-        stations: z of the knots inside, mm, (s,).
+        stations: z of the knots, mm, (s,).
         value: values of the m basis functions there, (s, m).
         rate: their slopes there, 1/mm, (s, m).
         moments: right-hand sides of the normal equations by the n nodes' positions, (3 m, n): of
@@ -184,7 +183,7 @@ class _RodFit:
         knots = np.concatenate([[root] * 3, breaks, [tip] * 3])
         basis = BSpline.design_matrix(np.clip(z, root, tip), knots, 3).T
         spline = BSpline(knots, np.eye(count + 3), 3)
-        self.stations: Floats = breaks[1:-1]
+        self.stations: Floats = breaks
         self.value: Floats = spline(self.stations)
         self.rate: Floats = spline(self.stations, 1)
         levers = vstack([basis, basis.multiply(plane[:, 0]), basis.multiply(plane[:, 1])])
@@ -223,17 +222,10 @@ def _plane_fit(nodes: Floats, weights: Floats, half: bool) -> Floats:
     return rows
 
 
-def _unit(vectors: Any) -> Any:
-    return vectors / np.sqrt(np.sum(vectors * vectors, axis=-1, keepdims=True))
-
-
 def _axes(a_x: Any, a_y: Any, inside: Any) -> Any:
     """Axes d1, d2, t of all stations as columns, (k, 3, 3)."""
     normal = np.cross(a_x, a_y)
-    t = _unit(np.concatenate([normal[:1], inside, normal[-1:]]))
-    first = a_x - np.sum(a_x * t, axis=1, keepdims=True) * t + np.cross(a_y, t)
-    d1 = _unit(first)
-    return np.stack([d1, np.cross(t, d1), t], axis=2)
+    return section_axes(a_x, a_y, np.concatenate([normal[:1], inside, normal[-1:]]))
 
 
 def _rotations(axes: Any) -> Any:

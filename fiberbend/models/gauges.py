@@ -90,9 +90,9 @@ class BodyGauge:
 
 
 class UniformGauge:
-    """Section and cell: a rod of the line of the centroids, clamped at its root.
+    """Section and cell: a rod along the line of the centroids, its first section clamped.
 
-    The tip rides on a straight cap along the tangent at the end.
+    The tip rides on a straight cap across the last section.
 
     Args:
         body: kinematics of uniform bending.
@@ -111,10 +111,9 @@ class UniformGauge:
 
     def tip(self, state: State) -> tuple[float, float, float]:
         """Centroid of the tip cap's outer face, mm."""
-        actuator, height = self._actuator, float(self._body.centroid.rest[1])
-        rotation, line = self._body.centre_line().frames(np.array([actuator.length]))
-        ahead = [0.0, actuator.face_height - height, actuator.cap]
-        x, y, z = line[0] + rotation[0] @ ahead
+        actuator, height = self._actuator, float(self._body.fit.rest[1])
+        axes, centre = self._body.centre_line().sections(np.array([actuator.length]))
+        x, y, z = centre[0] + axes[0] @ [0.0, actuator.face_height - height, actuator.cap]
         return float(x), height + float(y), float(z)
 
     def columns(self, state: State) -> dict[str, float]:

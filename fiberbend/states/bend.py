@@ -9,7 +9,7 @@ import numpy as np
 
 from analytic.path import CentreLine
 from fiberbend.states.snapshot import Snapshot
-from geometry.mesh.centroid import winding_weights
+from geometry.mesh.centroid import section_fit
 from geometry.mesh.data import Floats, MeshData
 
 _ORIGIN = (0.0, 0.0, 0.0)
@@ -20,8 +20,9 @@ class Bend:
     """A body that bends and twists uniformly from a clamped root.
 
     In the frame of the station Z the frame's origin advances along z at the rate λ0, and the frame
-    turns at the rate ω = (k, 0, τ). The clamp holds the first section so that the line of the
-    centroids starts along z, at the height where the centroid is at rest.
+    turns at the rate ω = (k, 0, τ). The clamp holds the first section across z, with its centroid
+    where it is at rest. Under twist and bend a section is not across the line of the centroids:
+    the line leaves the clamp as far from z as the body is sheared.
 
     Attributes:
         curvature: k, 1/mm; positive turns z toward −y.
@@ -29,6 +30,8 @@ class Bend:
         twist: τ, rad/mm.
         centre: the section's centroid in the turning frame, mm.
         height: y of the centroid at rest, mm.
+        a_x: what has become of the section's axis x, in the turning frame.
+        a_y: of its axis y.
     """
 
     curvature: float
@@ -36,22 +39,24 @@ class Bend:
     twist: float = 0.0
     centre: tuple[float, float, float] = _ORIGIN
     height: float = 0.0
+    a_x: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    a_y: tuple[float, float, float] = (0.0, 1.0, 0.0)
 
     @classmethod
     def of(cls, state: Snapshot, mesh: MeshData) -> Bend:
         """The bend of a state of a section or a slice."""
-        weights, rest = winding_weights(mesh)
-        centre = weights @ in_frame(mesh.nodes, state.displacement) / weights.sum()
-        if mesh.half:
-            centre[[0, 2]] = 0.0
-        x, y, z = (float(value) for value in centre)
-        return cls(state.curvature, state.stretch, state.twist, (x, y, z), float(rest[1]))
+        rows, kept, rest = section_fit(mesh)
+        fit = rows @ in_frame(mesh.nodes, state.displacement) * kept
+        centre, a_x, a_y = ((float(x), float(y), float(z)) for x, y, z in fit)
+        how = (state.curvature, state.stretch, state.twist)
+        return cls(*how, centre, float(rest[1]), a_x, a_y)
 
     @functools.cached_property
     def line(self) -> CentreLine:
         """The line of the centroids."""
         spin = np.array([self.curvature, 0.0, self.twist])
-        return CentreLine.of(spin, self.stretch, np.array(self.centre))
+        section = (np.array(vector) for vector in (self.centre, self.a_x, self.a_y))
+        return CentreLine.of(spin, self.stretch, *section)
 
     @property
     def is_rest(self) -> bool:
@@ -67,8 +72,7 @@ class Bend:
         Returns:
             Array (n, 3, 3).
         """
-        rotation: Floats = self.line.frames(z)[0] @ self.line.axes.T
-        return rotation
+        return self.line.turning(z)[0]
 
     def place(self, position: Floats, z: Floats) -> Floats:
         """Positions in space.
@@ -80,7 +84,8 @@ class Bend:
         Returns:
             Array (n, 3), mm.
         """
-        placed = self.line.place(position, z)
+        rotation, place = self.line.turning(z)
+        placed: Floats = place + np.einsum("nij,nj->ni", rotation, position - self.line.centre)
         placed[:, 1] += self.height
         return placed
 

@@ -1,4 +1,4 @@
-"""Where the centre of a section is: the centroid of all that lies inside the winding."""
+"""Where a section is and how it stands, by the line of its winding: centroid and axes."""
 
 from __future__ import annotations
 
@@ -47,3 +47,29 @@ def winding_weights(mesh: MeshData) -> tuple[Floats, Floats]:
     weights = np.zeros(len(mesh.nodes))
     np.add.at(weights, mesh.cells[cell[:, None], positions], parts)
     return weights, rest
+
+
+def section_fit(mesh: MeshData) -> tuple[Floats, Floats, Floats]:
+    """Centroid and axes of a section, or of a slice in the mean along z, linear in positions.
+
+    Least squares x' ≈ c + (X − X̄) a_x + (Y − Ȳ) a_y on the winding's line, by its weights.
+
+    Args:
+        mesh: a section or a slice; half is completed by half a turn about y or by a mirror.
+
+    Returns:
+        Rows that multiply the nodes' positions to c, a_x and a_y, (3, n); the components that the
+        other half leaves of them, ones and zeros, (3, 3); X̄, (2,), mm.
+    """
+    weights, rest = winding_weights(mesh)
+    levers = mesh.nodes[:, :2] - rest
+    weighted = weights[:, None] * levers
+    gram = weighted.T @ levers
+    kept = np.ones((3, 3))
+    if mesh.half:
+        gram[0, 1] = gram[1, 0] = 0.0
+        # a half slice has mirrored neighbours; a half section that warps is turned about y
+        warp = 1.0 if mesh.cell_type == "quadrilateral" else 0.0
+        kept = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, warp], [0.0, 1.0, 0.0]])
+    axes = np.linalg.solve(gram, weighted.T)
+    return np.vstack([weights / weights.sum(), axes]), kept, rest
