@@ -67,7 +67,7 @@ def test_a_round_tube_with_one_helix_stays_straight(
     ahead = 320 * end["axis_stretch"] + CAP
     tip = [end[f"tip_{axis}_mm"] for axis in "xyz"]
     assert tip == pytest.approx([0.0, OUTER, ahead], abs=1e-4)
-    assert end["floor_stretch"] == pytest.approx(end["crown_stretch"], rel=1e-9)
+    assert end["floor_stretch"] == pytest.approx(end["crown_stretch"], rel=1e-6)
     assert end["floor_stretch"] > end["axis_stretch"]
     # the angle is unwrapped: no row is a full turn off
     twist = np.array([row["twist_deg"] for row in result.rows])
