@@ -179,16 +179,17 @@ def test_plots(angles: list[float], reason: str | None, tmp_path: Path) -> None:
 def test_a_path_that_leaves_its_plane_is_drawn_in_space(
     reason: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from mpl_toolkits.mplot3d import Axes3D
+    from matplotlib.projections import get_projection_class
 
     drawn: list[Any] = []
-    plot = Axes3D.plot
+    in_space_axes: Any = get_projection_class("3d")
+    plot = in_space_axes.plot
 
     def note(axes: Any, *points: Any, **how: Any) -> Any:
         drawn.append(points)
         return plot(axes, *points, **how)
 
-    monkeypatch.setattr(Axes3D, "plot", note)
+    monkeypatch.setattr(in_space_axes, "plot", note)
     rows = history([0.0, 30, 90, 90, 200, 360])
     # round-off is no way out of the plane
     for aside, in_space in ((1e-9, False), (5.0, True)):
