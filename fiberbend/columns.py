@@ -128,7 +128,7 @@ COLUMNS = (
     Column(UNIFORM_ANGLE, "°", "L times the curvature of the middle half", MIDDLE),
     Column(UNIFORM_SIDE, "°", "the same of the side angle", BODY),
     Column(UNIFORM_TWIST, "°", "the same of the twist", BODY),
-    Column(AXIS_STRETCH, "", "stretch of the centre-line, through the centroids", UNIFORM),
+    Column(AXIS_STRETCH, "", "stretch of the centre-line, through the centroids", ELEMENTS),
     Column(FLOOR_STRETCH, "", "stretch λ0 of the line y = 0", UNIFORM),
     Column(CROWN_STRETCH, "", "stretch of the highest line", UNIFORM),
     Column(WORK, "mJ", "work of the loads since rest, Σ ∫ q dQ", ELEMENTS),

@@ -12,6 +12,7 @@ from fem.kinematics.kinematics import Kinematics
 from fem.ranks import total
 from geometry.mesh.centroid import winding_weights
 from geometry.mesh.data import MeshData
+from geometry.mesh.reference import gauss
 
 Floats = npt.NDArray[np.float64]
 
@@ -58,6 +59,7 @@ class CentreLine:
         self._length = tip - root
         spline = _RodFit(data, root, tip)
         self._inverse, self._value, self._rate = spline.inverse, spline.value, spline.rate
+        self._along, self._share = spline.along, spline.share
         ends = [_plane_fit(nodes, body.domain.surface_weights(name), data.half) for name in ENDS]
         rows = vstack([csr_matrix(ends[0]), spline.moments, csr_matrix(ends[1])]).tocsc()
         used = body.owned_nodes[np.diff(rows.indptr)[body.owned_nodes] > 0]
@@ -70,10 +72,15 @@ class CentreLine:
             blocks = np.repeat([_EVEN, _ODD, (0.0, 0.0, 0.0)], spline.value.shape[1], axis=0)
             self._kept = np.vstack([_ODD, _EVEN, blocks, _ODD, _EVEN])
 
-    def _parts(self) -> tuple[Floats, Floats, Floats]:
-        """Images a_x and a_y of the axes, (k, 3), and tangents inside, (k − 2, 3); collective."""
+    def _sums(self) -> Floats:
+        """What is linear in the positions, (rows, 3): both ends' a_x and a_y, moments between."""
         x = self._nodes + self._body.w.x.array[self._dofs]
         sums: Floats = total(self._body.domain.comm, self._operator @ x) * self._kept
+        return sums
+
+    def _parts(self) -> tuple[Floats, Floats, Floats]:
+        """Images a_x and a_y of the axes, (k, 3), and tangents inside, (k − 2, 3); collective."""
+        sums = self._sums()
         centre, a_x, a_y = (self._inverse @ sums[2:-2]).reshape(3, -1, 3)
         return (
             np.vstack([sums[0], self._value @ a_x, sums[-2]]),
@@ -90,6 +97,11 @@ class CentreLine:
         """Of the whole length at the present state, about d1, d2 and t, (3,), rad; collective."""
         whole: Floats = self._steps().sum(axis=0)
         return whole
+
+    def stretch(self) -> float:
+        """Length of the centre-line from z = 0 to z = L over L; collective."""
+        centre = (self._inverse @ self._sums()[2:-2])[: self._value.shape[1]]
+        return float(self._share @ np.linalg.norm(self._along @ centre, axis=1))
 
     def middle(self) -> Floats:
         """L times the rates of the middle half: the turns were it not for the ends, (3,), rad.
@@ -163,6 +175,8 @@ class _RodFit:
         stations: z of the knots, mm, (s,).
         value: values of the m basis functions there, (s, m).
         rate: their slopes there, 1/mm, (s, m).
+        along: slopes at Gauss points between the knots, (g, m).
+        share: their weights as parts of the length, (g,).
         moments: right-hand sides of the normal equations by the n nodes' positions, (3 m, n): of
             c, then of a_x, then of a_y.
         inverse: of the normal equations' matrix, (3 m, 3 m).
@@ -186,6 +200,11 @@ class _RodFit:
         self.stations: Floats = breaks
         self.value: Floats = spline(self.stations)
         self.rate: Floats = spline(self.stations, 1)
+        points, parts = gauss(3)
+        self.along: Floats = spline(
+            (breaks[:-1, None] + np.diff(breaks)[:, None] * points).ravel(), 1
+        )
+        self.share: Floats = np.tile(parts / count, count)
         levers = vstack([basis, basis.multiply(plane[:, 0]), basis.multiply(plane[:, 1])])
         weighted = levers.multiply(weights[on]).tocoo()
         gram = (levers.tocsr() @ weighted.tocsr().T).toarray()

@@ -43,9 +43,10 @@ class BodyGauge:
         return 0.0 if self._scene.domain.data.half else x, y, z
 
     def columns(self, state: State) -> dict[str, float]:
-        """Side angle and twist of a whole body, and all angles without end effects."""
+        """Side angle and twist of a whole body, all angles without end effects, and stretch."""
         middle = self._line.middle()
         row = {col.UNIFORM_ANGLE: float(np.rad2deg(middle[0]))}
+        row[col.AXIS_STRETCH] = self._line.stretch()
         if self._scene.domain.data.half:
             return row
         row |= _turns(self._line.turns())

@@ -37,14 +37,14 @@ def _body(mesh: MeshData, placed: Floats) -> Body:
     return body
 
 
-def _screw(mesh: MeshData, spin: Floats, stretch: float = 1.05) -> tuple[Body, Floats]:
-    """A body that bends and twists evenly, and its turns between z = 0 and z = L, rad."""
+def _screw(mesh: MeshData, spin: Floats) -> tuple[Body, Floats, float]:
+    """A body that bends and twists evenly; its turns from z = 0 to z = L, rad; its stretch."""
     rest = winding_weights(mesh)[1]
-    line = Exact.of(spin, stretch, np.array([*rest, 0.0]), *PLANE)
+    line = Exact.of(spin, 1.05, np.array([*rest, 0.0]), *PLANE)
     position = mesh.nodes * [1.0, 1.0, 0.0]
     rotation, centre = line.turning(mesh.nodes[:, 2])
     placed = centre + np.einsum("nij,nj->ni", rotation, position - line.centre)
-    return _body(mesh, placed), line.rates * FINGER.length
+    return _body(mesh, placed), line.rates * FINGER.length, line.stretch
 
 
 @pytest.mark.parametrize("tetrahedra", [False, True])
@@ -52,8 +52,9 @@ def _screw(mesh: MeshData, spin: Floats, stretch: float = 1.05) -> tuple[Body, F
 def test_a_screw_turns_by_its_rates(degrees: tuple[float, float], tetrahedra: bool) -> None:
     # counted beyond half turns of bend and beyond several turns of twist
     bend, twist = np.radians(degrees) / FINGER.length
-    body, exact = _screw(_mesh(tetrahedra=tetrahedra), np.array([bend, 0.0, twist]))
+    body, exact, stretch = _screw(_mesh(tetrahedra=tetrahedra), np.array([bend, 0.0, twist]))
     line = CentreLine(body)
+    assert line.stretch() == pytest.approx(stretch, rel=3e-3)
     error = 3e-3 * np.abs(exact).max()
     assert line.turns() == pytest.approx(exact, abs=error)
     assert line.middle() == pytest.approx(exact, abs=error)
@@ -61,7 +62,7 @@ def test_a_screw_turns_by_its_rates(degrees: tuple[float, float], tetrahedra: bo
 
 def test_mirrored_it_twists_the_other_way() -> None:
     mesh = _mesh()
-    body, _ = _screw(mesh, np.array([0.012, 0.0, 0.02]))
+    body, *_ = _screw(mesh, np.array([0.012, 0.0, 0.02]))
     found = CentreLine(body).turns()
     # aside too: bent about y
     u = body.displacement()
@@ -124,7 +125,7 @@ def test_half_a_body_is_the_whole_one() -> None:
 @pytest.mark.parametrize("half", [False, True])
 def test_row_is_the_gradient_of_the_angle(half: bool) -> None:
     # the border of Newton under a prescribed angle, of a body that twists
-    body, _ = _screw(_mesh(half=half), np.array([0.03, 0.0, 0.0 if half else 0.04]))
+    body, *_ = _screw(_mesh(half=half), np.array([0.03, 0.0, 0.0 if half else 0.04]))
     line = CentreLine(body)
     angle, w = BendingAngle(line), body.w.x.array
     w += np.random.default_rng(3).uniform(-0.1, 0.1, len(w))

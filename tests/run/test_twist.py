@@ -203,6 +203,7 @@ def test_a_body_hits_its_angle_and_twists_as_its_section() -> None:
     assert body.last("uniform_angle_deg") == pytest.approx(20, rel=0.01)
     assert body.last("uniform_twist_deg") == pytest.approx(section.last("twist_deg"), rel=0.01)
     assert body.last("uniform_side_angle_deg") == pytest.approx(0, abs=0.1)
+    assert body.last("axis_stretch") == pytest.approx(section.last("axis_stretch"), rel=2e-3)
     # caps are not free to warp: less than the middle
     assert 0.9 < body.last("twist_deg") / section.last("twist_deg") < 1
 
