@@ -16,10 +16,10 @@ def winding_weights(mesh: MeshData) -> tuple[Floats, Floats]:
 
     The centroid of wall, floor and chamber together moves with the line of the winding,
 
-        c = 1/(2A) ∮ x (X − X̄)·N ds,      ∮ dA-like weights ½ (X − X̄)·N ds adding to the area A:
+        c = 1/(2A) ∮ x (X − X̄)·N ds,      A = ½ ∮ (X − X̄)·N ds:
 
     every piece of the line weighs as much as the triangle that it spans at rest with the centroid
-    X̄ = 1/(3A) ∮ X (X·N) ds, A = ½ ∮ X·N ds. Each triangle keeps its weight, of rubber and of
+    X̄ = 1/(3A) ∮ X (X·N) ds. Each triangle keeps its weight, of rubber and of
     chamber alike, so that no point within the hollow chamber has to be followed; at rest c = X̄,
     and any homogeneous deformation takes c where it takes X̄. X and N are the parts across z.
 
