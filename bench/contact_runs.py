@@ -14,7 +14,7 @@ import yaml
 from mpi4py import MPI
 
 from bench.tables import ROOT
-from fem.results.measures import UniformAngle
+from fem.results.centre_line import CentreLine
 from fiberbend import run
 from fiberbend.models.choice import meshed
 from fiberbend.reader.reader import as_case
@@ -144,7 +144,7 @@ def carried(name: str, support: str, kpa: int) -> dict[str, float]:
         "rims": roof[x > x[np.abs(roof) > 0].max() - 1e-6].sum(),
         "middle": roof[np.abs(z - length / 2) < length / 4].sum(),
         "moment": both[beyond] @ lever[beyond],
-        "angle": np.degrees(UniformAngle(body, frames).value(shape)),
+        "angle": np.degrees(CentreLine(body).middle()[0]),
     }
     found = {name: float(value) for name, value in found.items()}
     note.write_text(json.dumps({"case": case, "found": found}), encoding="utf-8")

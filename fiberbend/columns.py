@@ -15,6 +15,8 @@ from typing import Any, ClassVar, Protocol
 STEP = "step"
 PRESSURE = "pressure_kPa"
 ANGLE = "angle_deg"
+SIDE_ANGLE = "side_angle_deg"
+TIP_X = "tip_x_mm"
 TIP_Y = "tip_y_mm"
 TIP_Z = "tip_z_mm"
 VOLUME = "chamber_mm3"
@@ -27,7 +29,10 @@ VOLUME_ERROR = "volume_error"
 FIBER_MIN = "fiber_min_N"
 FIBER_MAX = "fiber_max_N"
 UNIFORM_ANGLE = "uniform_angle_deg"
+UNIFORM_SIDE = "uniform_side_angle_deg"
+UNIFORM_TWIST = "uniform_twist_deg"
 AXIS_STRETCH = "axis_stretch"
+FLOOR_STRETCH = "floor_stretch"
 CROWN_STRETCH = "crown_stretch"
 TWIST = "twist_deg"
 MOMENT = "blocked_moment_Nmm"
@@ -103,7 +108,12 @@ class Column:
 COLUMNS = (
     Column(STEP, "", "number of the load step, 0 at rest", always=True),
     Column(PRESSURE, "kPa", "chamber pressure", always=True),
-    Column(ANGLE, "°", "rotation of the section z = L against z = 0, toward −y", always=True),
+    Column(
+        ANGLE,
+        "°",
+        "turn of the centre-line, z = 0 to L, about the section's own x, toward −y",
+        always=True,
+    ),
     Column(TIP_Y, "mm", "y of the centroid of the tip cap's outer face", always=True),
     Column(TIP_Z, "mm", "z of it", always=True),
     Column(VOLUME, "mm³", "volume of the chamber", always=True),
@@ -127,10 +137,15 @@ COLUMNS = (
         ELEMENTS,
     ),
     Column(VOLUME_ERROR, "", "the same of all rubber together", ELEMENTS),
+    Column(TIP_X, "mm", "x of the tip"),
+    Column(SIDE_ANGLE, "°", "turn about its own y, toward x, where it leaves its plane", ELEMENTS),
+    Column(TWIST, "°", "turn of the sections about the centre-line, likewise", ELEMENTS),
     Column(UNIFORM_ANGLE, "°", "L times the curvature of the middle half", MIDDLE),
-    Column(AXIS_STRETCH, "", "stretch λ0 of the line y = 0", UNIFORM),
+    Column(UNIFORM_SIDE, "°", "the same of the side angle", BODY),
+    Column(UNIFORM_TWIST, "°", "the same of the twist", BODY),
+    Column(AXIS_STRETCH, "", "stretch of the centre-line, through the centroids", ELEMENTS),
+    Column(FLOOR_STRETCH, "", "stretch λ0 of the line y = 0", UNIFORM),
     Column(CROWN_STRETCH, "", "stretch of the highest line", UNIFORM),
-    Column(TWIST, "°", "twist of the whole length", UNIFORM),
     Column(WORK, "mJ", "work of the loads since rest, Σ ∫ q dQ", ELEMENTS),
     Column(STORED, "mJ", "stored energy", ELEMENTS),
     Column("energy {effect} mJ", "mJ", "potential of an effect", ELEMENTS),
@@ -147,7 +162,7 @@ COLUMNS = (
     Column("contact_{obstacle}_gap_mm", "mm", "least gap; negative: how deep the body is", BODY),
     Column(BALANCE_FORCE, "", "what is left of all forces, over their scale", BODY),
     Column(BALANCE_MOMENT, "", "what is left of all moments, over theirs", BODY),
-    Column(MOMENT, "N mm", "moment about the floor's lower face, kept straight", UNIFORM),
+    Column(MOMENT, "N mm", "moment about the centroid, kept straight", UNIFORM),
     Column(AXIAL_FORCE, "N", "axial force, kept in length", UNIFORM),
     Column(
         "section_kPa",

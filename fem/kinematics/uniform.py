@@ -11,6 +11,7 @@ v is fixed at zero: without it v + c and λ0 − k c would be the same state.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable
 from typing import Any
 
@@ -18,6 +19,8 @@ import numpy as np
 import numpy.typing as npt
 import ufl
 
+from analytic.path import CentreLine, centre_line
+from fem.kinematics.centroid import SectionFit
 from fem.kinematics.domain import Domain
 from fem.kinematics.kinematics import Carry, Kinematics
 
@@ -25,6 +28,9 @@ Floats = npt.NDArray[np.float64]
 
 CURVATURE, STRETCH, TWIST = "curvature", "stretch", "twist"
 AXES = {CURVATURE: 0, TWIST: 2}
+_STEP = 1e-30
+"""Of complex differentiation: nothing is subtracted (Squire and Trapp 1998,
+doi 10.1137/S003614459631241X)."""
 
 
 class Uniform(Kinematics):
@@ -126,9 +132,24 @@ class Uniform(Kinematics):
                 rates[name] = (np.zeros(3), axes[axis])
         return Carry(values[STRETCH], spin, rates)
 
+    @functools.cached_property
+    def fit(self) -> SectionFit:
+        """Centroid and axes of what lies inside the winding."""
+        return SectionFit(self)
+
+    def centre_line(self) -> CentreLine:
+        """The centroids' line at the present state; collective."""
+        carry = self.carry()
+        return CentreLine.of(
+            carry.spin, carry.stretch, *self.fit.read(self.w.x.array[: self.owned])
+        )
+
 
 class CurvatureAngle:
-    """θ = k L, a functional of the curvature alone.
+    """θ = L b·d1, the turn of the centre-line's tangent about the section's own lateral axis.
+
+    Bent in its plane, a body has one curvature k at every height and θ = k L. Under twist the
+    lines of a section are helices of different curvature, and θ is that of the centroids' line.
 
     Args:
         body: kinematics of uniform bending.
@@ -139,12 +160,35 @@ class CurvatureAngle:
 
     def value(self) -> float:
         """At the present state, rad."""
-        return float(self._body.scalars[CURVATURE].value) * self._body.length
+        body = self._body
+        if not body.twisted:
+            return float(body.scalars[CURVATURE].value) * body.length
+        return float(body.centre_line().rates[0]) * body.length
 
     def row(self) -> Floats:
-        """∂θ/∂w on the owned dofs: none."""
-        return np.zeros(self._body.owned)
+        """∂θ/∂w on the owned dofs, rad/mm: by the centroid, where the body twists."""
+        body = self._body
+        if not body.twisted:
+            return np.zeros(body.owned)
+        return body.fit.row(np.array([self._slope(centre=i) for i in range(3)]))
 
     def slope(self, scalar: str) -> float:
         """∂θ/∂q of a global scalar."""
-        return self._body.length if scalar == CURVATURE else 0.0
+        body = self._body
+        if not body.twisted:
+            return body.length if scalar == CURVATURE else 0.0
+        return self._slope(scalar=scalar) if scalar in body.natural else 0.0
+
+    def _slope(self, scalar: str = "", centre: int | None = None) -> float:
+        """Derivative by a scalar or by a component of the centroid, by a complex step."""
+        line = self._body.centre_line()
+        spin, place = (values.astype(complex) for values in (line.spin, line.centre))
+        stretch = complex(line.carried)
+        if centre is not None:
+            place[centre] += 1j * _STEP
+        elif scalar == STRETCH:
+            stretch += 1j * _STEP
+        else:
+            spin[AXES[scalar]] += 1j * _STEP
+        rates: Any = centre_line(spin, stretch, place)[1]
+        return float(rates[0].imag) / _STEP * self._body.length

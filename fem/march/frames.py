@@ -55,10 +55,6 @@ class Frames:
         position = (self._nodes[:, 2] - low[2]) / (self.z[1] - self.z[0])
         self._below = np.clip(position.astype(int), 0, count - 2)
         self._above_share = position - self._below
-        ones = np.ones((len(self._nodes), 1))
-        sums = self._station_sums(np.hstack([ones, self._nodes[:, 2:]]))
-        self.mean_z: Floats = sums[:, 1] / sums[:, 0]
-        """Where the fitted rotations belong: mean z of the nodes that each station weighs, (k,)."""
         section = self._nodes.copy()
         section[:, 2] = 0.0
         self._section = section
@@ -207,13 +203,3 @@ class Frames:
             greatest[below + 1] = np.maximum(greatest[below + 1], between)
         total: Floats = np.max(self._body.domain.comm.allgather(greatest), axis=0)
         return total
-
-    def bending(self, shape: Shape) -> Floats:
-        """Rotation about x of every station, unwrapped along the body from the root, rad, (k,)."""
-        from scipy.spatial.transform import Rotation
-
-        rotation = Rotation.from_matrix(shape.rotation)
-        first = rotation[0].as_rotvec()[0]
-        steps = (rotation[1:] * rotation[:-1].inv()).as_rotvec()[:, 0]
-        angles: Floats = first + np.concatenate([[0.0], np.cumsum(steps)])
-        return angles

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from analytic.path import screw
+from analytic.path import CentreLine
 from fem.kinematics.kinematics import Kinematics
 from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST, Uniform
 from fem.march.frames import Frames, Shape
@@ -28,7 +28,7 @@ class Pose:
 
     Attributes:
         z: reference positions along the axis, mm, rising, (n,).
-        centre: deformed positions of the axis point (0, 0, z), mm, (n, 3).
+        centre: deformed positions of the axis, to which `reach` refers, mm, (n, 3).
         rotation: of the sections, (n, 3, 3).
         reach: greatest n · x over a section's own frame for every direction n, mm, (n, m).
     """
@@ -151,7 +151,8 @@ class UniformRod:
     def __init__(self, body: Uniform, cap: float) -> None:
         self._body = body
         nodes = body.domain.data.nodes
-        self._nodes, self._dofs = nodes[:, :2], body.node_dofs[:, :2]
+        self._nodes = np.column_stack([nodes[:, :2], np.zeros(len(nodes))])
+        self._dofs = body.node_dofs
         spacing = float(np.ptp(self._nodes, axis=0).max()) / 4
         counts = [max(1, int(np.ceil(length / spacing))) for length in (cap, body.length)]
         caps, middle = (np.linspace(0, 1, count + 1) for count in counts)
@@ -168,14 +169,19 @@ class UniformRod:
         w = (1 - share) * old.w + share * new.w
         spin = np.array([scalars[CURVATURE], 0.0, scalars.get(TWIST, 0.0)])
         along = np.clip(self._z, 0.0, self._body.length)
-        rotation, centre = screw(along, spin, scalars[STRETCH])
+        fit = self._body.fit
+        line = CentreLine.of(spin, scalars[STRETCH], *fit.read(w))
+        rotation, centre = line.sections(along)
         centre = centre + rotation[:, :, 2] * (self._z - along)[:, None]
         bent = (self._z >= 0) & (self._z <= self._body.length)
-        reach = np.where(bent[:, None], self._reach(w[self._dofs]), self._reach(0.0))
+        moved = self._nodes.copy()
+        moved[:, : self._dofs.shape[1]] += w[self._dofs]
+        across = (moved - line.centre) @ line.section
+        reach = np.where(bent[:, None], self._reach(across), self._reach(self._nodes - fit.rest))
         return Pose(self._z, centre, rotation, reach)
 
-    def _reach(self, moved: Floats | float) -> Floats:
-        x = self._nodes + moved
+    def _reach(self, position: Floats) -> Floats:
+        x = position[:, :2]
         if self._body.domain.data.half:
             x = np.vstack([x, x * [-1, 1]])
         reach: Floats = (x @ directions().T).max(axis=0)

@@ -31,6 +31,8 @@ _SHARE = 0.25
 """Part of a difference that a cause has to account for to be named."""
 _BULGED = 0.05
 _ROTATED = 1.0
+_SIDEWAYS = 0.1
+"""Degrees of side angle that are worth a word."""
 _SOFT = 1 / 3
 _SOFT_SHEATH = -16.0
 
@@ -97,7 +99,14 @@ def _ends(model: ModelKind, row: col.Row, other: OtherModel) -> list[Cause]:
     percent = 100 * float(other.value(np.array(middle)) / other.value(np.array(whole)) - 1)
     if not math.isfinite(percent):
         return []
-    text = f"whole body {100 * (whole / middle - 1):+.1f} % in angle beside its middle half"
+    turns = [f"{100 * (whole / middle - 1):+.1f} % in angle"]
+    twist, inside = row.get(col.TWIST), row.get(col.UNIFORM_TWIST)
+    if twist is not None and inside:
+        turns.append(f"{100 * (twist / inside - 1):+.1f} % in twist")
+    side, within = row.get(col.SIDE_ANGLE), row.get(col.UNIFORM_SIDE)
+    if side is not None and within is not None and abs(side - within) > _SIDEWAYS:
+        turns.append(f"{side - within:+.1f}° in side angle")
+    text = f"whole body {', '.join(turns)} beside its middle half"
     return [Cause("end caps", percent, f"{text}: {percent:+.1f} %")]
 
 

@@ -40,6 +40,8 @@ _LEFT = 0.17
 """Part of the width that a point's text takes to its left."""
 _ROOM = 2.0
 _TINY = 1e-6
+_ASIDE = 1e-3
+"""Part of the path's extent by which it leaves the plane of bending where it is drawn in space."""
 _ANGLE = (col.PRESSURE, col.ANGLE)
 _PATH = (col.TIP_Z, col.TIP_Y, col.PRESSURE)
 _FORCE = (col.PRESSURE, col.TIP_FORCE)
@@ -87,10 +89,12 @@ def plot_tip_path(
 ) -> None:
     """Path of the tip in the plane of bending, z to the right, y up, one scale.
 
-    Dots are the steps; the curve through them is a spline.
+    Where the tip leaves that plane, the path is drawn in space with its shadows on the walls. Dots
+    are the steps; the curve through them is a spline.
 
     Args:
-        rows: rows of the history with tip_z_mm, tip_y_mm and pressure_kPa.
+        rows: rows of the history with tip_z_mm, tip_y_mm and pressure_kPa, and with tip_x_mm where
+            the tip may leave the plane.
         target: a path, or a file open for writing bytes.
         title: title of the case.
         reason: why the run ended early, or None.
@@ -99,8 +103,12 @@ def plot_tip_path(
         ValueError: no row has all three values.
     """
     z, y, pressure = _columns(rows, _PATH)
+    x = np.array([row.get(col.TIP_X) or 0.0 for row in rows if _complete(row, _PATH)])
+    if np.ptp(x) > _ASIDE * max(np.ptp(z), np.ptp(y)):
+        _path_in_space(np.column_stack([x, y, z]), pressure, target, title, reason)
+        return
     page, axes = _axes(title, reason, "z (mm)", "y (mm)")
-    axes.plot(*_smooth(z, y), "-", color=_BLUE, linewidth=1.8)
+    axes.plot(*_smooth(np.column_stack([z, y])).T, "-", color=_BLUE, linewidth=1.8)
     axes.plot(z, y, "o", color=_BLUE, markersize=4)
     for i, name in {0: "start", len(z) - 1: "end"}.items():
         axes.plot(z[i], y[i], "o", color=_RED, markersize=9, zorder=3)
@@ -194,17 +202,51 @@ def _columns(rows: Sequence[col.Row], names: Sequence[str]) -> list[Floats]:
     return list(np.array(full, dtype=float).T)
 
 
-def _smooth(z: Floats, y: Floats) -> tuple[Floats, Floats]:
-    """A spline through the points, its parameter their distance along the path."""
+def _path_in_space(
+    path: Floats, pressure: Floats, target: Target, title: str, reason: str | None
+) -> None:
+    """Draw a path (n, 3) in mm, z away to the right, y up, one scale, shadows on three walls."""
+    page = figure(SIZE)
+    axes = page.add_axes((0.04, 0.02, 0.92, 0.9), projection="3d")
+    page.text(0.5, 0.95, title, ha="center", fontsize=15)
+    if reason:
+        page.text(0.5, 0.91, _note(reason), ha="center", color=_RED, fontsize=10)
+    # as seen: z to the right, x toward the viewer, y up
+    order = [2, 0, 1]
+    points, curve = path[:, order], _smooth(path)[:, order]
+    middle = (points.max(axis=0) + points.min(axis=0)) / 2
+    reach = np.maximum(0.6 * np.ptp(points, axis=0), 0.25 * np.ptp(points, axis=0).max())
+    limits = np.stack([middle - reach, middle + reach])
+    for wall, side in ((0, 0), (1, 1), (2, 0)):
+        shadow = curve.copy()
+        shadow[:, wall] = limits[side, wall]
+        axes.plot(*shadow.T, "-", color="0.75", linewidth=1.2)
+    axes.plot(*curve.T, "-", color=_BLUE, linewidth=1.8)
+    axes.plot(*points.T, "o", color=_BLUE, markersize=4)
+    for i, name in {0: "start", len(points) - 1: "end"}.items():
+        axes.plot(*points[i : i + 1].T, "o", color=_RED, markersize=9)
+        text = f"  {name}: {pressure[i]:.1f} kPa"
+        axes.text(*points[i], text, fontsize=12, verticalalignment="bottom", zorder=10)
+    for axis, name, low, high in zip("xyz", "zxy", *limits, strict=True):
+        getattr(axes, f"set_{axis}lim")(low, high)
+        getattr(axes, f"set_{axis}label")(f"{name} (mm)", fontsize=13, labelpad=8)
+        axes.locator_params(axis=axis, nbins=5)
+    axes.set_box_aspect(limits[1] - limits[0], zoom=0.85)
+    axes.view_init(elev=22, azim=-60)
+    save(page, target)
+
+
+def _smooth(points: Floats) -> Floats:
+    """A spline through points (n, d), its parameter their distance along the path."""
     from scipy.interpolate import CubicSpline
 
-    path = np.r_[0.0, np.cumsum(np.hypot(np.diff(z), np.diff(y)))]
+    path = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     kept = np.r_[True, np.diff(path) > 1e-9]
     if kept.sum() < 3:
-        return z, y
+        return points
     fine = np.linspace(0.0, path[-1], 400)
-    curve = CubicSpline(path[kept], np.column_stack([z, y])[kept])(fine)
-    return curve[:, 0], curve[:, 1]
+    curve: Floats = CubicSpline(path[kept], points[kept])(fine)
+    return curve
 
 
 def _axes(title: str, reason: str | None, across: str, up: str) -> tuple[Any, Any]:
@@ -212,14 +254,18 @@ def _axes(title: str, reason: str | None, across: str, up: str) -> tuple[Any, An
     axes = page.add_axes((0.1, 0.11, 0.86, 0.77))
     axes.set_title(title, fontsize=15, pad=24 if reason else 10)
     if reason:
-        note = f"ended early: {textwrap.shorten(reason, 110, placeholder=' …')}"
-        axes.text(0.5, 1.015, note, transform=axes.transAxes, ha="center", color=_RED, fontsize=10)
+        place = {"transform": axes.transAxes, "ha": "center", "color": _RED, "fontsize": 10}
+        axes.text(0.5, 1.015, _note(reason), **place)
     axes.set_xlabel(across, fontsize=13)
     axes.set_ylabel(up, fontsize=13)
     axes.tick_params(labelsize=11)
     axes.grid(color="0.9")
     axes.spines[["top", "right"]].set_visible(False)
     return page, axes
+
+
+def _note(reason: str) -> str:
+    return f"ended early: {textwrap.shorten(reason, 110, placeholder=' …')}"
 
 
 def _label(

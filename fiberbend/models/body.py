@@ -95,17 +95,17 @@ class Body(MeshedModel):
         return [named[case.support](), *([Symmetry()] if mesh.half else [])]
 
     def observables(self, case: Case, scene: Scene) -> Observables:
-        """Angles by rod frames."""
+        """Angles by the line of the centroids."""
         from fem.march.frames import Frames
         from fem.march.selfcontact import BodyRod
-        from fem.results.measures import BendingAngle
+        from fem.results.centre_line import BendingAngle, CentreLine
         from fiberbend.models.gauges import BodyGauge
 
-        frames = Frames(scene.body)
+        frames, line = Frames(scene.body), CentreLine(scene.body)
         return Observables(
             frames,
-            BendingAngle(scene.body, frames),
-            lambda: BodyGauge(scene, frames),
+            BendingAngle(line),
+            lambda: BodyGauge(scene, line),
             lambda: BodyRod(scene.body, frames),
         )
 

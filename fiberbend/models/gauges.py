@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Collection
 
-from analytic.path import tip
-from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
-from fem.march.frames import Frames
+import numpy as np
+import numpy.typing as npt
+
+from fem.kinematics.uniform import CURVATURE, STRETCH, Uniform
 from fem.march.records import State
+from fem.results.centre_line import CentreLine
 from fem.results.measures import (
     Resultant,
     Tip,
-    UniformAngle,
     balance,
 )
 from fem.results.touch import probes
@@ -19,31 +20,41 @@ from fem.scene import Scene
 from fiberbend import columns as col
 from geometry.actuator import Actuator
 
+Floats = npt.NDArray[np.float64]
+
 
 class BodyGauge:
     """The three-dimensional body.
 
     Args:
         scene: the scene.
-        frames: rod frames of the body.
+        line: the line of its sections' centroids.
     """
 
-    def __init__(self, scene: Scene, frames: Frames) -> None:
-        self._scene = scene
+    def __init__(self, scene: Scene, line: CentreLine) -> None:
+        self._scene, self._line = scene, line
         self._tip = Tip(scene.body)
-        self._uniform = UniformAngle(scene.body, frames)
         self._guided = "post" in scene.supports
         self._probes = probes(scene)
 
-    def tip(self, state: State) -> tuple[float, float]:
-        """y and z of the centroid of the tip cap's outer face, mm."""
-        position = self._tip.position()
-        return float(position[1]), float(position[2])
+    def tip(self, state: State) -> tuple[float, float, float]:
+        """Centroid of the tip cap's outer face, mm."""
+        x, y, z = (float(value) for value in self._tip.position())
+        return 0.0 if self._scene.domain.data.half else x, y, z
 
     def columns(self, state: State) -> dict[str, float]:
-        """The angle without end effects."""
-        assert state.shape is not None
-        return {col.UNIFORM_ANGLE: float(np.rad2deg(self._uniform.value(state.shape)))}
+        """Side angle and twist of a whole body, all angles without end effects, and stretch."""
+        middle = self._line.middle()
+        row = {col.UNIFORM_ANGLE: float(np.rad2deg(middle[0]))}
+        row[col.AXIS_STRETCH] = self._line.stretch()
+        if self._scene.domain.data.half:
+            return row
+        row |= _turns(self._line.turns())
+        uniform = _turns(middle)
+        return row | {
+            col.UNIFORM_SIDE: uniform[col.SIDE_ANGLE],
+            col.UNIFORM_TWIST: uniform[col.TWIST],
+        }
 
     def last_columns(self, state: State) -> dict[str, float]:
         """Forces of supports and obstacles on the body, and what it touches."""
@@ -80,48 +91,78 @@ class BodyGauge:
 
 
 class UniformGauge:
-    """Section and cell: the tip rides on a straight cap at the end of an arc.
+    """Section and cell: a rod along the line of the centroids, its first section clamped.
+
+    The tip rides on a straight cap across the last section.
 
     Args:
-        scene: the scene.
+        body: kinematics of uniform bending.
+        natural: its scalars that are found.
         actuator: dimensions.
     """
 
-    def __init__(self, scene: Scene, actuator: Actuator) -> None:
-        self._scene, self._actuator = scene, actuator
+    def __init__(self, body: Uniform, natural: Collection[str], actuator: Actuator) -> None:
+        self._body, self._actuator = body, actuator
         # kept straight, its moment is of interest
-        self._straight = CURVATURE not in scene.natural
-        nodes = scene.domain.data.nodes
-        self._crown = int(np.argmax(nodes[:, 1]))
-        self._top = int(scene.body.node_dofs[self._crown, 1])
-        self._height = float(nodes[self._crown, 1])
-        self._per_length = scene.body.symmetry_factor / actuator.length
+        self._straight, self._held = CURVATURE not in natural, STRETCH not in natural
+        data = body.domain.data
+        self._crown = int(np.argmax(data.nodes[:, 1]))
+        self._pin = data.points["pin"]
+        self._per_length = body.symmetry_factor / actuator.length
 
-    def tip(self, state: State) -> tuple[float, float]:
-        """y and z of the centroid of the tip cap's outer face, mm; in the plane of bending."""
-        actuator = self._actuator
-        arc = actuator.length * state.scalars[STRETCH]
-        z, down = tip(state.measures["control"], arc, actuator.cap, actuator.face_height)
-        return -float(down), float(z)
+    def tip(self, state: State) -> tuple[float, float, float]:
+        """Centroid of the tip cap's outer face, mm."""
+        actuator, height = self._actuator, float(self._body.fit.rest[1])
+        axes, centre = self._body.centre_line().sections(np.array([actuator.length]))
+        x, y, z = centre[0] + axes[0] @ [0.0, actuator.face_height - height, actuator.cap]
+        return float(x), height + float(y), float(z)
 
     def columns(self, state: State) -> dict[str, float]:
-        """Stretch of the axis at the pin and of the crown, and the twist of the whole length."""
-        scalars = state.scalars
-        height = self._height + float(state.w[self._top])
-        row = {
-            col.AXIS_STRETCH: scalars[STRETCH],
-            col.CROWN_STRETCH: scalars[STRETCH] + scalars[CURVATURE] * height,
+        """Side angle and twist where it twists, and stretches of three lines."""
+        line, length = self._body.centre_line(), self._actuator.length
+        row = {}
+        if self._body.twisted:
+            row = _turns(length * line.rates)
+        floor, crown = (
+            float(np.linalg.norm(line.advance(self._place(state, node))))
+            for node in (self._pin, self._crown)
+        )
+        return row | {
+            col.AXIS_STRETCH: line.stretch,
+            col.FLOOR_STRETCH: floor,
+            col.CROWN_STRETCH: crown,
         }
-        if TWIST in scalars:
-            row[col.TWIST] = float(np.rad2deg(scalars[TWIST] * self._actuator.length))
-        return row
+
+    def _place(self, state: State, node: int) -> Floats:
+        """Of a node in the turning frame, mm, (3,)."""
+        place = np.zeros(3)
+        place[:2] = self._body.domain.data.nodes[node, :2]
+        place[: self._body.components] += state.w[self._body.node_dofs[node]]
+        return place
 
     def last_columns(self, state: State) -> dict[str, float]:
-        """Moment and force that keep the body straight, and the tip force that the moment makes."""
+        """Moment and force that keep the body straight, and the tip force that the moment makes.
+
+        A force N along the axis and a moment M about the line y = 0, conjugate to stretch and
+        curvature, are a force N through the centroid and a moment M − N c_y about it.
+        """
         if not self._straight:
             return {}
         moment = self._per_length * state.measures[f"conjugate {CURVATURE}"]
-        row = {col.TIP_FORCE: moment / self._actuator.cap, col.MOMENT: moment}
-        if STRETCH not in self._scene.natural:
-            row[col.AXIAL_FORCE] = self._per_length * state.measures[f"conjugate {STRETCH}"]
-        return row
+        if not self._held:
+            return {col.TIP_FORCE: moment / self._actuator.cap, col.MOMENT: moment}
+        force = self._per_length * state.measures[f"conjugate {STRETCH}"]
+        moment -= force * float(self._body.centre_line().centre[1])
+        return {
+            col.TIP_FORCE: moment / self._actuator.cap,
+            col.MOMENT: moment,
+            col.AXIAL_FORCE: force,
+        }
+
+
+def _turns(turns: Floats) -> dict[str, float]:
+    """Side angle and twist of turns about d1, d2 and the tangent, (3,), rad."""
+    return {
+        col.SIDE_ANGLE: float(np.rad2deg(turns[1])),
+        col.TWIST: float(np.rad2deg(turns[2])),
+    }

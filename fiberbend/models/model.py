@@ -38,8 +38,8 @@ Objection = tuple[str, str]
 class Gauge(Protocol):
     """What a model reads off a state beside pressure, angle and energies."""
 
-    def tip(self, state: State) -> tuple[float, float]:
-        """y and z of the centroid of the tip cap's outer face, mm."""
+    def tip(self, state: State) -> tuple[float, float, float]:
+        """x, y and z of the centroid of the tip cap's outer face, mm."""
 
     def columns(self, state: State) -> dict[str, float]:
         """Further columns, behind the chamber's volume."""

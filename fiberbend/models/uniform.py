@@ -22,6 +22,12 @@ if TYPE_CHECKING:
     from fem.scene import Scene
 
 
+_HELD_HELIX = (
+    "no curvature keeps the line y = 0 straight, about which a winding with a hand would turn the "
+    "body: expected a winding that is its own mirror image, or no effect straight"
+)
+
+
 class UniformModel(MeshedModel):
     """Curvature and stretch, and twist where the winding has a hand, are global unknowns."""
 
@@ -46,7 +52,7 @@ class UniformModel(MeshedModel):
         return Observables(
             None,
             CurvatureAngle(body),
-            lambda: UniformGauge(scene, actuator),
+            lambda: UniformGauge(body, scene.natural, actuator),
             lambda: UniformRod(body, case.actuator.cap),
         )
 
@@ -85,6 +91,10 @@ def not_uniform(case: Case) -> Iterator[Objection]:
         yield "effects", "nothing bends it uniformly but a pressure"
     elif case.straight and case.inflation.angle is not None:
         yield "effects", "kept straight, it reaches no angle: expected a pressure by its value"
+    if twists(case):
+        for index, effect in enumerate(case.effects):
+            if effect.keeps_straight():
+                yield f"effects.{index}.{effect.name}", _HELD_HELIX
     if case.mesh.element == "tetrahedron":
         yield "mesh.element", "tetrahedra are for a body"
 

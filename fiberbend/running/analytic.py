@@ -119,6 +119,7 @@ def _row(step: int, pressure: float, angle: float, case: Case, model: Hemicircle
         col.TIP_Z: float(along),
         col.VOLUME: volume,
         col.ITERATIONS: 0,
+        col.TIP_X: 0.0,
         col.UNIFORM_ANGLE: math.degrees(angle),
     }
 

@@ -72,16 +72,17 @@ class Recorder:
 
     def _row(self, step: int, state: State, outcome: Outcome | None) -> dict[str, Any]:
         scene = self._scene
-        tip = self._gauge.tip(state)
+        x, y, z = self._gauge.tip(state)
         row: dict[str, Any] = {
             col.STEP: step,
             col.PRESSURE: 1e3 * state.scalars.get("pressure", 0.0),
             col.ANGLE: float(np.rad2deg(state.measures["control"])),
-            col.TIP_Y: tip[0],
-            col.TIP_Z: tip[1],
+            col.TIP_Y: y,
+            col.TIP_Z: z,
         }
         if "pressure" in state.scalars:
             row[col.VOLUME] = self._factor * state.measures["conjugate pressure"]
+        row[col.TIP_X] = x
         row |= self._gauge.columns(state)
         row[col.ITERATIONS] = outcome.iterations if outcome else 0
         row[col.DET_F] = outcome.least_det_f if outcome else 1.0

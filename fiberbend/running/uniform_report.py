@@ -11,6 +11,7 @@ import numpy as np
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.running.folder import RunFolder
+from fiberbend.states.bend import Bend
 from fiberbend.states.recovery import NodalFields, recover
 from fiberbend.states.snapshot import ModelMesh, Snapshot, Write
 from fiberbend.states.stack import (
@@ -121,7 +122,7 @@ def draw_bent(
     model = "section" if _is_section(model_mesh) else "cell"
     page = side_by_side.page(
         title=f"{model_mesh.title}: {model} model, caps not modelled",
-        captions=[_caption(state, stack) for state in snapshots],
+        captions=[_caption(state, model_mesh, stack) for state in snapshots],
         values=[side_by_side.skin.interpolate(strain) for strain in strains],
         limits=(0.0, nice_above(high)),
         label="maximum principal logarithmic strain",
@@ -130,10 +131,11 @@ def draw_bent(
     write("bent.png", page.save)
 
 
-def _caption(state: Snapshot, stack: Stack) -> str:
+def _caption(state: Snapshot, model_mesh: ModelMesh, stack: Stack) -> str:
     if state.twist == 0:
         return state.caption
-    twist = np.rad2deg(state.twist * stack.model_mesh.mesh.nodes[-1, 2])
+    rate = Bend.of(state, model_mesh.mesh).line.rates[2]
+    twist = np.rad2deg(rate * stack.model_mesh.mesh.nodes[-1, 2])
     return f"{state.caption},  twist {twist:.0f}°".replace("-", "−")
 
 
@@ -164,5 +166,5 @@ def _in_space(
     nodes = split_alike(model_mesh.mesh)
     return (
         [stack.snapshot(model_mesh, state) for state in snapshots],
-        [stack.fields(nodes, *pair) for pair in zip(fields, snapshots, strict=True)],
+        [stack.fields(model_mesh, nodes, *pair) for pair in zip(fields, snapshots, strict=True)],
     )

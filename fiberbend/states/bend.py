@@ -3,71 +3,79 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 
 import numpy as np
 
-from analytic.path import screw
+from analytic.path import CentreLine
 from fiberbend.states.snapshot import Snapshot
-from geometry.mesh.data import Floats
+from geometry.mesh.centroid import section_fit
+from geometry.mesh.data import Floats, MeshData
+
+_ORIGIN = (0.0, 0.0, 0.0)
 
 
 @dataclasses.dataclass(frozen=True)
 class Bend:
-    """The axis of a body that bends and twists uniformly.
+    """A body that bends and twists uniformly from a clamped root.
 
-    In the frame of the station Z the axis advances along z at the rate λ0, and the frame turns at
-    the rate ω = (k, 0, τ). It is at rest at Z = 0, in the origin.
+    In the frame of the station Z the frame's origin advances along z at the rate λ0, and the frame
+    turns at the rate ω = (k, 0, τ). The clamp holds the first section across z, with its centroid
+    where it is at rest. Under twist and bend a section is not across the line of the centroids:
+    the line leaves the clamp as far from z as the body is sheared.
 
     Attributes:
         curvature: k, 1/mm; positive turns z toward −y.
-        stretch: λ0 of the axis.
+        stretch: λ0 of the frame's origin.
         twist: τ, rad/mm.
+        centre: the section's centroid in the turning frame, mm.
+        height: y of the centroid at rest, mm.
+        a_x: what has become of the section's axis x, in the turning frame.
+        a_y: of its axis y.
     """
 
     curvature: float
     stretch: float
     twist: float = 0.0
+    centre: tuple[float, float, float] = _ORIGIN
+    height: float = 0.0
+    a_x: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    a_y: tuple[float, float, float] = (0.0, 1.0, 0.0)
 
     @classmethod
-    def of(cls, state: Snapshot) -> Bend:
-        """The bend of a state."""
-        return cls(state.curvature, state.stretch, state.twist)
+    def of(cls, state: Snapshot, mesh: MeshData) -> Bend:
+        """The bend of a state of a section or a slice."""
+        rows, kept, rest = section_fit(mesh)
+        fit = rows @ in_frame(mesh.nodes, state.displacement) * kept
+        centre, a_x, a_y = ((float(x), float(y), float(z)) for x, y, z in fit)
+        how = (state.curvature, state.stretch, state.twist)
+        return cls(*how, centre, float(rest[1]), a_x, a_y)
 
-    @property
-    def spin(self) -> Floats:
-        """ω, (3,), 1/mm."""
-        return np.array([self.curvature, 0.0, self.twist])
+    @functools.cached_property
+    def line(self) -> CentreLine:
+        """The line of the centroids."""
+        spin = np.array([self.curvature, 0.0, self.twist])
+        section = (np.array(vector) for vector in (self.centre, self.a_x, self.a_y))
+        return CentreLine.of(spin, self.stretch, *section)
 
     @property
     def is_rest(self) -> bool:
         """The turning frame is that of space: neither bent nor stretched nor twisted."""
-        return self.stretch == 1.0 and not self.spin.any()
+        return self.stretch == 1.0 and not self.line.spin.any()
 
-    def advance(self, position: Floats) -> Floats:
-        """∂x/∂Z of material that keeps its place in the frame, λ0 e_z + ω × x'.
-
-        Args:
-            position: x' in the turning frame, (..., 3), mm.
-
-        Returns:
-            In the turning frame, (..., 3).
-        """
-        along: Floats = np.cross(self.spin, position) + np.array([0.0, 0.0, self.stretch])
-        return along
-
-    def frames(self, z: Floats) -> tuple[Floats, Floats]:
-        """Rotation R(Z) = exp(Z ω×) and centre c(Z) = ∫ R λ0 e_z dZ of stations.
+    def rotations(self, z: Floats) -> Floats:
+        """Rotations from the turning frame to space of stations.
 
         Args:
             z: material positions Z along the axis, (n,), mm.
 
         Returns:
-            Rotations (n, 3, 3) and centres (n, 3), mm.
+            Array (n, 3, 3).
         """
-        return screw(z, self.spin, self.stretch)
+        return self.line.turning(z)[0]
 
     def place(self, position: Floats, z: Floats) -> Floats:
-        """Positions in space, c(Z) + R(Z) x'.
+        """Positions in space.
 
         Args:
             position: x' in the turning frame, (n, 3), mm.
@@ -76,8 +84,9 @@ class Bend:
         Returns:
             Array (n, 3), mm.
         """
-        rotation, centre = self.frames(z)
-        placed: Floats = centre + np.einsum("nij,nj->ni", rotation, position)
+        rotation, place = self.line.turning(z)
+        placed: Floats = place + np.einsum("nij,nj->ni", rotation, position - self.line.centre)
+        placed[:, 1] += self.height
         return placed
 
 

@@ -146,10 +146,10 @@ def deformation_gradients(mesh: MeshData, state: Snapshot, points: Floats) -> Fl
     slope = slopes(state.displacement[mesh.cells]) @ to_reference
     f = np.tile(np.eye(3), (len(mesh.cells), len(points), 1, 1))
     f[..., : slope.shape[2], : slope.shape[3]] += slope
-    bend = Bend.of(state)
+    bend = Bend(state.curvature, state.stretch, state.twist)
     if not bend.is_rest:
         position = values @ in_frame(mesh.nodes, state.displacement)[mesh.cells]
-        f[..., 2] += bend.advance(position) - [0.0, 0.0, 1.0]
+        f[..., 2] += bend.line.advance(position) - [0.0, 0.0, 1.0]
     return f
 
 

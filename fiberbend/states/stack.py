@@ -57,15 +57,18 @@ class Stack:
             step=state.step,
             pressure_kpa=state.pressure_kpa,
             angle_deg=state.angle_deg,
-            displacement=Bend.of(state).place(position, mesh.nodes[:, 2]) - mesh.nodes,
+            displacement=Bend.of(state, base.mesh).place(position, mesh.nodes[:, 2]) - mesh.nodes,
             multiplier=self.at_cells(state.multiplier),
             fiber_force=None if force is None or self.segment is None else force[self.segment],
         )
 
-    def fields(self, nodes: SplitNodes, fields: NodalFields, state: Snapshot) -> NodalFields:
+    def fields(
+        self, base: ModelMesh, nodes: SplitNodes, fields: NodalFields, state: Snapshot
+    ) -> NodalFields:
         """Recovered fields of the section or slice as those of the body, stress turned with it.
 
         Args:
+            base: the section or slice.
             nodes: `split_alike` of the section or slice.
             fields: its fields.
             state: its state.
@@ -73,9 +76,8 @@ class Stack:
         copies = self._copies
         source = np.empty(len(copies.node), dtype=np.int64)
         source[copies.cells.ravel()] = nodes.cells[self.cell[:, None], self.order].ravel()
-        rotation = (
-            Bend.of(state).frames(self.model_mesh.mesh.nodes[:, 2])[0] * self.sign[:, None, :]
-        )
+        bend, z = Bend.of(state, base.mesh), self.model_mesh.mesh.nodes[:, 2]
+        rotation = bend.rotations(z) * self.sign[:, None, :]
         rotation = rotation[copies.node]
         stress = fields.cauchy[source]
         # one side alone leaves some of the shear that the other one takes away

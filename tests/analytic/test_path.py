@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from analytic.path import arc, cross_matrix, screw, tip
+from analytic.path import CentreLine, arc, cross_matrix, screw, tip
 
 Array = npt.NDArray[np.float64]
 RIGHT = math.pi / 2
@@ -125,3 +125,62 @@ def test_screw_of_a_helix_keeps_its_axis() -> None:
 def test_cross_matrix_is_the_cross_product() -> None:
     a, b = np.array([1.0, -2.0, 3.0]), np.array([0.3, 5.0, -4.0])
     assert cross_matrix(a) @ b == pytest.approx(np.cross(a, b))
+
+
+def _line(k: float, twist: float, stretch: float, centre: Array) -> CentreLine:
+    """Of a section that is turned and sheared a little in its frame."""
+    a_x, a_y = np.array([1.1, 0.02, -0.06]), np.array([-0.01, 0.9, 0.03])
+    return CentreLine.of(np.array([k, 0.0, twist]), stretch, centre, a_x, a_y)
+
+
+def test_in_the_plane_every_line_has_the_same_curvature() -> None:
+    for height in (-3.0, 0.0, 5.0):
+        line = _line(0.02, 0.0, 1.1, np.array([0.0, height, 0.0]))
+        assert line.rates == pytest.approx([0.02, 0.0, 0.0], abs=1e-16)
+        assert line.stretch == pytest.approx(1.1 + 0.02 * height)
+
+
+@pytest.mark.parametrize("hand", [1, -1])
+def test_a_straight_twisted_tube_does_not_bend(hand: int) -> None:
+    # twisted by ψ about an axis r above the frame's origin, whose own line is a helix: its frame
+    # leans by atan(ψ r/λ) and has both curvature and twist
+    turn, radius, stretch = hand * 0.036, 8.35, 1.08
+    lean = np.arctan2(turn * radius, stretch)
+    spin = turn * np.array([-np.sin(lean), 0.0, np.cos(lean)])
+    line = _line(spin[0], spin[2], np.hypot(turn * radius, stretch), np.array([0.0, radius, 0.0]))
+    assert line.rates == pytest.approx([0.0, 0.0, turn], abs=1e-15)
+    assert line.stretch == pytest.approx(stretch, rel=1e-14)
+
+
+def test_rates_are_those_of_the_curve() -> None:
+    # Frenet: curvature of the placed line, and the turn of the sections about it
+    line = _line(0.03, -0.05, 1.07, np.array([0.4, 6.0, -0.3]))
+    z, step = np.array([11.0]), 1e-3
+    at = [line.sections(z + i * step) for i in (-1, 0, 1)]
+    speed = (at[2][1] - at[0][1])[0] / (2 * step)
+    turn = (at[2][1] - 2 * at[1][1] + at[0][1])[0] / step**2
+    assert np.linalg.norm(speed) == pytest.approx(line.stretch, rel=1e-6)
+    tangent = speed / np.linalg.norm(speed)
+    bend = np.linalg.norm(np.cross(tangent, turn)) / line.stretch
+    assert bend == pytest.approx(np.hypot(*line.rates[:2]), rel=1e-5)
+    spin = (at[2][0] - at[0][0])[0] @ at[1][0][0].T / (2 * step)
+    omega = np.array([spin[2, 1], spin[0, 2], spin[1, 0]])
+    assert omega @ tangent == pytest.approx(line.rates[2], rel=1e-5)
+    # the pitch of the screw: what turns and what advances along it are the frame's own
+    assert np.linalg.norm(line.rates) == pytest.approx(np.linalg.norm(line.spin))
+    assert line.rates[2] * line.stretch == pytest.approx(-0.05 * 1.07)
+
+
+def test_the_clamp_holds_the_first_section() -> None:
+    line = _line(0.03, -0.05, 1.07, np.array([0.4, 6.0, -0.3]))
+    rotation, place = line.sections(np.array([0.0]))
+    assert rotation[0] == pytest.approx(np.eye(3), abs=1e-14)
+    assert place[0] == pytest.approx(np.zeros(3), abs=1e-14)
+
+
+def test_angle_of_the_image_is_the_mirrored_one() -> None:
+    # x → −x of a section that its plane does not mirror: same bend, other side, other twist
+    line = _line(0.03, -0.05, 1.07, np.array([0.4, 6.0, -0.3]))
+    image = _line(0.03, 0.05, 1.07, np.array([-0.4, 6.0, -0.3]))
+    assert image.rates == pytest.approx(line.rates * [1.0, -1.0, -1.0], abs=1e-15)
+    assert image.stretch == pytest.approx(line.stretch)

@@ -40,7 +40,7 @@ def test_a_part_in_braces_stands_for_a_name() -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "model"), [("colour", "body"), ("twist_deg", "body"), ("min_det_F", "analytic")]
+    ("key", "model"), [("colour", "body"), ("floor_stretch", "body"), ("min_det_F", "analytic")]
 )
 def test_what_the_table_does_not_have_is_refused(key: str, model: str) -> None:
     with pytest.raises(KeyError, match=key):

@@ -27,8 +27,9 @@ from fem.march.march import (
     Rules,
     State,
 )
+from fem.results.centre_line import BendingAngle, CentreLine
 from fem.results.diagnosis import Diagnosis
-from fem.results.measures import BendingAngle, Tip
+from fem.results.measures import Tip
 from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome, Settings
 from geometry.actuator import Actuator
@@ -190,7 +191,7 @@ def bender(
     scene = Scene(domain, actuator_effects(domain))
     newton = wrap(Newton(scene, domain.comm, settings or Settings()))
     frames = Frames(scene.body)
-    angle = BendingAngle(scene.body, frames)
+    angle = BendingAngle(CentreLine(scene.body))
     keeper = Keeper(scene)
     march = March(
         scene,

@@ -17,7 +17,7 @@ from fem.kinematics.cell import Cell
 from fem.kinematics.domain import Domain
 from fem.kinematics.kinematics import Kinematics
 from fem.kinematics.section import Section
-from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
+from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST, CurvatureAngle, Uniform
 from fem.scene import Scene
 from geometry.bodies.extrude import hexahedral_slice, section_quadrilaterals
 from geometry.sections.size import MeshSize
@@ -186,3 +186,59 @@ def test_volume_of_a_cylinder_that_twists_about_another_axis(model: str) -> None
     moved = scene.conjugate("pressure")
     scene.set(np.zeros(scene.body.owned))
     assert moved == pytest.approx(scene.conjugate("pressure"), rel=1e-12)
+
+
+@pytest.mark.parametrize("twisted", [False, True])
+@pytest.mark.parametrize("model", ["section", "cell", "pitch"])
+def test_angle_is_differentiated_in_fields_and_scalars(model: str, twisted: bool) -> None:
+    # what Newton borders with where an angle is given; a whole pitch has tied ends
+    if model == "pitch":
+        size = MeshSize(section=1, half=False)
+        body: Uniform = Cell(
+            Domain(hexahedral_slice(SHORT, size, PITCH, 2)), ["u"], SHORT.length, twisted
+        )
+    else:
+        kind = Section if model == "section" else Cell
+        body = kind(_domain(model), ["u"], SHORT.length, twisted)
+    angle, w, random = CurvatureAngle(body), body.w.x.array, np.random.default_rng(2)
+    state = {CURVATURE: 0.03, STRETCH: 1.1} | ({TWIST: -0.05} if twisted else {})
+    for name, value in state.items():
+        body.scalars[name].value = value
+    follow, lead = body.ties
+
+    def put(values: Floats) -> None:
+        w[:] = values
+        w[follow] = w[lead]
+
+    base, step = random.uniform(-0.5, 0.5, len(w)), random.uniform(-1, 1, len(w))
+    put(base)
+    row = angle.row()
+    assert np.all(row[follow] == 0)
+    slope = {name: angle.slope(name) for name in state}
+    found = 0.0
+    for k, weight in STENCIL:
+        for sign in (1, -1):
+            put(base + sign * k * 1e-3 * step)
+            found += sign * weight * angle.value() / 1e-3
+    assert float(row @ step) == pytest.approx(found, rel=1e-9, abs=1e-12)
+    assert bool(np.any(row)) == twisted
+    put(base)
+    for name, value in state.items():
+        found = 0.0
+        for k, weight in STENCIL:
+            for sign in (1, -1):
+                body.scalars[name].value = value + sign * k * 1e-4
+                found += sign * weight * angle.value() / 1e-4
+        body.scalars[name].value = value
+        assert slope[name] == pytest.approx(found, rel=1e-8, abs=1e-9), name
+    assert angle.slope("pressure") == 0.0
+
+
+def test_in_its_plane_the_angle_is_that_of_every_line() -> None:
+    body = Section(_domain("section"), ["u"], SHORT.length)
+    body.scalars[CURVATURE].value, body.scalars[STRETCH].value = 0.04, 0.97
+    body.w.x.array[:] = np.random.default_rng(1).uniform(-0.5, 0.5, len(body.w.x.array))
+    line = body.centre_line()
+    assert CurvatureAngle(body).value() == 0.04 * SHORT.length
+    assert line.rates == pytest.approx([0.04, 0.0, 0.0], abs=1e-15)
+    assert line.stretch == pytest.approx(0.97 + 0.04 * line.centre[1])

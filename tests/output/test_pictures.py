@@ -175,6 +175,33 @@ def test_plots(angles: list[float], reason: str | None, tmp_path: Path) -> None:
     assert all(is_drawn(tmp_path / name) for name in names)
 
 
+@pytest.mark.parametrize("reason", [None, "no convergence at 3 kPa"])
+def test_a_path_that_leaves_its_plane_is_drawn_in_space(
+    reason: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from matplotlib.projections import get_projection_class
+
+    drawn: list[Any] = []
+    in_space_axes: Any = get_projection_class("3d")
+    plot = in_space_axes.plot
+
+    def note(axes: Any, *points: Any, **how: Any) -> Any:
+        drawn.append(points)
+        return plot(axes, *points, **how)
+
+    monkeypatch.setattr(in_space_axes, "plot", note)
+    rows = history([0.0, 30, 90, 90, 200, 360])
+    # round-off is no way out of the plane
+    for aside, in_space in ((1e-9, False), (5.0, True)):
+        path: list[col.Row] = [{**row, "tip_x_mm": aside * row["step"]} for row in rows]
+        draw_plots(path, into(tmp_path), [], "Title", reason)
+        assert is_drawn(tmp_path / "tip_path.png")
+        assert bool(drawn) == in_space
+    z, x, y = next(points[:3] for points in drawn if len(points[0]) == len(rows))
+    for values, axis in ((x, "x"), (y, "y"), (z, "z")):
+        assert list(values) == [row[f"tip_{axis}_mm"] for row in path]
+
+
 def test_nothing_converged_draws_nothing(tmp_path: Path) -> None:
     assert draw_plots([], into(tmp_path)) == []
     with pytest.raises(ValueError, match="tip_force_N"):

@@ -60,11 +60,15 @@ def test_the_axis_is_the_arc_of_the_analytic_model(degrees: float) -> None:
 
 def test_the_frame_moves_as_the_kinematics_says() -> None:
     # dx/dZ = R (λ0 e_z + ω × x'), by central differences, with a twist
-    bend, position, step = Bend(0.03, 1.1, -0.02), np.array([[3.0, -2.0, 0.5]]), 1e-4
+    bend, position, step = (
+        Bend(0.03, 1.1, -0.02, (0.1, 4.0, 0.2), 5.0),
+        np.array([[3.0, -2.0, 0.5]]),
+        1e-4,
+    )
     z = np.array([17.0])
     slope = (bend.place(position, z + step) - bend.place(position, z - step)) / (2 * step)
-    rotation = bend.frames(z)[0][0]
-    assert slope[0] == pytest.approx(rotation @ bend.advance(position)[0], abs=1e-8)
+    rotation = bend.rotations(z)[0]
+    assert slope[0] == pytest.approx(rotation @ bend.line.advance(position)[0], abs=1e-8)
     assert rotation @ rotation.T == pytest.approx(np.eye(3))
 
 
@@ -148,7 +152,7 @@ def test_repeated_slices_are_the_long_body(half: bool) -> None:
     moved = stack.snapshot(scene, state(scene, move=wave))
     # one body in one piece: the same point of every pitch lies on the arc
     pitch = 2 * PITCH / 2 if half else PITCH
-    mesh, bend = stack.model_mesh.mesh, Bend.of(state(scene))
+    mesh, bend = stack.model_mesh.mesh, Bend.of(state(scene, move=wave), scene.mesh)
     placed = mesh.nodes + moved.displacement
     own = mesh.nodes.copy()
     own[:, 2] = 0.0
@@ -162,7 +166,7 @@ def test_mirrored_slices_recover_alike() -> None:
     bent = state(scene, 60.0, 0.98, wave)
     nodes = split_alike(scene.mesh)
     stack = repeated(scene, 4)
-    spread = stack.fields(nodes, recover(scene, bent, nodes), bent)
+    spread = stack.fields(scene, nodes, recover(scene, bent, nodes), bent)
     direct = recover(stack.model_mesh, stack.snapshot(scene, bent))
     inner = _inside(stack.model_mesh.mesh)
     # what second-order interpolation of the arc leaves
@@ -182,7 +186,7 @@ def test_swept_section_recovers_alike() -> None:
     bent = state(scene, 90.0, 0.98)
     nodes = split_alike(scene.mesh)
     stack = extruded(scene, SHORT.length, 24)
-    spread = stack.fields(nodes, recover(scene, bent, nodes), bent)
+    spread = stack.fields(scene, nodes, recover(scene, bent, nodes), bent)
     direct = recover(stack.model_mesh, stack.snapshot(scene, bent))
     assert spread.stretches == pytest.approx(direct.stretches, rel=2e-3)
     assert spread.cauchy == pytest.approx(direct.cauchy, abs=5e-3 * np.abs(direct.cauchy).max())
@@ -199,7 +203,7 @@ def test_turned_half_completes_a_twisted_section() -> None:
     assert region_volumes(mesh) == pytest.approx({name: 2 * v for name, v in volumes.items()})
     placed = mesh.nodes + stack.snapshot(scene, twisted).displacement
     own = np.column_stack([mesh.nodes[:, :2], 0.05 * mesh.nodes[:, 0]])
-    expected = Bend.of(twisted).place(own, mesh.nodes[:, 2])
+    expected = Bend.of(twisted, scene.mesh).place(own, mesh.nodes[:, 2])
     assert placed == pytest.approx(expected, abs=1e-9)
 
 

@@ -47,3 +47,15 @@ def test_a_smeared_winding_makes_a_cell_a_section() -> None:
     plane = cell(winding=smeared, model="section")
     for column in COLUMNS:
         assert slab.last(column) == pytest.approx(plane.last(column), rel=1e-8)
+
+
+def test_under_twist_too_with_its_tip() -> None:
+    # a whole pitch between tied ends, beside half a section that half a turn about y completes
+    slab, plane = (
+        cell("single-helix-left", winding={"as": "smeared"}, model=model)
+        for model in ("cell", "section")
+    )
+    assert plane.last("twist_deg") > 1
+    for column in (*COLUMNS, "twist_deg", "floor_stretch", "tip_x_mm", "tip_y_mm"):
+        assert slab.last(column) == pytest.approx(plane.last(column), rel=1e-7), column
+    assert slab.last("side_angle_deg") == pytest.approx(0, abs=1e-6)
