@@ -93,8 +93,6 @@ class PressureEffect(Effect):
             first=requests.first if by_value else None,
             largest=requests.largest if by_value else None,
             stops=requests.at_pressures if by_value else (),
-            at=requests.at_angles,
-            until=requests.stop_at_angle,
         )
         return Built((ChamberPressure(),), (ramp,))
 

@@ -173,4 +173,4 @@ def expected_angle(case: Case) -> float | None:
 
     low, high = curve.angles
     angle = first_angle(curve.pressure, load.to, high if load.to > 0 else low).angle
-    return angle if stop is None or abs(stop) > abs(angle) else stop
+    return stop if stop is not None and stop * angle > 0 and abs(stop) < abs(angle) else angle
