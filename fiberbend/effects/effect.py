@@ -171,6 +171,10 @@ class Effect(Spec):
         """Why x = 0 is no mirror plane of it; empty where it is one."""
         return f"{self.name} is not known to be mirror-symmetric"
 
+    def bends(self) -> bool:
+        """Whether it may bend an actuator that is alike above and below."""
+        return True
+
     # --- its settings --------------------------------------------------------------------------
 
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
