@@ -115,7 +115,7 @@ class March:
                 break
             position.ramp += 1
             position.increment = position.begin = position.first = None
-            position.path_following, position.toward = False, 0.0
+            position.path_following, position.toward, position.nearest = False, 0.0, None
         return position.report
 
     # --- what hooks may change -----------------------------------------------------------------
@@ -158,7 +158,7 @@ class March:
         sign = self.position.toward or np.sign(span)
         end = sign * np.inf
         if self.position.toward:
-            end = search_end(ramp, span, self.states[-1], self.rest, sign, self.rules)
+            end = search_end(ramp, span, self.position, self.rest, self.rules)
             return Way("conjugate", key, sign, end, volume, (), self.rules.swell * volume)
         limit = self._limit(ramp)
         if limit is not None and now.get(measure("rate", ramp.scalar), 1.0) < 0:

@@ -21,6 +21,7 @@ class Position:
             conjugate (volume control), which grows also where the value falls.
         toward: sign of the conjugate's way where a ramp of the control quantity has turned to it;
             0 elsewhere.
+        nearest: how near the control quantity has come to the target on that way, rad.
         report: what happened so far.
     """
 
@@ -31,4 +32,5 @@ class Position:
     ramp: int = 0
     path_following: bool = False
     toward: float = 0.0
+    nearest: float | None = None
     report: Report = dataclasses.field(default_factory=Report)

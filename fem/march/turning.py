@@ -15,6 +15,7 @@ import numpy as np
 
 from fem.march.equilibrium import Equilibrium
 from fem.march.limit_points import softens
+from fem.march.position import Position
 from fem.march.records import Ramp, Rules, State, measure
 from fem.solver.newton import Outcome
 
@@ -119,24 +120,23 @@ def _probe(
     return None, size
 
 
-def search_end(
-    ramp: Ramp, span: float, state: State, rest: State, sign: float, rules: Rules
-) -> float:
+def search_end(ramp: Ramp, span: float, position: Position, rest: State, rules: Rules) -> float:
     """The conjugate at which a control quantity is looked for no longer.
 
     Args:
         ramp: driven by the control quantity.
         span: all of its way.
-        state: the last state; there the search ends where it has gone astray.
+        position: where the march stands; there the search ends where the control quantity has gone
+            astray. It is told how near that has come.
         rest: the state at rest.
-        sign: of the way of the conjugate.
         rules: incrementation.
     """
-    key = measure("conjugate", ramp.scalar)
-    to_go = np.sign(span) * (ramp.target - state.measures["control"])
-    if to_go > abs(span) + rules.astray:
-        return state.measures[key]
-    return float(rest.measures[key] * (rules.search if sign > 0 else 1 / rules.beyond))
+    key, now = measure("conjugate", ramp.scalar), position.states[-1].measures
+    to_go = float(np.sign(span) * (ramp.target - now["control"]))
+    position.nearest = to_go if position.nearest is None else min(position.nearest, to_go)
+    if to_go > position.nearest + rules.astray:
+        return now[key]
+    return rest.measures[key] * (rules.search if position.toward > 0 else 1 / rules.beyond)
 
 
 def first_size(
