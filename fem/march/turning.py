@@ -27,6 +27,9 @@ by a first increment: wound actuators need 0.02 to 0.3, sections without a windi
 PROBE = 0.1
 """Change of the conjugate at which is seen where the control quantity moves, as a part of it."""
 HALVINGS = 3
+NEARER = 4.0
+"""Where that leads the other way, both ways, a probe so many times nearer shows whether the target
+lies within as many times its own way."""
 UNMOVED = 1e-7
 """Change of the control quantity (rad) by round-off: asymmetric sections have 1e-4 and more."""
 STILL = (
@@ -86,29 +89,35 @@ def toward(
         Sign of the way of the conjugate, 0 where nothing moves the control quantity; and a first
         increment.
     """
-    gains = {}
-    sizes = {}
-    aim = np.sign(ramp.target - base.measures["control"])
-    for sign in (1.0, -1.0):
-        state, size = _probe(find, equilibrium, seed, base, ramp, sign)
-        if state is None:
-            continue
-        gain = float(aim * (state.measures["control"] - base.measures["control"]))
-        gains[sign], sizes[sign] = gain, size
-        if gain > UNMOVED:
-            return sign, size
-    if gains and all(abs(gain) <= UNMOVED for gain in gains.values()):
+    begin = base.measures["control"]
+    far = PROBE * abs(base.measures[measure("conjugate", ramp.scalar)])
+    found = {}
+    # where it turns back soon, a small change may do
+    for first, least in ((far, UNMOVED), (far / NEARER, abs(ramp.target - begin) / NEARER)):
+        for sign in (1.0, -1.0):
+            state, size = _probe(find, equilibrium, seed, base, ramp, sign, first)
+            if state is not None:
+                gain = (state.measures["control"] - begin) * np.sign(ramp.target - begin)
+                if gain > max(least, UNMOVED):
+                    return sign, size
+                found[sign, first] = gain, size
+    if found and all(abs(gain) <= UNMOVED for gain, _ in found.values()):
         return 0.0, 0.0
-    return 1.0, sizes.get(1.0, PROBE * abs(base.measures[measure("conjugate", ramp.scalar)]))
+    return 1.0, found.get((1.0, far), (0.0, far))[1]
 
 
 def _probe(
-    find: Find, equilibrium: Equilibrium, seed: State, base: State, ramp: Ramp, sign: float
+    find: Find,
+    equilibrium: Equilibrium,
+    seed: State,
+    base: State,
+    ramp: Ramp,
+    sign: float,
+    size: float,
 ) -> tuple[State | None, float]:
     """A state some way off the base, and how far its conjugate is; None where none is found."""
     key = measure("conjugate", ramp.scalar)
     now = base.measures[key]
-    size = PROBE * abs(now)
     for _ in range(HALVINGS + 1):
         aim = now + sign * size
         outcome = find(ramp.scalar, "conjugate", aim, ([seed, base], key, aim))
