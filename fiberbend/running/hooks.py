@@ -178,7 +178,7 @@ def unmet(case: Case, assembly: Assembly, rows: Sequence[dict[str, Any]]) -> lis
     """
     report = assembly.march.report
     missed = not_reached(case, report, rows)
-    lines = [f"asked for and not reached: {', '.join(missed)}"] if missed else []
+    lines = [messages.missed(missed)] if missed else []
     later = [ramp.scalar for ramp in assembly.ramps[assembly.march.position.ramp + 1 :]]
     if report.ended_at is not None and later:
         end = f"{np.rad2deg(report.ended_at):.6g}°"

@@ -98,6 +98,11 @@ def stopped(report: Report, ramp: Ramp, beyond: float) -> str:
     return f"{amount(ramp.scalar, ramp.target)} is not reached: {remark(limit)}; {followed}"
 
 
+def missed(requests: Sequence[str]) -> str:
+    """A warning of what a case asks for and its run has not met, with units."""
+    return f"asked for and not reached: {', '.join(requests)}"
+
+
 def course(rows: Sequence[col.Row]) -> str:
     """How far the loads have bent an actuator."""
     angles = [row[col.ANGLE] for row in rows]
