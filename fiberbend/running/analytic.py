@@ -55,8 +55,9 @@ def run_analytic(
         raise NotImplementedError(f"model {kind.name} has neither elements nor a closed form")
     progress.phase("solve")
     model = analytic_curves(case)[kind.line]
+    missed: list[str] = []
     if case.straight:
-        rows, status, reason, missed = _blocked_rows(case, model), "converged", "", []
+        rows, status, reason = _blocked_rows(case, model), "converged", ""
     else:
         rows, status, reason, missed = _free_rows(case, model)
     check = crosscheck(case, kind, rows, section, read_measured(case))
