@@ -22,15 +22,8 @@ from fem.march.position import Position
 from fem.march.predictor import Predictor, distinct, lagrange
 from fem.march.records import Causes, Critical, Ramp, Report, Rules, State, measure
 from fem.march.selfcontact import Rod, first_contact
-from fem.march.turning import (
-    STILL,
-    first_size,
-    leads_nowhere,
-    search_end,
-    slackens,
-    toward,
-)
-from fem.march.ways import MISSED, Requests, Way, done
+from fem.march.turning import STILL, first_size, leads_nowhere, search_end, slackens, toward
+from fem.march.ways import MISSED, Requests, Way
 from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome
 from fem.solver.side_conditions import Functional
@@ -111,7 +104,10 @@ class March:
         for ramp in ramps[position.ramp :]:
             for hook in self._called:
                 hook.before_ramp(self, ramp)
-            if not self._ramp(ramp) or position.report.ended_at is not None:
+            if not self._ramp(ramp):
+                break
+            if self._requests(ramp).stops(self.states[-1]):
+                position.report.ended_at = ramp.until
                 break
             position.ramp += 1
             position.increment = position.begin = position.first = None
@@ -179,16 +175,13 @@ class March:
         if position.begin is None:
             position.begin = self.states[-1].measures[ramp.key]
         span = ramp.target - position.begin
-        if done(ramp, span, self.states[-1], self.report):
+        requests = self._requests(ramp)
+        if requests.done(span, self.states[-1]):
             return True
         if position.increment is None:
             base = self.states[-1]
             seed = self.equilibrium.perturbed(base, ramp.scalar)
-            size = (
-                abs(ramp.first)
-                if ramp.first
-                else first_size(seed, base, ramp, abs(span), self.rules, self._guided)
-            )
+            size = first_size(seed, base, ramp, abs(span), self.rules, self._guided)
             position.states = [seed, base]
             position.increment = min(size, abs(ramp.largest or np.inf), abs(span))
             if leads_nowhere(seed, base, ramp, self.rules):
@@ -197,14 +190,13 @@ class March:
                 position.path_following = True
                 if not position.toward:
                     return self._end(STILL)
-        requests = Requests(ramp, self.equilibrium.newton.settings.tolerance)
         # a load that hardly bends begins with tiny increments of the angle
         first = position.first = position.first or position.increment
         failures = 0
         slow: Outcome | None = None
         while True:
             state = self.states[-1]
-            if done(ramp, span, self.states[-1], self.report):
+            if requests.done(span, state):
                 return True
             way = self._way(ramp, span)
             now = state.measures[way.key]
@@ -271,6 +263,10 @@ class March:
             position.increment = size
             for hook in self._called:
                 hook.after_step(self, new, outcome)
+
+    def _requests(self, ramp: Ramp) -> Requests:
+        """What a ramp is to hit."""
+        return Requests(ramp, self.equilibrium.newton.settings.tolerance)
 
     def _attempt(
         self, ramp: Ramp, span: float, kind: str, aim: float

@@ -151,7 +151,7 @@ def search_end(ramp: Ramp, span: float, position: Position, rest: State, rules: 
 def first_size(
     seed: State, base: State, ramp: Ramp, span: float, rules: Rules, guided: bool
 ) -> float:
-    """First increment of a ramp, by the linear response.
+    """First increment of a ramp, as it is given or by the linear response.
 
     It changes the control quantity by `first_turn`, a twentieth of the load where nothing turns,
     and changes the conjugate by no more than `swell`, unless a guide knows the way.
@@ -164,6 +164,8 @@ def first_size(
         rules: incrementation.
         guided: a guide knows the way.
     """
+    if ramp.first:
+        return abs(ramp.first)
     now = base.measures
     change = {name: abs(value - now[name]) for name, value in seed.measures.items()}
     driven, turned = change[ramp.key], change.get("control", 0.0)

@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy as np
 
-from fem.march.records import Ramp, Report, State
+from fem.march.records import Ramp, State
 
 NEAR = 0.02
 """An increment that would end so near before a value that is asked for hits it (rad, an angle)."""
@@ -59,6 +59,7 @@ class Requests:
     """
 
     def __init__(self, ramp: Ramp, tolerance: float) -> None:
+        self._ramp = ramp
         goals = {*ramp.at, *([] if ramp.until is None else [ramp.until])}
         if ramp.drive == "control":
             goals.add(ramp.target)
@@ -117,6 +118,26 @@ class Requests:
         here = state.measures.get("control", np.nan)
         return [goal for goal in self._goals if abs(goal - here) <= self._within]
 
+    def stops(self, state: State) -> bool:
+        """Whether the run ends early at a state."""
+        return self._ramp.until in self.hits(state)
+
+    def done(self, span: float, state: State) -> bool:
+        """Whether the ramp has reached its end at a state, or the value that ends the run early.
+
+        Driven by its conjugate or by the control quantity, Newton's method hits the end within its
+        tolerance, not exactly; a run that is resumed at the end has nothing to do.
+
+        Args:
+            span: all of what the ramp drives.
+            state: the state.
+        """
+        ramp = self._ramp
+        missed = abs(ramp.target - state.measures[ramp.key])
+        if missed <= 1e-9 * abs(span) or missed <= REACHED * abs(ramp.target):
+            return True
+        return self.stops(state) or (ramp.drive == "control" and ramp.target in self.hits(state))
+
     def _between(self, here: float, there: float) -> list[float]:
         """Values beyond one and before another, both excluded, the nearest first."""
         side = np.sign(there - here)
@@ -126,25 +147,3 @@ class Requests:
             if side * (goal - here) > self._within and side * (there - goal) > self._within
         ]
         return sorted(ahead, key=lambda goal: abs(goal - here))
-
-
-def done(ramp: Ramp, span: float, state: State, report: Report) -> bool:
-    """Whether a ramp has reached its end, or the value at which the run ends early.
-
-    Driven by its conjugate or by the control quantity, Newton's method hits the end within its
-    tolerance, not exactly; a run that is resumed at the end has nothing to do.
-
-    Args:
-        ramp: the ramp.
-        span: all of what it drives.
-        state: the last state.
-        report: what was hit so far; where the run ends early, it is told.
-    """
-    missed = abs(ramp.target - state.measures[ramp.key])
-    if missed <= 1e-9 * abs(span) or missed <= REACHED * abs(ramp.target):
-        return True
-    hits = [value for step, value in report.hits if step == report.steps]
-    if ramp.until in hits:
-        report.ended_at = ramp.until
-        return True
-    return ramp.drive == "control" and ramp.target in hits
