@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 
-from analytic.inverse import MonotoneInverse, angle_range
+from analytic.inverse import MonotoneInverse, angle_range, table_range
 from analytic.section_parts import SectionPart, rectangle, ring
 from analytic.stress import Floats, Stress, effective
 
@@ -116,17 +116,20 @@ class Hemicircle:
 
     @property
     def angles(self) -> tuple[float, float]:
-        """Least and greatest angle that `angle` returns, rad."""
+        """Least and greatest angle at which a pressure is looked for, rad."""
         return angle_range(self.length, self.roof, self.sheath)
 
     @functools.cached_property
+    def tabulated(self) -> tuple[float, float]:
+        """Least and greatest angle that `angle` returns, rad: rubber may meet its limit before."""
+        return table_range(self._pressure, *self.angles)
+
+    @functools.cached_property
     def _inverse(self) -> MonotoneInverse:
-        kappa = self.kappa
+        return MonotoneInverse(self._pressure, *self.tabulated)
 
-        def pressure(angle: Floats) -> Floats:
-            return self._moment(angle) / kappa
-
-        return MonotoneInverse(pressure, *self.angles)
+    def _pressure(self, angle: Floats) -> Floats:
+        return self._moment(angle) / self.kappa
 
     def _moment(self, angle: Floats) -> Floats:
         total = sum(part.moment(angle, self.length, stress) for part, stress in self._section_parts)
@@ -166,7 +169,8 @@ class Hemicircle:
                 the actuator away from its floor.
 
         Returns:
-            Bending angles in the same shape, rad, from about −π/2 to 4π.
+            Bending angles in the same shape, rad, from about −π/2 to 4π, or to where rubber meets
+            its limiting stretch.
 
         Raises:
             ValueError: a pressure that is not finite or beyond the tabulated angles, or a stress

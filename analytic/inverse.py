@@ -14,8 +14,13 @@ BACKWARD = -math.pi / 2
 FORWARD = 4 * math.pi
 """Greatest angles in each direction for which θ(P) is looked for, rad."""
 
+WITHIN = 0.97
+"""A table of θ(P) ends so near the angle at which some rubber meets its limiting stretch: P grows
+there without bound."""
+
 _INTERVALS = 400
 _GRID = 181
+_HALVINGS = 60
 
 
 def angle_range(length: float, roof: float, below: float = 0.0) -> tuple[float, float]:
@@ -31,6 +36,40 @@ def angle_range(length: float, roof: float, below: float = 0.0) -> tuple[float, 
     """
     forward = min(FORWARD, 0.99 * length / below) if below else FORWARD
     return max(BACKWARD, -length / roof / 2), forward
+
+
+def table_range(
+    pressure: Callable[[Floats], Floats], low: float, high: float
+) -> tuple[float, float]:
+    """The part of a range of angles in rad for which θ(P) is tabulated.
+
+    Args:
+        pressure: P(θ) in MPa, elementwise, also a little beyond the range; no number beyond the
+            limiting stretch of a rubber.
+        low: least θ, at most 0.
+        high: greatest θ, at least 0.
+    """
+    ends = []
+    for end in (low, high):
+        last = _last_number(pressure, 0.0, end / WITHIN)
+        ends.append(end if last == end / WITHIN else WITHIN * last)
+    return ends[0], ends[1]
+
+
+def _last_number(pressure: Callable[[Floats], Floats], start: float, end: float) -> float:
+    """The angle nearest to an end at which P is a number, as it is at the start; rad.
+
+    It is one on a range of angles: a stretch that grows with θ meets its limit once.
+    """
+    if np.isfinite(pressure(np.asarray(end))):
+        return end
+    for _ in range(_HALVINGS):
+        middle = (start + end) / 2
+        if np.isfinite(pressure(np.asarray(middle))):
+            start = middle
+        else:
+            end = middle
+    return start
 
 
 class FoundAngle(NamedTuple):
@@ -59,6 +98,12 @@ def first_angle(pressure: Callable[[Floats], Floats], target: float, bound: floa
     values = np.abs(pressure(angles))
     falls = np.flatnonzero(~(np.diff(values) > 0))
     last = int(falls[0]) if len(falls) else _GRID - 1
+    limited = len(falls) > 0 and not np.isfinite(values[last + 1])
+    if limited:
+        # P grows without bound in the last piece: all of it counts
+        angles[last + 1] = _last_number(pressure, angles[last], angles[last + 1])
+        values[last + 1] = abs(pressure(angles[last + 1]))
+        last += int(values[last + 1] > values[last])
     beyond = np.flatnonzero(values[: last + 1] >= abs(target))
     if len(beyond):
         first = int(beyond[0])
@@ -66,7 +111,7 @@ def first_angle(pressure: Callable[[Floats], Floats], target: float, bound: floa
         return FoundAngle(float(angle), abs(target), "")
     end: Literal["peak", "limit", "bound"] = "bound"
     if len(falls):
-        end = "peak" if np.isfinite(values[last + 1]) else "limit"
+        end = "limit" if limited else "peak"
     return FoundAngle(float(angles[last]), float(values[last]), end)
 
 

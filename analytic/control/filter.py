@@ -67,10 +67,12 @@ class AngleFilter:
     def from_model(cls, actuator: Hemicircle) -> AngleFilter:
         """Invert eq. (19) from half the angle that closes the section backward to 720°.
 
+        Rubber with a limiting stretch ends it before.
+
         Raises:
             ValueError: P does not rise with θ everywhere, or the table misses `TOLERANCE`.
         """
-        angle = np.linspace(*actuator.angles, _INTERVALS + 1)
+        angle = np.linspace(*actuator.tabulated, _INTERVALS + 1)
         pressure = actuator.pressure(angle)
         _check_rising(pressure, angle)
         table = CubicTable.smooth(pressure, angle)

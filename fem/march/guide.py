@@ -26,7 +26,7 @@ class Guide:
         frames: its stations.
         length: length L between the caps, mm.
         section: nodes of the section's mesh, (n, 2), mm; x ≥ 0 alone will do.
-        measures: by name, what the march may drive at each of m states, rising, (m,).
+        measures: by name, what the march may drive at each of m states, rising or falling, (m,).
         curvature: k, 1/mm, (m,).
         stretch: λ0, (m,).
         displacement: u, v of the section's nodes, mm, (m, n, 2).
@@ -68,8 +68,9 @@ class Guide:
         known = self._measures.get(measure)
         if known is None:
             return False
-        slack = ROUND_OFF * (known[-1] - known[0])
-        return bool(known[0] - slack <= value <= known[-1] + slack)
+        low, high = sorted((known[0], known[-1]))
+        slack = ROUND_OFF * (high - low)
+        return bool(low - slack <= value <= high + slack)
 
     def shape(self, measure: str, value: float) -> Shape:
         """The body's shape where a measure takes a value.
@@ -80,6 +81,9 @@ class Guide:
         from scipy.interpolate import CubicSpline
 
         known = self._measures[measure]
+        # bent by vacuum, pressure, angle and volume fall
+        side = 1.0 if known[-1] > known[0] else -1.0
+        known, value = side * known, side * value
         at = int(np.clip(np.searchsorted(known, value) - 2, 0, max(len(known) - 4, 0)))
         near = slice(at, at + 4)
         state = CubicSpline(known[near], self._states[near])(value)

@@ -54,16 +54,19 @@ def limit_ahead(states: Sequence[State], scalar: str, target: float) -> bool:
     return bool(curvature < 0 and sign * p[-1] - slope**2 / (4 * curvature) < sign * target)
 
 
-def softens(states: Sequence[State], scalar: str) -> bool:
+def softens(states: Sequence[State], scalar: str, of: str = "") -> bool:
     """Whether the last increment of the value moved the conjugate more easily than the one before.
 
     Args:
         states: converged states, the last one last.
         scalar: the load that is driven.
+        of: another measure in place of the value.
     """
     if len(states) < 3:
         return False
     v, p = _curve(states[-3:], scalar)
+    if of:
+        p = np.array([state.measures[of] for state in states[-3:]])
     dv, dp = np.diff(v), np.diff(p)
     return bool(np.all(dp != 0) and abs(dv[1] / dp[1]) > 1.1 * abs(dv[0] / dp[0]))
 

@@ -22,7 +22,8 @@ from fem.march.position import Position
 from fem.march.predictor import Predictor, distinct, lagrange
 from fem.march.records import Causes, Critical, Ramp, Report, Rules, State, measure
 from fem.march.selfcontact import Rod, first_contact
-from fem.march.ways import Requests, Way
+from fem.march.turning import STILL, first_size, leads_nowhere, search_end, slackens, toward
+from fem.march.ways import MISSED, Requests, Way
 from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome
 from fem.solver.side_conditions import Functional
@@ -30,8 +31,6 @@ from fem.solver.side_conditions import Functional
 JUMPED = "Newton went to another branch"
 BEYOND = "the load falls from here on"
 CREEPS = "increments shrink to nothing, each of them converging slowly"
-REACHED = 1e-12
-"""Part of a target by which round-off may miss it."""
 
 
 class March:
@@ -107,9 +106,12 @@ class March:
                 hook.before_ramp(self, ramp)
             if not self._ramp(ramp):
                 break
+            if self._requests(ramp).stops(self.states[-1]):
+                position.report.ended_at = ramp.until
+                break
             position.ramp += 1
             position.increment = position.begin = position.first = None
-            position.path_following = False
+            position.path_following, position.toward, position.nearest = False, 0.0, None
         return position.report
 
     # --- what hooks may change -----------------------------------------------------------------
@@ -149,8 +151,11 @@ class March:
             return Way(ramp.drive, ramp.key, sign, ramp.target, abs(span), stops, largest)
         key = measure("conjugate", ramp.scalar)
         volume = now[key]
-        sign = np.sign(span)
+        sign = self.position.toward or np.sign(span)
         end = sign * np.inf
+        if self.position.toward:
+            end = search_end(ramp, span, self.position, self.rest, self.rules)
+            return Way("conjugate", key, sign, end, volume, (), self.rules.swell * volume)
         limit = self._limit(ramp)
         if limit is not None and now.get(measure("rate", ramp.scalar), 1.0) < 0:
             end = limit.conjugate * self.rules.beyond**sign
@@ -170,22 +175,28 @@ class March:
         if position.begin is None:
             position.begin = self.states[-1].measures[ramp.key]
         span = ramp.target - position.begin
-        if self._done(ramp, span):
+        requests = self._requests(ramp)
+        if requests.done(span, self.states[-1]):
             return True
         if position.increment is None:
             base = self.states[-1]
             seed = self.equilibrium.perturbed(base, ramp.scalar, np.sign(span))
-            size = abs(ramp.first) if ramp.first else self._first_size(seed, ramp, abs(span))
+            size = first_size(seed, base, ramp, abs(span), self.rules, self._guided)
             position.states = [seed, base]
             position.increment = min(size, abs(ramp.largest or np.inf), abs(span))
-        requests = Requests(ramp)
+            if leads_nowhere(seed, base, ramp, self.rules):
+                found = toward(self._find, self.equilibrium, seed, base, ramp)
+                position.toward, position.increment = found
+                position.path_following = True
+                if not position.toward:
+                    return self._end(STILL)
         # a load that hardly bends begins with tiny increments of the angle
         first = position.first = position.first or position.increment
         failures = 0
         slow: Outcome | None = None
         while True:
             state = self.states[-1]
-            if self._done(ramp, span):
+            if requests.done(span, state):
                 return True
             way = self._way(ramp, span)
             now = state.measures[way.key]
@@ -199,10 +210,20 @@ class March:
                 self._follow_path(ramp)
                 continue
             kind, aim = way.kind, target
-            goal = requests.due(state)
-            if goal is not None and requests.hits(goal, self._guess(way.key, target, "control")):
-                kind, aim = "control", goal
+            asked = bool(requests) and self._controlled and kind != "control"
+            if asked:
+                expected = self._guess(way.key, target, "control")
+                goal = requests.due(state.measures["control"], expected)
+                if goal is not None:
+                    kind, aim = "control", goal
             new, outcome, kind = self._attempt(ramp, span, kind, aim)
+            if new is not None and asked:
+                verdict = requests.judge(state, new, kind, aim, way)
+                if verdict == "again":
+                    self.equilibrium.restore(state)
+                    continue
+                if verdict == "cut":
+                    new, outcome = None, dataclasses.replace(outcome, reason=MISSED)
             self._predictor.heed(failed=new is None)
             if new is None:
                 failures += 1
@@ -223,15 +244,16 @@ class March:
                     outcome.reason == BEYOND or softens(self.states, ramp.scalar)
                 ):
                     self._follow_path(ramp)
+                elif way.kind == "control" and slackens(self.states, ramp, failures):
+                    self._follow_path(ramp)
+                    failures = 0
                 continue
-            if goal is not None and not requests.met(new, goal, kind, way):
-                self.equilibrium.restore(state)
-                continue
-            if not (position.path_following and np.isfinite(way.end)):
+            if position.toward or not (position.path_following and np.isfinite(way.end)):
                 failures = 0
             position.states = [*self.states[1 - self.rules.memory :], new]
             self.report.steps += 1
             self.report.per_step.append(outcome.iterations)
+            self.report.hits += [(self.report.steps, hit) for hit in requests.hits(new)]
             self._note(ramp.scalar)
             slow = outcome if outcome.iterations >= self.rules.slow else None
             if outcome.iterations <= self.rules.easy:
@@ -242,17 +264,9 @@ class March:
             for hook in self._called:
                 hook.after_step(self, new, outcome)
 
-    def _done(self, ramp: Ramp, span: float) -> bool:
-        """Whether a ramp has reached its end, or the value at which it ends early.
-
-        Driven by its conjugate or by the control quantity, Newton's method hits the end within its
-        tolerance, not exactly; a run that is resumed at the end has nothing to do.
-        """
-        now = self.states[-1].measures
-        missed = abs(ramp.target - now[ramp.key])
-        if missed <= 1e-9 * abs(span) or missed <= REACHED * abs(ramp.target):
-            return True
-        return ramp.until is not None and now["control"] >= ramp.until - 1e-9
+    def _requests(self, ramp: Ramp) -> Requests:
+        """What a ramp is to hit."""
+        return Requests(ramp, self.equilibrium.newton.settings.tolerance)
 
     def _attempt(
         self, ramp: Ramp, span: float, kind: str, aim: float
@@ -319,10 +333,12 @@ class March:
         a, b = (state.measures[key] for state in self.states[-2:])
         self.position.increment = abs(b - a)
         self.position.path_following = True
+        if ramp.drive == "control":
+            self.position.toward = float(np.sign(b - a))
 
     def _passed(self, ramp: Ramp, span: float, new: State) -> float | None:
         """Value asked for that following the path has passed and never reached before."""
-        if not self.position.path_following:
+        if not self.position.path_following or self.position.toward:
             return None
         sign, key = np.sign(span), measure("value", ramp.scalar)
         limit = self._limit(ramp)
@@ -356,9 +372,8 @@ class March:
 
     def _end(self, reason: str) -> bool:
         """The load cannot be reached."""
-        beyond = self.position.path_following and any(
-            c.kind == "limit" for c in self.report.critical
-        )
+        limited = not self.position.toward and any(c.kind == "limit" for c in self.report.critical)
+        beyond = self.position.path_following and (limited or not reason)
         self.report.status = "stopped" if beyond else "failed"
         self.report.reason = reason
         return False
@@ -378,20 +393,3 @@ class March:
         a, b = (state.measures for state in self.states[-2:])
         turned = abs(b["control"] - a["control"])
         return float(abs(b[drive] - a[drive]) * self.rules.turn / max(turned, 1e-12))
-
-    def _first_size(self, seed: State, ramp: Ramp, span: float) -> float:
-        """First increment, by the linear response.
-
-        It changes the control quantity by `first_turn`, a twentieth of the load where nothing
-        turns, and changes the conjugate by no more than `swell`, unless a guide knows the way.
-        """
-        base = self.states[-1].measures
-        change = {name: abs(value - base[name]) for name, value in seed.measures.items()}
-        driven, turned = change[ramp.key], change.get("control", 0.0)
-        volume = measure("conjugate", ramp.scalar)
-        if driven < 1e-300:
-            return span / 20
-        size = span / 20 if turned < 1e-14 else driven / turned * self.rules.first_turn
-        if not self._guided and base[volume] and change[volume]:
-            size = min(size, driven * self.rules.swell * abs(base[volume]) / change[volume])
-        return float(size)

@@ -19,6 +19,9 @@ class Position:
         ramp: number of the ramp under way.
         path_following: the ramp under way has turned from the value of its scalar to the
             conjugate (volume control), which grows also where the value falls.
+        toward: sign of the conjugate's way where a ramp of the control quantity has turned to it;
+            0 elsewhere.
+        nearest: how near the control quantity has come to the target on that way, rad.
         report: what happened so far.
     """
 
@@ -28,4 +31,6 @@ class Position:
     first: float | None = None
     ramp: int = 0
     path_following: bool = False
+    toward: float = 0.0
+    nearest: float | None = None
     report: Report = dataclasses.field(default_factory=Report)

@@ -54,8 +54,9 @@ class Ramp:
         first: first increment of the driven quantity; None: from the linear response.
         largest: greatest increment; None: no limit but the convergence.
         stops: values of the driven quantity to be hit exactly.
-        at: values of the control quantity to be hit exactly.
-        until: value of the control quantity at which the ramp ends; None: at the target.
+        at: values of the control quantity to be hit exactly wherever they are crossed.
+        until: value of the control quantity at which the run ends where it is crossed, up or down;
+            None: at the target.
     """
 
     scalar: str
@@ -105,6 +106,9 @@ class Rules:
             of the value.
         beyond: how far beyond a limit point a falling branch is traced, as a factor of the
             conjugate.
+        search: multiple of the conjugate at rest up to which a control quantity that the load
+            hardly moves is looked for; the other way it ends at one over `beyond`.
+        astray: how far it may move the other way meanwhile.
     """
 
     easy: int = 5
@@ -120,6 +124,8 @@ class Rules:
     jump: float = 2.0
     swell: float = 0.3
     beyond: float = 4.0
+    search: float = 20.0
+    astray: float = np.pi
 
 
 @dataclasses.dataclass(frozen=True)
@@ -161,6 +167,9 @@ class Report:
         per_step: iterations of each converged increment.
         critical: where stability was lost or gained, in the order of the march.
         self_contact: measures where the body begins to pass through itself; None: it does not.
+        hits: number of the converged increment and value of the control quantity, for each value
+            that was asked for and hit.
+        ended_at: value of the control quantity at which the run was to end early, and did.
     """
 
     status: str = "converged"
@@ -172,10 +181,13 @@ class Report:
     per_step: list[int] = dataclasses.field(default_factory=list)
     critical: list[Critical] = dataclasses.field(default_factory=list)
     self_contact: dict[str, float] | None = None
+    hits: list[tuple[int, float]] = dataclasses.field(default_factory=list)
+    ended_at: float | None = None
 
     def __post_init__(self) -> None:
         # a checkpoint gives back mappings
         self.critical = [c if isinstance(c, Critical) else Critical(**c) for c in self.critical]
+        self.hits = [(int(step), float(value)) for step, value in self.hits]
 
 
 class Causes(Protocol):

@@ -10,6 +10,13 @@ from fem.march.records import Ramp, State
 
 NEAR = 0.02
 """An increment that would end so near before a value that is asked for hits it (rad, an angle)."""
+NEAR_STEP = 0.5
+"""The same as a part of the increment's own change: where nothing turns, nothing is near."""
+ROUND_OFF = 1e-9
+"""Least distance (rad) at which a value counts as not yet hit."""
+REACHED = 1e-12
+"""Part of a target by which round-off may miss it."""
+MISSED = "the angle that is asked for does not lie ahead in this increment"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -43,37 +50,100 @@ class Way:
 
 
 class Requests:
-    """Values of the control quantity that a ramp is to hit."""
+    """Values of the control quantity that a ramp hits wherever it crosses them, up or down.
 
-    def __init__(self, ramp: Ramp) -> None:
-        self._insist = False
-        self._pending = sorted(ramp.at) if ramp.drive != "control" else []
-        if ramp.until is not None:
-            before = (a for a in self._pending if a < ramp.until)
-            self._pending = sorted({*before, ramp.until})
+    Args:
+        ramp: the ramp; driven by the control quantity, its target is one of them, for where it has
+            to be driven otherwise.
+        tolerance: of Newton's method, within which a value is hit.
+    """
 
-    def due(self, state: State) -> float | None:
-        """The next one."""
-        here = state.measures.get("control", np.inf)
-        return next((a for a in self._pending if a > here + 1e-9), None)
+    def __init__(self, ramp: Ramp, tolerance: float) -> None:
+        self._ramp = ramp
+        goals = {*ramp.at, *([] if ramp.until is None else [ramp.until])}
+        if ramp.drive == "control":
+            goals.add(ramp.target)
+        self._goals = sorted(goals)
+        self._within = max(2 * tolerance, ROUND_OFF)
+        self._insist: float | None = None
+        self._forced = False
+        self._beyond: set[float] = set()
 
-    def hits(self, goal: float, expected: float) -> bool:
-        """Whether the next increment is to hit the one that is due, not the end of the increment.
+    def __bool__(self) -> bool:
+        return bool(self._goals)
+
+    def due(self, here: float, expected: float) -> float | None:
+        """The value that the next increment is to hit, or None: it goes on by its load.
 
         Args:
-            goal: the value that is due.
-            expected: the value where the increment would end.
+            here: the control quantity at the last state.
+            expected: the same where the increment would end.
         """
-        insist, self._insist = self._insist, False
-        return insist or expected > goal - NEAR
+        insist, self._insist = self._insist, None
+        self._forced = insist is not None
+        if insist is not None:
+            return insist
+        margin = min(NEAR, NEAR_STEP * abs(expected - here))
+        side = np.sign(expected - here)
+        ahead = self._between(here, expected + side * margin)
+        return next((goal for goal in ahead if goal not in self._beyond), None)
 
-    def met(self, new: State, goal: float, kind: str, way: Way) -> bool:
-        """Whether a new state may be kept: it has not run past the one that was due."""
+    def judge(self, old: State, new: State, kind: str, aim: float, way: Way) -> str:
+        """Whether a new state may be kept.
+
+        Args:
+            old: the state before it.
+            new: the state, not yet accepted.
+            kind: what was given, 'control' where a value was to be hit.
+            aim: what it was to be.
+            way: how the ramp is driven.
+
+        Returns:
+            'keep'; 'again': from the old state to the value that was run past, or by the load to
+            its end; 'cut': nothing is ahead where it was thought to be.
+        """
         if kind != "control":
-            self._insist = new.measures["control"] > goal + 1e-9
-            return not self._insist
-        if way.kind != kind and way.sign * (new.measures[way.key] - way.end) > 0:
-            # the angle lies beyond the load's end: go there by the load instead
-            self._pending = [a for a in self._pending if a < goal - 1e-12]
-            return False
-        return True
+            passed = self._between(old.measures["control"], new.measures["control"])
+            self._insist = passed[0] if passed else None
+            return "again" if passed else "keep"
+        load, before = new.measures[way.key], old.measures[way.key]
+        if way.sign * (load - way.end) > 1e-9 * way.span:
+            # it lies beyond the load's end: go there by the load instead
+            self._beyond.add(aim)
+            return "cut" if self._forced else "again"
+        return "keep" if way.sign * (load - before) > 0 else "cut"
+
+    def hits(self, state: State) -> list[float]:
+        """The values that a state hits; more than one where they are all but the same."""
+        here = state.measures.get("control", np.nan)
+        return [goal for goal in self._goals if abs(goal - here) <= self._within]
+
+    def stops(self, state: State) -> bool:
+        """Whether the run ends early at a state."""
+        return self._ramp.until in self.hits(state)
+
+    def done(self, span: float, state: State) -> bool:
+        """Whether the ramp has reached its end at a state, or the value that ends the run early.
+
+        Driven by its conjugate or by the control quantity, Newton's method hits the end within its
+        tolerance, not exactly; a run that is resumed at the end has nothing to do.
+
+        Args:
+            span: all of what the ramp drives.
+            state: the state.
+        """
+        ramp = self._ramp
+        missed = abs(ramp.target - state.measures[ramp.key])
+        if missed <= 1e-9 * abs(span) or missed <= REACHED * abs(ramp.target):
+            return True
+        return self.stops(state) or (ramp.drive == "control" and ramp.target in self.hits(state))
+
+    def _between(self, here: float, there: float) -> list[float]:
+        """Values beyond one and before another, both excluded, the nearest first."""
+        side = np.sign(there - here)
+        ahead = [
+            goal
+            for goal in self._goals
+            if side * (goal - here) > self._within and side * (there - goal) > self._within
+        ]
+        return sorted(ahead, key=lambda goal: abs(goal - here))

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
 
 from fem import compat
+from fem.effects.elastic import Elastic
 from fem.effects.embedded_fibers import FiberPotential
 from fem.march.limit_points import softens
 from fem.march.records import (
@@ -20,6 +22,8 @@ from fem.march.records import (
 from fem.ranks import total
 from fem.scene import Scene
 from fem.solver.newton import Outcome
+from materials.laws.law import Law
+from materials.material import Stretches
 
 Floats = npt.NDArray[np.float64]
 
@@ -30,6 +34,8 @@ SQUEEZED = 0.6
 """det F at a point, where an element can only keep its mean at one, that tells of squeezing."""
 MEETING = 0.1
 """Opposite walls so close, in parts of the chamber's height, meet."""
+EXHAUSTED = 0.9
+"""Part of its limiting stretch from which rubber hardly yields."""
 SLACK = 0.5
 """A winding carries nothing where so much of its length is slack."""
 WHERE = {"post": "under the post", "roof": "under the roof", "clamp": "at the clamp"}
@@ -85,6 +91,7 @@ class Diagnosis:
         causes = [
             *self._chamber(states, rest),
             *self._buckled(states[-1], critical),
+            *self._exhausted(),
             *self._squeezed(),
             *self._winding(),
         ]
@@ -162,6 +169,22 @@ class Diagnosis:
             f"{self._place(worst.cell)}"
         ]
 
+    def _exhausted(self) -> list[str]:
+        """Rubber near the limit of its law."""
+        found = []
+        for effect in self._scene.effects.values():
+            if not isinstance(effect, Elastic) or effect.law.exhausted is None:
+                continue
+            law = effect.law
+            for region, parameters in effect.regions.items():
+                worst = self._worst(functools.partial(_used, law, parameters), False, region)
+                if worst.value > EXHAUSTED:
+                    found.append(
+                        f"the rubber meets its limiting stretch ({law.name}): it has used "
+                        f"{100 * worst.value:.3g} % of it in {self._place(worst.cell)}"
+                    )
+        return found
+
     def _winding(self) -> list[str]:
         """Fibers that carry nothing."""
         comm = self._scene.domain.comm
@@ -175,20 +198,32 @@ class Diagnosis:
 
     # --- where ---------------------------------------------------------------------------------
 
-    def _worst(self, of: Callable[[Floats], Floats], least: bool) -> _Worst:
-        """Extreme of a function of F, (n, 3, 3) to (n,), over the points of all ranks."""
+    def _worst(
+        self, of: Callable[[Floats], Floats], least: bool, region: str | None = None
+    ) -> _Worst:
+        """Extreme of a function of F, (n, 3, 3) to (n,), over the points of all ranks.
+
+        Args:
+            of: the function.
+            least: its least value, or its greatest.
+            region: only there; None: everywhere.
+        """
         domain, body = self._scene.domain, self._scene.body
         if self._gradient is None:
             points = compat.quadrature_points(domain.data.cell_type, domain.degree)
             self._gradient = compat.PointValues(domain.mesh, body.F, points)
-        values = self._gradient()
+        values, cells = self._gradient(), domain.cells
+        if region is not None:
+            data = domain.data
+            inside = data.cell_region[cells[: len(values)]] == data.regions[region]
+            values, cells = values[inside], cells[: len(values)][inside]
         found = of(values.reshape(-1, 3, 3)).reshape(len(values), -1)
         sign = 1.0 if least else -1.0
         mine = (np.inf, -1)
         if found.size:
             by_cell = (sign * np.nan_to_num(found, nan=-sign * np.inf)).min(axis=1)
             cell = int(np.argmin(by_cell))
-            mine = (float(by_cell[cell]), int(domain.cells[cell]))
+            mine = (float(by_cell[cell]), int(cells[cell]))
         value, cell = min(domain.comm.allgather(mine))
         return _Worst(sign * value, cell)
 
@@ -212,3 +247,12 @@ class Diagnosis:
             if name in data.facets and np.isin(nodes, data.facet_nodes(name)).any()
         ]
         return " ".join([f"the {region}", *touched, f"at {at} mm"])
+
+
+def _used(law: Law, parameters: dict[str, float], f: Floats) -> Floats:
+    """Part of the limiting stretch of a law that deformations F have used, (n, 3, 3) to (n,)."""
+    assert law.exhausted is not None
+    stretches = np.linalg.svd(f, compute_uv=False)
+    stretches /= np.cbrt(np.prod(stretches, axis=1))[:, None]
+    used: Floats = law.exhausted(Stretches(*stretches.T), **parameters)
+    return used

@@ -171,11 +171,13 @@ class Output(Spec):
     """What a run leaves beyond its curves."""
 
     at_angles: tuple[Angle, ...] = Field(default=(), strict=False)
-    """Bending angles that are hit exactly, with pictures and fields."""
+    """Bending angles that are hit exactly wherever a load crosses them, up or down, with pictures
+    and fields."""
     at_pressures: tuple[SignedPressure, ...] = Field(default=(), strict=False)
     """Pressures that are hit exactly, with pictures and fields."""
     stop_at_angle: Angle | None = None
-    """The run ends at this bending angle, before the load's end."""
+    """The run ends where the pressure, or a load after it, crosses this bending angle, up or down;
+    what is put on before the pressure is put on whole."""
     measured: str | None = None
     """CSV file of measured points that are drawn over the curves and compared with them, with the
     columns pressure_kPa and angle_deg, or tip_force_N where the tip is blocked; relative to the

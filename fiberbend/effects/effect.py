@@ -114,8 +114,8 @@ class Requests:
         first: first step, MPa, or None.
         largest: greatest step, MPa, or None.
         at_pressures: pressures to be hit, MPa.
-        at_angles: bending angles to be hit, rad.
-        stop_at_angle: where the load ends early, rad, or None.
+        at_angles: bending angles to be hit under any load, rad.
+        stop_at_angle: where the run ends early, rad, or None.
     """
 
     first: float | None
@@ -170,6 +170,10 @@ class Effect(Spec):
     def mirror_breaker(self) -> str:
         """Why x = 0 is no mirror plane of it; empty where it is one."""
         return f"{self.name} is not known to be mirror-symmetric"
+
+    def bends(self) -> bool:
+        """Whether it may bend an actuator that is alike above and below."""
+        return True
 
     # --- its settings --------------------------------------------------------------------------
 

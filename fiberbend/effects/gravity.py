@@ -32,6 +32,10 @@ class GravityEffect(Effect):
         """A pull along x."""
         return "gravity along x pulls to one side" if self.direction.endswith("x") else ""
 
+    def bends(self) -> bool:
+        """Weight across the floor."""
+        return self.direction.endswith("y")
+
     def follows_section(self) -> bool:
         """It bends a body little beside the pressure."""
         return True

@@ -23,6 +23,10 @@ class HoopsEffect(Effect):
         """None: hoops are symmetric."""
         return ""
 
+    def bends(self) -> bool:
+        """They hold above as below."""
+        return False
+
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
         """One winding is enough."""
         for other, effect in draft.effects.items():

@@ -46,6 +46,10 @@ class PressureEffect(Effect):
         """None: it acts on both sides alike."""
         return ""
 
+    def bends(self) -> bool:
+        """It acts above as below."""
+        return False
+
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
         """One of the three is given."""
         given = [key for key in ("to", "volume", "angle") if getattr(self, key) is not None]
@@ -93,8 +97,6 @@ class PressureEffect(Effect):
             first=requests.first if by_value else None,
             largest=requests.largest if by_value else None,
             stops=requests.at_pressures if by_value else (),
-            at=requests.at_angles,
-            until=requests.stop_at_angle,
         )
         return Built((ChamberPressure(),), (ramp,))
 

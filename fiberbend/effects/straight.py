@@ -27,6 +27,10 @@ class StraightEffect(Effect):
         """None: straight is symmetric."""
         return ""
 
+    def bends(self) -> bool:
+        """It keeps it from bending."""
+        return False
+
     def keeps_straight(self) -> bool:
         """That is all it does."""
         return True

@@ -148,6 +148,10 @@ class WindingEffect(Effect):
         meaning = PATTERNS[self.pattern].meaning
         return f"{meaning} is not its own mirror image" if self._twists else ""
 
+    def bends(self) -> bool:
+        """Half a turn about the axis maps every pattern onto itself, half a pitch on."""
+        return False
+
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
         """Pitch, ribbon and thread."""
         if draft.length is not None and self.pitch > draft.length:

@@ -190,18 +190,6 @@ class MeshedModel(ModelKind):
         """The model itself."""
         return self
 
-    def limits(self, case: Case) -> Iterator[Objection]:
-        """Requests that a march would not meet: it looks for them while the angle grows."""
-        load, output = case.inflation, case.output
-        if load is None or load.angle is not None:
-            return
-        asked = {f"output.at_angles.{i}": angle for i, angle in enumerate(output.at_angles)}
-        if output.stop_at_angle is not None:
-            asked["output.stop_at_angle"] = output.stop_at_angle
-        for path, angle in asked.items():
-            if angle < 0:
-                yield path, "an angle below zero is met where the pressure has an angle only"
-
     @abstractmethod
     def mesh_size(self, case: Case, half: bool) -> MeshSize:
         """Fineness of its mesh, of x ≥ 0 only or of all."""

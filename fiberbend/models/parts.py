@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterator, Sequence
 
 from fem.effects.effect import Effect
 from fem.effects.elastic import Elastic
@@ -10,6 +11,7 @@ from fem.effects.incompressible import Incompressible
 from fem.march.records import Ramp
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.effects.effect import Built, Requests
 from fiberbend.models.model import MeshedModel
 from geometry.mesh.data import MeshData
 from geometry.winding.segments import EmbeddedFibers
@@ -71,8 +73,22 @@ def build(case: Case, mesh: MeshData, model: MeshedModel) -> SceneParts:
             Incompressible(bulk or None),
             *(term for item in built for term in item.terms),
         ],
-        loads=[ramp for item in built for ramp in item.ramps],
+        loads=list(_asked(case, built, requests)),
         materials=materials,
         fibers=None if wound is None else wound.fibers,
         smeared=wound is not None and wound.smeared,
     )
+
+
+def _asked(case: Case, built: Sequence[Built], requests: Requests) -> Iterator[Ramp]:
+    """The loads with the angles that are to be hit, whatever bends the body.
+
+    What is put on before the pressure, such as its weight, is put on whole: only the pressure and
+    what follows end at `stop_at_angle`.
+    """
+    pressures = [n for n, effect in enumerate(case.effects) if effect.inflation() is not None]
+    first = min(pressures, default=0)
+    for number, item in enumerate(built):
+        until = requests.stop_at_angle if number >= first else None
+        for ramp in item.ramps:
+            yield dataclasses.replace(ramp, at=requests.at_angles, until=until)

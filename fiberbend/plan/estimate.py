@@ -129,7 +129,9 @@ def steps_of(case: Case, model: MeshedModel) -> int | None:
         goals = [value / load.to for value in output.at_pressures]
         return steps + max(least, count_steps(model.straight_start, math.inf, [*goals, 1.0]))
     end = expected_angle(case)
-    if end is None:
+    wound = any(effect.fixes_circumference() for effect in case.effects)
+    if end is None or (load.angle is not None and not wound):
+        # without a winding it hardly bends at first: the chamber's volume bounds the steps
         return None
     turn = model.largest_turn(case)
     goals = [angle for angle in output.at_angles if 0 < angle / end < 1]
@@ -173,4 +175,4 @@ def expected_angle(case: Case) -> float | None:
 
     low, high = curve.angles
     angle = first_angle(curve.pressure, load.to, high if load.to > 0 else low).angle
-    return angle if stop is None or abs(stop) > abs(angle) else stop
+    return stop if stop is not None and stop * angle > 0 and abs(stop) < abs(angle) else angle

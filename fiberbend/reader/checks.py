@@ -91,6 +91,7 @@ def check(parts: ValidParts) -> Iterator[Problem]:
     for path, effect in draft.effects.items():
         yield from effect.problems(path, draft)
     yield from _materials(parts)
+    yield from _bends(parts)
     yield from _density(parts)
     yield from _mesh(parts)
     yield from _solver(parts)
@@ -162,6 +163,34 @@ def _material(path: str, material: MaterialSpec) -> Iterator[Problem]:
             convert.material(material)
         except ValueError as error:
             yield Problem(path, str(error))
+
+
+def _bends(parts: ValidParts) -> Iterator[Problem]:
+    """An angle that is asked of a pressure under which a section bends neither way."""
+    if parts.broken_effects or any(effect.bends() for effect in parts.effects.values()):
+        return
+    for index, effect in parts.effects.items():
+        load = effect.inflation()
+        if load is not None and load.angle is not None and _upside_down(parts):
+            yield Problem(
+                f"effects.{index}.{effect.name}.angle",
+                f'"{show(load.angle, "angle")}", but no pressure bends this section: turned '
+                "upside down it is its own image, in shape, materials and winding; expected a "
+                "floor that differs from the wall, or a pressure by its value",
+            )
+
+
+def _upside_down(parts: ValidParts) -> bool:
+    """Whether the section is its own image turned upside down."""
+    if parts.actuator is None or parts.materials is None or any(_dimensions(parts)):
+        return False
+    regions = convert.dimensions(parts.actuator).one_material()
+    specs = [getattr(parts.materials, region) for region in regions]
+    if not regions or any(spec is None or any(_material("", spec)) for spec in specs):
+        return False
+    made = [convert.material(spec) for spec in specs]
+    known = [(item.law, LAWS[item.law].complete(item.parameters), item.bulk) for item in made]
+    return all(item == known[0] for item in known)
 
 
 def _density(parts: ValidParts) -> Iterator[Problem]:
@@ -265,7 +294,8 @@ def _output(parts: ValidParts) -> Iterator[Problem]:
     output = parts.output
     if output is None:
         return
-    if output.stop_at_angle is not None:
+    loads = [effect for effect in parts.effects.values() if effect.load]
+    if output.stop_at_angle is not None and len(loads) == 1:
         for index, angle in enumerate(output.at_angles):
             if abs(angle) > abs(output.stop_at_angle) and angle * output.stop_at_angle > 0:
                 yield Problem(

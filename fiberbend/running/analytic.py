@@ -24,7 +24,7 @@ from fiberbend.models.closed_form import (
     no_analytic,
 )
 from fiberbend.models.result import Curve, RunResult
-from fiberbend.running import launch
+from fiberbend.running import launch, messages
 from fiberbend.running.folder import RunFolder
 from fiberbend.running.progress import Progress
 from fiberbend.running.record import beside, entries, peak_memory_mb
@@ -55,10 +55,11 @@ def run_analytic(
         raise NotImplementedError(f"model {kind.name} has neither elements nor a closed form")
     progress.phase("solve")
     model = analytic_curves(case)[kind.line]
+    missed: list[str] = []
     if case.straight:
         rows, status, reason = _blocked_rows(case, model), "converged", ""
     else:
-        rows, status, reason = _free_rows(case, model)
+        rows, status, reason, missed = _free_rows(case, model)
     check = crosscheck(case, kind, rows, section, read_measured(case))
     rows = check.beside(rows)
     for row in rows:
@@ -74,6 +75,7 @@ def run_analytic(
             "load_steps": len(rows) - 1,
             "newton_iterations": 0,
             "cutbacks": 0,
+            "warnings": [messages.missed(missed)] if missed else [],
         },
         {name: round(value, 6) for name, value in progress.wall_s.items()},
         peak_memory_mb(),
@@ -138,8 +140,12 @@ def _blocked_rows(case: Case, model: Hemicircle) -> list[dict[str, Any]]:
     return rows
 
 
-def _free_rows(case: Case, model: Hemicircle) -> tuple[list[dict[str, Any]], str, str]:
-    """Free bending: angles that grow evenly, and every angle and pressure that is asked for."""
+def _free_rows(case: Case, model: Hemicircle) -> tuple[list[dict[str, Any]], str, str, list[str]]:
+    """Free bending: angles that grow evenly, and every angle and pressure that is asked for.
+
+    Returns:
+        Rows, status, reason, and what is asked for and not reached.
+    """
     load, output = case.inflation, case.output
     assert load is not None
     status, reason, end = "converged", "", load.angle
@@ -166,10 +172,15 @@ def _free_rows(case: Case, model: Hemicircle) -> tuple[list[dict[str, Any]], str
         rows.append(_row(step, pressure, float(angle), case, model))
     asked = dict.fromkeys(a for a in (*output.at_angles, stop) if a is not None)
     missed = [f"{math.degrees(a):g}°" for a in asked if not 0 < a / end <= 1 + 1e-9]
+    missed += [
+        f"{1e3 * pressure:.6g} kPa"
+        for pressure in dict.fromkeys(output.at_pressures)
+        if pressure not in pressures.values()
+    ]
     if status == "converged" and missed:
         status = "stopped"
         reason = f"the loads end at {math.degrees(end):.4g}°: {', '.join(missed)} not reached"
-    return rows, status, reason
+    return rows, status, reason, missed
 
 
 def _angle_at(model: Hemicircle, pressure: float) -> tuple[float, str]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fem.march.hooks import Hook, Marching
-from fem.march.records import Ramp, State
+from fem.march.records import Ramp, Report, State
 from fem.results.checkpoint import Archive
 from fem.solver.newton import Outcome
 from fiberbend import columns as col
@@ -18,7 +18,11 @@ from fiberbend.running.assembly import Assembly
 from fiberbend.running.folder import RunFolder
 from fiberbend.running.history import Recorder
 from fiberbend.running.progress import Progress
+from fiberbend.states.labels import angle_labels, pressure_labels, unused
 from fiberbend.states.snapshot import Snapshot
+
+SAME = 1e-9
+"""Part of a pressure, or MPa, by which it may miss the one that is asked for."""
 
 
 class Recording(Hook):
@@ -55,6 +59,8 @@ class Recording(Hook):
         self._resumes = resumes
         self.snapshots = list(snapshots)
         self.warnings: list[str] = []
+        self._angles = angle_labels(case.output.at_angles)
+        self._pressures = pressure_labels(case.output.at_pressures)
 
     def after_step(self, march: Marching, state: State, outcome: Outcome) -> None:
         """Record the step, and where the march stands."""
@@ -67,7 +73,7 @@ class Recording(Hook):
             row[col.ANGLE],
             outcome.iterations,
         )
-        label = self._requested(state)
+        label = self._requested(march.position.report, state)
         if label:
             self.keep(label)
         if self._folder is not None and self._resumes:
@@ -117,16 +123,16 @@ class Recording(Hook):
         ramps = self._assembly.ramps
         return (number + _share(ramps[number], state)) / len(ramps)
 
-    def _requested(self, state: State) -> str:
+    def _requested(self, report: Report, state: State) -> str:
         """Label of the requested output that this state is, or nothing."""
-        angle = state.measures["control"]
-        for goal in self._case.output.at_angles:
-            if abs(angle - goal) < 1e-6:
-                return f"{np.rad2deg(goal):03.0f}deg"
+        taken = [shot.label for shot in self.snapshots]
+        for step, angle in reversed(report.hits):
+            if step == report.steps and angle in self._angles:
+                return unused(self._angles[angle], taken)
         pressure = state.scalars.get("pressure", 0.0)
-        for goal in self._case.output.at_pressures:
-            if abs(pressure - goal) < 1e-9 * max(1.0, abs(goal)):
-                return f"{1e3 * goal:g}kPa"
+        for goal, label in self._pressures.items():
+            if abs(pressure - goal) < SAME * max(1.0, abs(goal)):
+                return unused(label, taken)
         return ""
 
 
@@ -139,24 +145,60 @@ def ended(case: Case, assembly: Assembly, rows: Sequence[dict[str, Any]]) -> tup
         rows: rows of the history.
     """
     march, report = assembly.march, assembly.march.report
-    if report.status == "stopped":
-        ramp = assembly.ramps[march.position.ramp]
-        unit, factor = ("kPa", 1e3) if ramp.scalar == "pressure" else ("", 1.0)
-        target = f"{factor * ramp.target:g} {unit}".strip()
-        return "stopped", messages.stopped(report, target, march.rules.beyond)
+    missed = not_reached(case, report, rows)
+    if report.status == "converged":
+        if not missed:
+            return "converged", ""
+        text = f"{messages.course(rows)}: {', '.join(missed)} not reached"
+        return "stopped", text + messages.passed_before(rows, case.output.stop_at_angle, report)
+    ramp, row = assembly.ramps[march.position.ramp], rows[-1]
+    text = f"; {', '.join(missed)} not reached" if missed else ""
+    failure = report.reason
     if report.status == "failed":
-        row = rows[-1]
-        return "failed", (
+        failure = (
             f"{report.reason} after {report.cutbacks} cut-backs; last converged state: "
             f"{row[col.PRESSURE]:.4g} kPa, {row[col.ANGLE]:.4g}°"
         )
+    if ramp.drive == "control":
+        begin = float(np.rad2deg(march.position.begin or 0.0))
+        turned, reason = messages.angle_missed(rows, begin, float(np.rad2deg(ramp.target)), failure)
+        return ("stopped" if turned else report.status), reason + text
+    if report.status == "stopped":
+        return "stopped", messages.stopped(report, ramp, march.rules.beyond) + text
+    return "failed", failure + text
+
+
+def unmet(case: Case, assembly: Assembly, rows: Sequence[dict[str, Any]]) -> list[str]:
+    """Warnings of what a case asks for and its run has not met.
+
+    Args:
+        case: has the outputs that were asked for.
+        assembly: its march has ended.
+        rows: rows of the history.
+    """
+    report = assembly.march.report
+    missed = not_reached(case, report, rows)
+    lines = [messages.missed(missed)] if missed else []
+    later = [ramp.scalar for ramp in assembly.ramps[assembly.march.position.ramp + 1 :]]
+    if report.ended_at is not None and later:
+        end = f"{np.rad2deg(report.ended_at):.6g}°"
+        lines.append(f"the run ended at {end}, before {' and '.join(later)} acted")
+    return lines
+
+
+def not_reached(case: Case, report: Report, rows: Sequence[dict[str, Any]]) -> list[str]:
+    """Angles and pressures that a case asks for and no state has, with their units."""
     output = case.output
-    reached = max(row[col.ANGLE] for row in rows)
-    wanted = [np.rad2deg(a) for a in (*output.at_angles, output.stop_at_angle) if a]
-    missed = [f"{a:g}°" for a in wanted if a > reached + 1e-6]
-    if missed:
-        return "stopped", f"the loads end at {reached:.4g}°: {', '.join(missed)} not reached"
-    return "converged", ""
+    hits = {angle for _, angle in report.hits}
+    angles = dict.fromkeys(
+        angle for angle in (*output.at_angles, output.stop_at_angle) if angle is not None
+    )
+    found = [f"{np.rad2deg(angle):.6g}°" for angle in angles if angle not in hits]
+    for pressure in dict.fromkeys(output.at_pressures):
+        gaps = [abs(row[col.PRESSURE] / 1e3 - pressure) for row in rows]
+        if min(gaps) >= SAME * max(1.0, abs(pressure)):
+            found.append(f"{1e3 * pressure:.6g} kPa")
+    return found
 
 
 def _share(ramp: Ramp, state: State) -> float:

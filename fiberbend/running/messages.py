@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from fem.march.records import Critical, Report
+from fem.march.records import Critical, Ramp, Report
 from fiberbend import columns as col
 
 UNSTABLE_END = (
     "the end is unstable where every load is kept at its value: given the pressure, no actuator "
     "rests there"
 )
+TURNED = 0.1
+"""An angle that has come back by so much, in degrees, has had its greatest value."""
 _COUNT = ("no", "one", "two", "three")
 
 
@@ -78,12 +81,12 @@ def remark(point: Critical) -> str:
     return f"stable again from {where} on"
 
 
-def stopped(report: Report, target: str, beyond: float) -> str:
-    """Why a march ended before its target.
+def stopped(report: Report, ramp: Ramp, beyond: float) -> str:
+    """Why a march ended before the target of a load.
 
     Args:
         report: of the march.
-        target: what was asked for, with its unit.
+        ramp: the load.
         beyond: multiple of the volume at the limit point to which the path is followed.
     """
     limits = [p for p in report.critical if p.kind == "limit" and p.after > p.before]
@@ -92,12 +95,87 @@ def stopped(report: Report, target: str, beyond: float) -> str:
     followed = f"followed to {factor} the volume there"
     if report.reason:
         followed = f"there the run ends: {report.reason}"
-    return f"{target} is not reached: {remark(limit)}; {followed}"
+    return f"{amount(ramp.scalar, ramp.target)} is not reached: {remark(limit)}; {followed}"
+
+
+def missed(requests: Sequence[str]) -> str:
+    """A warning of what a case asks for and its run has not met, with units."""
+    return f"asked for and not reached: {', '.join(requests)}"
+
+
+def course(rows: Sequence[col.Row]) -> str:
+    """How far the loads have bent an actuator."""
+    angles = [row[col.ANGLE] for row in rows]
+    low, high, last = min(angles), max(angles), angles[-1]
+    text = f"the loads end at {last + 0.0:.4g}°"
+    if min(last - low, high - last) <= TURNED and min(abs(low), abs(high)) <= TURNED:
+        return text
+    return f"{text}, the angle between {low + 0.0:.4g} and {high:.4g}° meanwhile"
+
+
+def passed_before(rows: Sequence[col.Row], stop: float | None, report: Report) -> str:
+    """A remark on a stop that only loads pass which are put on whole; empty elsewhere.
+
+    Args:
+        rows: of the history.
+        stop: the angle at which the run was to end, rad, or None.
+        report: of the march.
+    """
+    if stop is None or report.ended_at is not None:
+        return ""
+    angles = [np.deg2rad(row[col.ANGLE]) for row in rows]
+    if not min(angles) < stop < max(angles):
+        return ""
+    return (
+        f" ({np.rad2deg(stop):.6g}° is passed by what is put on before the pressure: that is put "
+        "on whole)"
+    )
+
+
+def angle_missed(
+    rows: Sequence[col.Row], begin: float, target: float, failure: str
+) -> tuple[bool, str]:
+    """Whether an angle has a greatest value short of the one that is asked for, and the reason.
+
+    Args:
+        rows: of the history.
+        begin: the angle where the load began that was to reach it, °.
+        target: what was asked for, °.
+        failure: why the march went no further; empty where it was no failure.
+    """
+    side = 1.0 if target >= begin else -1.0
+    best = max(rows, key=lambda row: side * float(row[col.ANGLE]))
+    last = rows[-1]
+    turned = bool(side * (best[col.ANGLE] - last[col.ANGLE]) > TURNED)
+    here = f"{last[col.ANGLE]:.4g}° at {last[col.PRESSURE]:.4g} kPa"
+    text = f"{target:.6g}° is not reached: "
+    if side * (best[col.ANGLE] - begin) > TURNED:
+        text += f"the angle is greatest at {best[col.ANGLE]:.4g}°, {best[col.PRESSURE]:.4g} kPa"
+        text += f", and goes back to {here}" if turned else ""
+    elif turned:
+        text += f"the pressure bends it the other way, from {begin + 0.0:.4g}° to {here}"
+    elif len(rows) > 1:
+        text += f"it stays at {here}"
+    else:
+        return False, text + failure
+    if failure:
+        text += f"; there the run ends: {failure}"
+    return turned or not failure, text
+
+
+def amount(scalar: str, value: float) -> str:
+    """A value of a load, with its unit or its name."""
+    if scalar == "pressure":
+        return f"{1e3 * value:.6g} kPa"
+    return f"{scalar} {value:.6g}"
 
 
 def jumped(before: dict[str, Any], after: dict[str, Any]) -> str:
     """A line on a step that has left its branch, from the rows at its ends."""
     ends = f"{before[col.PRESSURE]:.4g} and {after[col.PRESSURE]:.4g} kPa"
+    if before[col.PRESSURE] == after[col.PRESSURE]:
+        # another load has grown
+        ends = f"steps {before[col.STEP]} and {after[col.STEP]}"
     return (
         f"between {ends} the stored energy changes by what no load has done: the run may have "
         "gone to a neighbouring state there; shorter steps (solver.max_turn) may stay on one branch"
@@ -127,7 +205,9 @@ def _beyond(point: Critical) -> str:
 
 
 def _where(point: Critical) -> str:
-    value = f"{1e3 * point.value:.4g} kPa" if point.scalar == "pressure" else f"{point.value:.4g}"
+    value = f"{point.scalar} {point.value:.4g}"
+    if point.scalar == "pressure":
+        value = f"{1e3 * point.value:.4g} kPa"
     if point.control is None:
         return value
     return f"{value}, {_degrees(point.control)}"

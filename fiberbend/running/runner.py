@@ -24,7 +24,7 @@ from fiberbend.running import messages, record, restart
 from fiberbend.running.assembly import Assembly, assemble
 from fiberbend.running.folder import RunFolder
 from fiberbend.running.history import Recorder
-from fiberbend.running.hooks import Recording, ended
+from fiberbend.running.hooks import Recording, ended, unmet
 from fiberbend.running.progress import Progress
 from fiberbend.running.warm import SectionStates, section_guides, section_states
 from fiberbend.states.snapshot import ModelMesh
@@ -119,7 +119,7 @@ class _Run:
         progress.phase("solve")
         assembly.march.run(assembly.ramps, [recording])
         status, reason = ended(case, assembly, recorder.rows)
-        self._warn_of_ends(status, recorder, recording)
+        self._warn_of_ends(status, assembly, recorder, recording)
         check = self._cross_check(recorder.rows, section)
         progress.phase("output")
         recording.keep("last")
@@ -192,10 +192,13 @@ class _Run:
 
     # --- after the march -----------------------------------------------------------------------
 
-    def _warn_of_ends(self, status: str, recorder: Recorder, recording: Recording) -> None:
-        """Warn of what only a whole history shows: jumps, and an unstable end."""
+    def _warn_of_ends(
+        self, status: str, assembly: Assembly, recorder: Recorder, recording: Recording
+    ) -> None:
+        """Warn of what only a whole history shows: jumps, what is missed, and an unstable end."""
         jumps, rows = recorder.integrate(), recorder.rows
         lines = [messages.jumped(rows[step - 1], rows[step]) for step in jumps]
+        lines += unmet(self.case, assembly, rows)
         if status == "converged" and rows[-1].get(col.MODES):
             lines.append(messages.UNSTABLE_END)
         lines += record.doubts(self.case, rows)

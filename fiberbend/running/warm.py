@@ -112,7 +112,7 @@ def section_states(case: Case) -> SectionStates | None:
     measures = {}
     for name in names:
         values = np.array([state.measures[name] for state in states])
-        if np.all(np.diff(values) > 0):
+        if abs(np.sum(np.sign(np.diff(values)))) == len(values) - 1:
             measures[name] = values * (symmetry_factor if name.startswith("conjugate") else 1.0)
     dofs = assembly.scene.body.node_dofs
     pressure, angle, volume = (

@@ -79,6 +79,10 @@ class CircleActuator(ShapedActuator):
             widest_roof=outer * math.sin(math.pi / 4),
         )
 
+    def one_material(self) -> frozenset[str]:
+        """The ring is round: wall and floor."""
+        return frozenset({"wall"} if self.floor is None else {"wall", "floor"})
+
     def outline(self) -> tuple[Side, ...]:
         """Two quarters of the circle."""
         r = self.outline_half_width

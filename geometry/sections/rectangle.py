@@ -13,6 +13,7 @@ from geometry.sections.size import MeshSize, Strips, elements_through
 
 _SHORTER = 3
 _LONGER = 12
+_ROUNDING = 1e-9
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -55,6 +56,13 @@ class RectangleActuator(ShapedActuator):
             perimeter=2 * (wide + high),
             widest_roof=width / 2,
         )
+
+    def one_material(self) -> frozenset[str]:
+        """Wall, floor and layer, where below the chamber they are as thick as above it."""
+        below = self.floor + (self.layer or 0.0)
+        if abs(below - self.wall) > _ROUNDING * self.wall:
+            return frozenset()
+        return frozenset({"wall", "floor", *([] if self.layer is None else ["layer"])})
 
     def outline(self) -> tuple[Side, ...]:
         """Three sides of the half box."""

@@ -40,6 +40,14 @@ class ShapedActuator(Actuator):
             strips: strips of roof and post; they add the names "roof" and "post".
         """
 
+    def one_material(self) -> frozenset[str]:
+        """Regions that, of one material, make the section its own image turned upside down.
+
+        Returns:
+            Their names; none where the section is no such image whatever they are made of.
+        """
+        return frozenset()
+
     @classmethod
     def contradictions(cls, given: Mapping[str, float | None]) -> Iterator[tuple[str, str]]:
         """Dimensions that this shape cannot have together, though each is valid by itself.

@@ -16,6 +16,11 @@ def energy(state: Deformation, mu: Any, jm: Any) -> Any:
     return -mu / 2 * jm * state.ln(1 - (state.i1 - 3) / jm)
 
 
+def exhausted(state: Deformation, mu: Any, jm: Any) -> Any:
+    """(I1 − 3)/Jm."""
+    return (state.i1 - 3) / jm
+
+
 LAW = Law(
     "gent",
     energy,
@@ -23,4 +28,5 @@ LAW = Law(
         Parameter("mu", "Shear modulus", allowed="above zero"),
         Parameter("jm", "Limit of I1 - 3", unit="1", allowed="above zero", elsewhere=1e30),
     ),
+    exhausted,
 )

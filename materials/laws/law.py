@@ -90,6 +90,8 @@ class Law:
         name: name in a case.
         energy: strain energy in MPa, a function of a `Deformation` and the parameters by name.
         parameters: the parameters, in the order in which a user would write them.
+        exhausted: part of its limiting stretch that a deformation has used, a function like the
+            energy, which ends where this is 1; None: it has no limit.
 
     Raises:
         ValueError: two parameters of one name.
@@ -98,6 +100,7 @@ class Law:
     name: str
     energy: Callable[..., Any]
     parameters: tuple[Parameter, ...]
+    exhausted: Callable[..., Any] | None = None
 
     def __post_init__(self) -> None:
         if len(set(self.names)) < len(self.names):

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from analytic.bending import Hemicircle
+from analytic.control.filter import TOLERANCE, AngleFilter
 from analytic.inverse import FORWARD, angle_range, first_angle
-from analytic.stress import Floats, effective
+from analytic.stress import Floats, effective, wound
+from materials.material import Material
 
 
 def _hill(angle: Floats) -> Floats:
@@ -47,3 +49,43 @@ def test_forward_bending_ends_before_a_thick_sheath_is_squeezed_to_nothing() -> 
     assert thick.angles[1] == pytest.approx(0.99 * 8)
     angle = np.linspace(0, 7.9, 9)
     assert thick.angle(thick.pressure(angle)) == pytest.approx(angle)
+
+
+def _gent(jm: float) -> Hemicircle:
+    return Hemicircle(8, 2, 2, 100, stress=wound(Material("gent", {"mu": 0.3, "jm": jm}).principal))
+
+
+def _limit(jm: float) -> float:
+    """Angle at which the roof, 12 mm above y = 0, is stretched to λ − 1/λ = √Jm, rad.
+
+    The form integrates by points, the highest of which lies 0.6 % below the roof.
+    """
+    root = math.sqrt(jm)
+    return ((root + math.sqrt(jm + 4)) / 2 - 1) * 100 / 12
+
+
+@pytest.mark.parametrize("jm", [0.3, 1.0, 3.0, 4.3])
+def test_the_table_ends_before_rubber_meets_its_limit(jm: float) -> None:
+    model, limit = _gent(jm), _limit(jm)
+    low, high = model.tabulated
+    assert (low, high) == pytest.approx((-math.pi / 2, 0.97 * limit), rel=6e-3)
+    assert high < limit
+    angle = np.linspace(low, high, 50)[1:-1]
+    assert model.angle(model.pressure(angle)) == pytest.approx(angle, abs=1e-9)
+    assert AngleFilter.from_model(model).error < TOLERANCE
+
+
+def test_rubber_without_a_limit_below_720_degrees_is_tabulated_as_far() -> None:
+    assert _limit(5.0) > FORWARD / 0.97
+    assert _gent(5.0).tabulated == _gent(5.0).angles
+
+
+def test_every_pressure_is_held_below_the_limit() -> None:
+    # P grows without bound there: 5 MPa lie in the last of the search's 181 pieces
+    model, limit = _gent(1.0), _limit(1.0)
+    found = first_angle(model.pressure, 5.0, FORWARD)
+    assert found.end == ""
+    assert model.pressure(found.angle) == pytest.approx(5.0)
+    assert found.angle == pytest.approx(limit, rel=6e-3)
+    beyond = first_angle(model.pressure, math.inf, FORWARD)
+    assert (beyond.end, beyond.angle) == ("limit", pytest.approx(limit, rel=6e-3))
