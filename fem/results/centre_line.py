@@ -111,7 +111,7 @@ class CentreLine:
         """
         along = np.vstack([np.zeros(3), np.cumsum(self._steps(), axis=0)])
         far = np.abs(self._z - (self._z[0] + self._z[-1]) / 2)
-        some = np.argsort(far)[: max(2, int(np.sum(far <= self._length / 4)))]
+        some = np.argsort(far)[: max(2, int(np.sum(far <= (1 + 1e-9) * self._length / 4)))]
         slopes: Floats = np.polyfit(self._z[some], along[some], 1)[0]
         return slopes * self._length
 

@@ -7,8 +7,7 @@ import pytest
 
 from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
-from fem.march.frames import Frames
-from fem.results.measures import BendingAngle, UniformAngle
+from fem.results.centre_line import BendingAngle, CentreLine
 from geometry.bodies.extrude import hexahedral_body
 from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize
@@ -29,7 +28,7 @@ def test_whole_turns_are_those_of_the_body_below_the_end(degrees: float, end: fl
     middle = x[plane].mean(axis=0)
     x[plane] = middle + (x[plane] - middle) @ turn.T
     body.set_displacement(x - rest)
-    angle = BendingAngle(body, Frames(body)).value()
+    angle = BendingAngle(CentreLine(body)).value()
     assert np.rad2deg(angle) == pytest.approx(degrees + end, abs=1e-9)
 
 
@@ -47,9 +46,9 @@ def test_the_middle_half_has_an_angle_of_its_own() -> None:
     height = rest[:, 1]
     x = np.column_stack([rest[:, 0], y + height * np.cos(at), z + height * np.sin(at)])
     body.set_displacement(x - rest)
-    frames = Frames(body)
-    whole = BendingAngle(body, frames).value()
-    middle = UniformAngle(body, frames).value(frames.fit(body.displacement()))
+    line = CentreLine(body)
+    whole = BendingAngle(line).value()
+    middle = line.middle()[0]
     assert whole == pytest.approx(0, abs=1e-2)
     # stations next to the change of curvature see both
     assert middle == pytest.approx(k * length, rel=0.2)
