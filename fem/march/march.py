@@ -11,13 +11,7 @@ from fem.march.equilibrium import Equilibrium
 from fem.march.frames import Frames
 from fem.march.guide import Guide
 from fem.march.hooks import Hook
-from fem.march.limit_points import (
-    critical,
-    crossing,
-    limit_ahead,
-    limit_between,
-    softens,
-)
+from fem.march.limit_points import critical, crossing, limit_ahead, limit_between, softens
 from fem.march.position import Position
 from fem.march.predictor import Predictor, distinct, lagrange
 from fem.march.records import Causes, Critical, Ramp, Report, Rules, State, measure
@@ -92,6 +86,14 @@ class March:
         """Go on from where a march of the same scene stood; puts the scene there."""
         self.position = position
         self.equilibrium.restore(position.states[-1])
+        self.equilibrium.scene.raise_force_floor(position.force_floor)
+        for hook, memory in zip(self.hooks, position.memory, strict=False):
+            hook.recall(memory)
+
+    def saved(self) -> Position:
+        """Where it stands, with what solver and hooks remember."""
+        floor, memory = self.equilibrium.scene.force_floor, [hook.memory() for hook in self.hooks]
+        return dataclasses.replace(self.position, force_floor=floor, memory=memory)
 
     def run(self, ramps: Sequence[Ramp], hooks: Sequence[Hook] = ()) -> Report:
         """March through all ramps in order; earlier loads keep their values.
@@ -109,7 +111,7 @@ class March:
                 break
             position.ramp += 1
             position.increment = position.begin = position.first = None
-            position.path_following = False
+            position.path_following, position.failures = False, 0
         return position.report
 
     # --- what hooks may change -----------------------------------------------------------------
@@ -181,7 +183,6 @@ class March:
         requests = Requests(ramp)
         # a load that hardly bends begins with tiny increments of the angle
         first = position.first = position.first or position.increment
-        failures = 0
         slow: Outcome | None = None
         while True:
             state = self.states[-1]
@@ -205,12 +206,12 @@ class March:
             new, outcome, kind = self._attempt(ramp, span, kind, aim)
             self._predictor.heed(failed=new is None)
             if new is None:
-                failures += 1
+                position.failures += 1
                 self.report.cutbacks += 1
                 # what was tried: a stop may have clipped it, and the next try would be the same
                 position.increment = min(size, abs(target - now)) * self.rules.cut
                 hopeless = (
-                    failures > self.rules.cutbacks
+                    position.failures > self.rules.cutbacks
                     or position.increment < self.rules.least * way.span
                 )
                 inverted = self._causes.inverted() if hopeless and self._causes else ""
@@ -228,7 +229,7 @@ class March:
                 self.equilibrium.restore(state)
                 continue
             if not (position.path_following and np.isfinite(way.end)):
-                failures = 0
+                position.failures = 0
             position.states = [*self.states[1 - self.rules.memory :], new]
             self.report.steps += 1
             self.report.per_step.append(outcome.iterations)

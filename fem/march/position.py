@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import Any
 
 from fem.march.records import Report, State
 
@@ -19,6 +20,9 @@ class Position:
         ramp: number of the ramp under way.
         path_following: the ramp under way has turned from the value of its scalar to the
             conjugate (volume control), which grows also where the value falls.
+        failures: increments that have failed since the last one that counts.
+        force_floor: least scale of forces that Newton's method has come to know, N.
+        memory: what the march's own hooks remember, in their order.
         report: what happened so far.
     """
 
@@ -28,4 +32,7 @@ class Position:
     first: float | None = None
     ramp: int = 0
     path_following: bool = False
+    failures: int = 0
+    force_floor: float = 0.0
+    memory: list[dict[str, Any]] = dataclasses.field(default_factory=list)
     report: Report = dataclasses.field(default_factory=Report)

@@ -13,6 +13,7 @@ from fem.results.checkpoint import Archive
 from fem.solver.newton import Outcome
 from fiberbend import columns as col
 from fiberbend.case.case import Case
+from fiberbend.process import signals
 from fiberbend.running import messages, restart
 from fiberbend.running.assembly import Assembly
 from fiberbend.running.folder import RunFolder
@@ -72,7 +73,8 @@ class Recording(Hook):
             self.keep(label)
         if self._folder is not None and self._resumes:
             self._recorder.integrate()
-            restart.save(self._folder, self._archive, march.position, self._recorder.rows)
+            restart.save(self._folder, self._archive, march.saved(), self._recorder.rows)
+        signals.check()
 
     def after_cutback(self, march: Marching, reason: str) -> None:
         """Report it."""
