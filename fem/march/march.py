@@ -85,6 +85,7 @@ class March:
     def resume(self, position: Position) -> None:
         """Go on from where a march of the same scene stood; puts the scene there."""
         self.position = position
+        self.equilibrium.order(self.rest)
         self.equilibrium.restore(position.states[-1])
         self.equilibrium.scene.raise_force_floor(position.force_floor)
         for hook, memory in zip(self.hooks, position.memory, strict=False):

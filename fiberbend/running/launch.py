@@ -22,6 +22,7 @@ _PATIENCE = 5.0
 """Seconds that an error of one rank waits for that of the others; all end within ten."""
 _HASTE = 0.3
 """The same for a signal: mpirun kills a second after it has handed one on."""
+_GRACE = 1.5
 _ALONE = {
     "OMPI_MCA_ess_singleton_isolated": "1",
     "OMPI_MCA_pml": "ob1",
@@ -99,6 +100,8 @@ def stopped(stop: Interrupted) -> int:
     if rank() == 0 or not stop.together:
         print(f"fiberbend: {stop.reason}", file=sys.stderr, flush=True)
     if not stop.together:
+        # mpirun ends all by itself where the signal came from there
+        time.sleep(_GRACE)
         end_all(stop.code)
     return stop.code
 
