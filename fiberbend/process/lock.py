@@ -50,6 +50,10 @@ class FolderLock:
         except OSError as error:
             if error.errno not in (errno.ENOLCK, errno.EOPNOTSUPP):
                 raise
+            with contextlib.suppress(OSError):
+                if not self._path.stat().st_size:
+                    # what the attempt has made, and no holder wrote
+                    self._path.unlink()
             self._lock = SoftFileLock(self._path, thread_local=False)
             try:
                 self._acquire()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import io
 import os
 import sys
 from collections.abc import Iterable
@@ -65,6 +66,9 @@ def guard() -> None:
         stream = getattr(sys, name)
         if stream is None:
             stream = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+        if isinstance(stream, io.TextIOWrapper):
+            # a terminal that knows no θ costs no line
+            stream.reconfigure(errors="backslashreplace")
         if not isinstance(stream, _Lossy):
             setattr(sys, name, cast(TextIO, _Lossy(stream)))
 

@@ -244,7 +244,9 @@ def _make(path: Path, case: Case, overwrite: bool) -> FolderLock:
     lock = _hold(path)
     try:
         remains.clear(path, CASE_FILE, FILES)
-        _check(path, overwrite)
+        if not overwrite:
+            # another process may have been quicker
+            _check(path, overwrite)
         with remains.aside(path, CASE_FILE, FILES):
             RunFolder(path).write_case(case)
     except BaseException:
