@@ -43,7 +43,7 @@ def entries(
     """Entries of run.json for a run of any model, in this order.
 
     Args:
-        status: 'converged', 'stopped' or 'failed'; see `interrupted`.
+        status: 'converged', 'stopped' or 'failed'; see `unfinished`.
         reason: why not converged, or empty.
         model: name of the model.
         counts: "unknowns", "load_steps", "newton_iterations", "cutbacks" and what the model adds.
@@ -64,16 +64,18 @@ def entries(
     }
 
 
-def interrupted(
+def unfinished(
+    status: str,
     reason: str,
     model: str,
     rows: Sequence[col.Row],
     wall_s: Mapping[str, float],
     ranks: int,
 ) -> dict[str, Any]:
-    """Entries of run.json for a run that a signal has stopped; asks no other rank.
+    """Entries of run.json for a run that has not come to its end; asks no other rank.
 
     Args:
+        status: 'running', also where a run was killed; 'interrupted' by a signal.
         reason: what is kept.
         model: name of the model.
         rows: of the history so far.
@@ -81,7 +83,7 @@ def interrupted(
         ranks: number of ranks.
     """
     return {
-        "status": "interrupted",
+        "status": status,
         "reason": reason,
         "model": model,
         "load_steps": max(0, len(rows) - 1),

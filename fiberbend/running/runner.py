@@ -66,7 +66,7 @@ def run_case(
     else:
         folder = RunFolder.create(out, case, overwrite, comm)
     with folder:
-        # there only of a run that has ended
+        # of an end that is no more
         folder.remove(RUN_FILE)
         return _solve(case, folder, progress, comm, resume)
 
@@ -113,7 +113,7 @@ class _Run:
     ) -> None:
         self.case, self.model, self.folder = case, model, folder
         self.progress, self.comm = progress, comm
-        self.recorder: Recorder | None = None
+        self.recording: Recording | None = None
 
     def go(self, again: bool) -> RunResult:
         """Mesh, compile, solve, write; stopped by a signal, leave run.json."""
@@ -132,7 +132,7 @@ class _Run:
 
         assembly = assemble(case, mesh, self.comm, make_guide, watch=True)
         recorder, recording = self._recording(assembly, again)
-        self.recorder = recorder
+        self.recording = recording
         remark = winding_remark(case)
         if remark is not None and "NOT" in remark:
             progress.message(f"winding {remark}")
@@ -181,17 +181,22 @@ class _Run:
         folder = self.folder
         if folder is None:
             return
-        step = self.recorder.rows[-1][col.STEP] if self.recorder else 0
-        if self.model.resumes and step:
-            stop.reason = f"stopped at step {step}, kept; go on with --resume"
+        rows = self.recording.rows if self.recording else []
+        kept = self.recording.kept if self.recording else 0
+        if kept:
+            stop.reason = f"stopped at step {kept}, kept; go on with --resume"
         else:
-            begins = "" if self.model.resumes else f", a {self.model.name} begins anew"
-            stop.reason = f"stopped at step {step}; go on with --resume{begins}"
+            stop.reason = f"stopped at step {rows[-1][col.STEP] if rows else 0}; "
+            stop.reason += "go on with --resume, from the beginning"
         stop.together = self.comm.size == 1 == launch.size() or launch.all_stopped()
         if folder.writes or not stop.together:
-            rows = self.recorder.rows if self.recorder else []
-            run = record.interrupted(
-                stop.reason, self.model.name, rows, self.progress.wall_s, launch.size()
+            run = record.unfinished(
+                "interrupted",
+                stop.reason,
+                self.model.name,
+                rows[: kept + 1] if kept else rows,
+                self.progress.wall_s,
+                launch.size(),
             )
             RunFolder(folder.path).write_run(**run)
 
@@ -241,7 +246,7 @@ class _Run:
             recorder,
             self.folder,
             self.progress,
-            self.model.resumes,
+            self.model,
             () if saved is None else saved.snapshots,
         )
         if again:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
@@ -155,10 +157,9 @@ def test_an_overwrite_that_is_killed_is_finished_or_undone(
     after: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """All of the old run or nothing of it, at whichever file the kill comes."""
-    import os
-
-    path, moved, replace = _earlier(tmp_path / "run"), [], os.replace
+    path, replace = _earlier(tmp_path / "run"), os.replace
     before = _files(path)
+    moved: list[Path] = []
 
     def dying(source: Path, target: Path) -> None:
         if len(moved) == after:
@@ -191,14 +192,17 @@ def test_a_start_clears_what_kills_have_left(tmp_path: Path) -> None:
 @pytest.mark.parametrize("left", [[], [LOCK_FILE], [".case.resolved.yaml.abcd1234.part"]])
 def test_killed_at_once_it_begins_anew(left: list[str], tmp_path: Path) -> None:
     """Whichever of the three ways is taken."""
-    for number, start in enumerate(
-        (RunFolder.create, RunFolder.resume, lambda *a: RunFolder.create(*a, overwrite=True))
-    ):
+    starts: list[Callable[[Path], RunFolder]] = [
+        lambda path: RunFolder.create(path, CASE),
+        lambda path: RunFolder.resume(path, CASE),
+        lambda path: RunFolder.create(path, CASE, overwrite=True),
+    ]
+    for number, start in enumerate(starts):
         path = tmp_path / str(number)
         path.mkdir()
         for name in left:
             (path / name).touch()
-        start(path, CASE).close()
+        start(path).close()
         assert _files(path) == [CASE_FILE]
 
 
