@@ -7,7 +7,6 @@ import errno
 import io
 import os
 import sys
-from collections.abc import Iterable
 from typing import Any, TextIO, cast
 
 
@@ -32,11 +31,6 @@ class _Lossy:
         except OSError as error:
             self._lose(error)
             return len(text)
-
-    def writelines(self, lines: Iterable[str]) -> None:
-        """Write, or lose them."""
-        for line in lines:
-            self.write(line)
 
     def flush(self) -> None:
         """Write what is held back, or lose it."""
