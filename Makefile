@@ -10,7 +10,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo sweep test verify hard speed tables check format docs schema clean
+.PHONY: help setup demo sweep test verify hard survive speed tables check format docs schema clean
 
 help: ## list the commands
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -33,7 +33,12 @@ verify: setup ## run the slow convergence ladders against exact solutions
 
 hard: setup ## run the hard cases in every model and write docs/stability.md
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/hard.py
-	$(BIN)/python -m pytest -m hard tests/hard/test_machinery.py tests/run/test_jumps.py
+	$(BIN)/python -m pytest -m hard tests/hard/test_machinery.py tests/run/test_jumps.py \
+	    tests/run/test_restart.py
+
+survive: setup ## kill runs at random moments and go on; damaged cases; writes docs/stability.md
+	$(BIN)/python bench/survive_kill.py
+	$(BIN)/python bench/survive_fuzz.py
 
 tables: setup ## make the accuracy tables in docs/ again; half an hour
 	$(MPIRUN) $(BIN)/python bench/tables.py

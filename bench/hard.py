@@ -20,6 +20,7 @@ from typing import Any
 
 from bench.hard_cases import HARD, MODELS, ORDERS, Hard
 from bench.hard_infsup import LADDERS, fault
+from bench.survive import kept
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "stability.md"
@@ -180,7 +181,8 @@ def write(records: Sequence[dict[str, Any]], constants: Sequence[str], faults: l
         lines.append("\n## Not as expected\n")
         lines += [f"- {text}" for text in faults]
         lines += [f"- {r['name']}, {r['model']}: {fault}" for r in bad for fault in r["faults"]]
-    PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    others = kept(PAGE.read_text(encoding="utf-8")) if PAGE.exists() else ""
+    PAGE.write_text("\n".join(lines) + f"{others}\n", encoding="utf-8")
 
 
 def main() -> int:

@@ -264,6 +264,11 @@ class Scene:
         """Least det F over the quadrature points of all ranks."""
         return self._det_f()
 
+    @property
+    def force_floor(self) -> float:
+        """Least value of `force_scale`, N."""
+        return self._force_floor
+
     def raise_force_floor(self, floor: float) -> None:
         """Let `force_scale` be no less than this from now on, N."""
         self._force_floor = max(self._force_floor, floor)

@@ -1,6 +1,6 @@
 """The command `fiberbend`.
 
-Exit codes: 0 done, 1 wrong input, 2 a solution that failed.
+Exit codes: 0 done, 1 wrong input, 2 a solution that failed, 128 and its number after a signal.
 """
 
 from __future__ import annotations
@@ -13,12 +13,15 @@ from typing import Annotated, Any, Literal, NoReturn
 
 from cyclopts import App, CycloptsError, Parameter
 
+from fiberbend.process import signals, streams
 from fiberbend.reader.arguments import CaseFile, Changes
 from fiberbend.running import launch
 from fiberbend.running.launch import FAILED, say
 from fiberbend.version import __version__
 
 WRONG_INPUT = 1
+COMPUTING = ("run", "sweep", "control")
+"""Commands whose results are in a folder, whatever becomes of the lines that they print."""
 
 app = App(
     name="fiberbend",
@@ -43,13 +46,20 @@ app.command(
 
 
 def entry() -> NoReturn:
-    """The installed command: `main`, and under mpirun an end that leaves rank 0 time to speak."""
+    """The command as a process: `main`, with signals, streams and other ranks in order."""
+    signals.install()
+    streams.guard()
     try:
         code: Any = main()
     except SystemExit as stop:
         code = stop.code
     if code == WRONG_INPUT:
         launch.let_rank_0_speak()
+    lost = streams.loss()
+    if lost:
+        say(f"fiberbend: standard output: {lost}", sys.stderr)
+        if not code and sys.argv[1:2] and sys.argv[1] not in COMPUTING:
+            code = WRONG_INPUT
     sys.exit(code)
 
 
@@ -81,16 +91,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
             result_action="return_value",
         )
     except CycloptsError as error:
-        say(f"fiberbend: {error}", sys.stderr)
-        raise SystemExit(WRONG_INPUT) from None
+        raise SystemExit(launch.refuse(f"fiberbend: {error}", WRONG_INPUT)) from None
     except Exception as error:
         from fiberbend.schema.problems import CaseError
 
         if not isinstance(error, CaseError):
             raise
-        # Every rank finds the same and ends by itself, MPI or not; one of them speaks.
-        say(str(error), sys.stderr)
-        return WRONG_INPUT
+        return launch.refuse(str(error), WRONG_INPUT)
     return code or 0
 
 
@@ -163,9 +170,15 @@ def run(
         launch.start_mpi()
         from fiberbend.running.runner import run_case
 
-        result = run_case(checked, folder, overwrite=overwrite, progress=progress, resume=resume)
+        with signals.raising():
+            result = run_case(
+                checked, folder, overwrite=overwrite, progress=progress, resume=resume
+            )
     except CaseError:
         raise
+    except KeyboardInterrupt as error:
+        progress.close()
+        return launch.stopped(signals.stop_of(error))
     except BaseException as error:
         progress.close()
         return launch.crash(error, folder)
@@ -206,15 +219,16 @@ def sweep(
         retry: Run failed points again.
     """
     from fiberbend.schema.problems import CaseError
-    from fiberbend.sweep.command import INTERRUPTED, run_sweep
+    from fiberbend.sweep.command import run_sweep
 
     folder = out or Path("runs") / file.stem
     try:
-        return run_sweep(file, folder, settings, jobs, retry, say=say)
+        with signals.raising():
+            return run_sweep(file, folder, settings, jobs, retry, say=say)
     except CaseError:
         raise
-    except KeyboardInterrupt:
-        return INTERRUPTED
+    except KeyboardInterrupt as error:
+        return launch.stopped(signals.stop_of(error))
     except Exception as error:
         return launch.crash(error, folder)
 

@@ -60,6 +60,17 @@ class Equilibrium:
             self.scene.set_scalar(name, value)
         self.scene.set(state.w)
 
+    def order(self, rest: State) -> None:
+        """Let the solver order its unknowns as a march does that begins at rest.
+
+        MUMPS orders them once, by the values of its first matrix too; another order is another
+        round-off.
+        """
+        self.restore(rest)
+        self.scene.predict(None)
+        self.scene.assemble_tangent()
+        self.newton.factor.renew()
+
     def _natural(self) -> list[Stationary]:
         """One equation for each natural scalar."""
         return [Stationary(self.scene, name) for name in self.scene.natural]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Any, Protocol
 
 from fem.march.position import Position
 from fem.march.records import Ramp, State
@@ -16,6 +16,9 @@ class Marching(Protocol):
     @property
     def position(self) -> Position:
         """Where it stands; to be read."""
+
+    def saved(self) -> Position:
+        """Where it stands, with all that it needs to go on as if it had never stopped."""
 
     def limit_increment(self, size: float) -> None:
         """Let the next increment of the driven quantity be no longer than this."""
@@ -41,6 +44,13 @@ class Hook:
 
     def after_cutback(self, march: Marching, reason: str) -> None:
         """An increment has failed; the march is back at its last state and tries a shorter one."""
+
+    def memory(self) -> dict[str, Any]:
+        """What it needs to go on as if it had never stopped: numbers, words, None, by name."""
+        return {}
+
+    def recall(self, memory: dict[str, Any]) -> None:
+        """Go on with what `memory` gave."""
 
 
 class AfterStep(Hook):

@@ -11,13 +11,7 @@ from fem.march.equilibrium import Equilibrium
 from fem.march.frames import Frames
 from fem.march.guide import Guide
 from fem.march.hooks import Hook
-from fem.march.limit_points import (
-    critical,
-    crossing,
-    limit_ahead,
-    limit_between,
-    softens,
-)
+from fem.march.limit_points import critical, crossing, limit_ahead, limit_between, softens
 from fem.march.position import Position
 from fem.march.predictor import Predictor, distinct, lagrange
 from fem.march.records import Causes, Critical, Ramp, Report, Rules, State, measure
@@ -90,7 +84,16 @@ class March:
     def resume(self, position: Position) -> None:
         """Go on from where a march of the same scene stood; puts the scene there."""
         self.position = position
+        self.equilibrium.order(self.rest)
         self.equilibrium.restore(position.states[-1])
+        self.equilibrium.scene.raise_force_floor(position.force_floor)
+        for hook, memory in zip(self.hooks, position.memory, strict=False):
+            hook.recall(memory)
+
+    def saved(self) -> Position:
+        """Where it stands, with what solver and hooks remember."""
+        floor, memory = self.equilibrium.scene.force_floor, [hook.memory() for hook in self.hooks]
+        return dataclasses.replace(self.position, force_floor=floor, memory=memory)
 
     def run(self, ramps: Sequence[Ramp], hooks: Sequence[Hook] = ()) -> Report:
         """March through all ramps in order; earlier loads keep their values.
@@ -112,6 +115,7 @@ class March:
             position.ramp += 1
             position.increment = position.begin = position.first = None
             position.path_following, position.toward, position.nearest = False, 0.0, None
+            position.failures = 0
         return position.report
 
     # --- what hooks may change -----------------------------------------------------------------
@@ -192,7 +196,6 @@ class March:
                     return self._end(STILL)
         # a load that hardly bends begins with tiny increments of the angle
         first = position.first = position.first or position.increment
-        failures = 0
         slow: Outcome | None = None
         while True:
             state = self.states[-1]
@@ -226,12 +229,12 @@ class March:
                     new, outcome = None, dataclasses.replace(outcome, reason=MISSED)
             self._predictor.heed(failed=new is None)
             if new is None:
-                failures += 1
+                position.failures += 1
                 self.report.cutbacks += 1
                 # what was tried: a stop may have clipped it, and the next try would be the same
                 position.increment = min(size, abs(target - now)) * self.rules.cut
                 hopeless = (
-                    failures > self.rules.cutbacks
+                    position.failures > self.rules.cutbacks
                     or position.increment < self.rules.least * way.span
                 )
                 inverted = self._causes.inverted() if hopeless and self._causes else ""
@@ -244,12 +247,12 @@ class March:
                     outcome.reason == BEYOND or softens(self.states, ramp.scalar)
                 ):
                     self._follow_path(ramp)
-                elif way.kind == "control" and slackens(self.states, ramp, failures):
+                elif way.kind == "control" and slackens(self.states, ramp, position.failures):
                     self._follow_path(ramp)
-                    failures = 0
+                    position.failures = 0
                 continue
             if position.toward or not (position.path_following and np.isfinite(way.end)):
-                failures = 0
+                position.failures = 0
             position.states = [*self.states[1 - self.rules.memory :], new]
             self.report.steps += 1
             self.report.per_step.append(outcome.iterations)

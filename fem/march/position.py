@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import Any
 
 from fem.march.records import Report, State
 
@@ -22,6 +23,9 @@ class Position:
         toward: sign of the conjugate's way where a ramp of the control quantity has turned to it;
             0 elsewhere.
         nearest: how near the control quantity has come to the target on that way, rad.
+        failures: increments that have failed since the last one that counts.
+        force_floor: least scale of forces that Newton's method has come to know, N.
+        memory: what the march's own hooks remember, in their order.
         report: what happened so far.
     """
 
@@ -33,4 +37,7 @@ class Position:
     path_following: bool = False
     toward: float = 0.0
     nearest: float | None = None
+    failures: int = 0
+    force_floor: float = 0.0
+    memory: list[dict[str, Any]] = dataclasses.field(default_factory=list)
     report: Report = dataclasses.field(default_factory=Report)

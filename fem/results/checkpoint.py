@@ -39,12 +39,15 @@ class Archive:
     Args:
         scene: the compiled scene.
         frames: rod frames, to describe a state that was read back; None: not needed.
+
+    Attributes:
+        comm: communicator of the scene.
     """
 
     def __init__(self, scene: Scene, frames: Frames | None) -> None:
         self._scene = scene
         self._frames = frames
-        self._comm = scene.domain.comm
+        self.comm = self._comm = scene.domain.comm
         owned = scene.domain.owned
         self._cells = scene.domain.cells[:owned]
         self._multiplier: compat.PointValues | None = None

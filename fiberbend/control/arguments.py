@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from fiberbend.control.settings import Options, read_settings
+from fiberbend.process import signals
 from fiberbend.reader.arguments import CaseFile, Changes
 from fiberbend.running import launch
 from fiberbend.running.launch import say
@@ -79,9 +80,12 @@ def control(
         launch.start_mpi()
         from fiberbend.control.command import run_control
 
-        result = run_control(checked, wanted, folder, overwrite)
+        with signals.raising():
+            result = run_control(checked, wanted, folder, overwrite)
     except CaseError:
         raise
+    except KeyboardInterrupt as error:
+        return launch.stopped(signals.stop_of(error))
     except BaseException as error:
         return launch.crash(error, folder)
     for line in result.lines():

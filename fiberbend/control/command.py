@@ -79,7 +79,8 @@ def run_control(
         sine_metrics(sine, settings.sine),
     )
     if out is not None:
-        _write(result, case, RunFolder.create(out, case, overwrite, comm))
+        with RunFolder.create(out, case, overwrite, comm) as folder:
+            _write(result, case, folder)
     return result
 
 

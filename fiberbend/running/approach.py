@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from fem.march.hooks import Hook, Marching
 from fem.march.records import Ramp, State
 from fem.results.touch import Touch, probes
@@ -36,9 +38,17 @@ class Approach(Hook):
         """How each obstacle is met at the present state."""
         return {name: probe.read() for name, probe in self._probes.items()}
 
+    def memory(self) -> dict[str, Any]:
+        """The increment before an approach has shortened it."""
+        return {"usual": self._usual}
+
+    def recall(self, memory: dict[str, Any]) -> None:
+        """Go on with it."""
+        self._usual = memory["usual"]
+
     def before_ramp(self, march: Marching, ramp: Ramp) -> None:
         """See what touches where the ramp begins, or where a run goes on."""
-        if ramp != self._ramp:
+        if self._ramp is not None and ramp != self._ramp:
             # the increment of another load
             self._usual = None
         self._ramp = ramp

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import io
 import json
 import os
-import shutil
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import IO, Any
@@ -16,6 +15,8 @@ import yaml
 
 from fiberbend import columns as col
 from fiberbend.case.case import Case
+from fiberbend.process import remains
+from fiberbend.process.lock import FolderLock, HeldError, holder
 from fiberbend.schema.paths import differences, value_at
 from fiberbend.schema.problems import CaseError, Problem, found
 
@@ -40,20 +41,58 @@ RUN_KEYS = (
 CASE_FILE = "case.resolved.yaml"
 RUN_FILE = "run.json"
 HISTORY_FILE = "history.csv"
+MESH = "mesh.npz"
 CHECKPOINT = "checkpoint.npz"
+CHECKPOINT_BEFORE = "checkpoint.before.npz"
+"""The one before the last, for when that cannot be read."""
+BLOCKED = "blocked"
+"""Folder within that of a sweep's point with the same body kept straight."""
+
+_OF_A_RUN = (
+    *(CASE_FILE, RUN_FILE, HISTORY_FILE, MESH, CHECKPOINT, CHECKPOINT_BEFORE, "actuator.msh"),
+    *("error.log", "error.rank*.log", "snapshots/*.npz"),
+    *("fields/*.vtu", "fields/*.vtp", "fields/states.pvd"),
+    *("pictures/undeformed.png", "pictures/cut.png", "pictures/montage.png", "pictures/bent*.png"),
+    *("pictures/pressure_*.png", "pictures/tip_*.png"),
+    *("pictures/section_*.png", "pictures/cell_*.png", "pictures/fiber_*.png"),
+)
+_OF_A_SWEEP = ("sweep.csv", "trends.md", "maps/*.png")
+_OF_CONTROL = ("control.json", "control.csv", "control.png", "filter.csv", "angle_filter.h")
+FILES = (*_OF_A_RUN, *(f"{BLOCKED}/{name}" for name in _OF_A_RUN), *_OF_A_SWEEP, *_OF_CONTROL)
+"""What is written: no other name can be, and `overwrite` removes nothing else."""
 
 
 class RunFolder:
     """Files of one run. Only rank 0 writes; on the other ranks every write does nothing.
+
+    What `create` and `resume` return holds the folder until it is closed, so that no other process
+    runs there.
+
+    Args:
+        path: the folder.
+        writes: this rank writes.
+        lock: on the folder, or None.
 
     Attributes:
         path: the folder.
         writes: True on the rank that writes.
     """
 
-    def __init__(self, path: Path, writes: bool = True) -> None:
+    def __init__(self, path: Path, writes: bool = True, lock: FolderLock | None = None) -> None:
         self.path = path
         self.writes = writes
+        self._lock = lock
+
+    def __enter__(self) -> RunFolder:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Let other processes have the folder."""
+        if self._lock is not None:
+            self._lock.release()
 
     @classmethod
     def create(cls, path: Path, case: Case, overwrite: bool = False, comm: Any = None) -> RunFolder:
@@ -62,11 +101,13 @@ class RunFolder:
         Args:
             path: where.
             case: the case that is run.
-            overwrite: replace a run that is there; a folder without a run is never replaced.
+            overwrite: replace a run that is there: its files, and nothing else in the folder; a
+                folder without a run is left as it is.
             comm: an mpi4py communicator, or None for one process.
 
         Raises:
-            CaseError: on every rank, if the folder is there or cannot be made.
+            CaseError: on every rank, if the folder is there with something in it, is held by
+                another process or cannot be made.
         """
         return cls._agreed(path, lambda: _make(path, case, overwrite), comm)
 
@@ -80,18 +121,19 @@ class RunFolder:
             comm: an mpi4py communicator, or None for one process.
 
         Raises:
-            CaseError: on every rank, if there is no run, or it is a run of another case; names
-                the fields that differ.
+            CaseError: on every rank, if there is no run, another process holds it, or it is a run
+                of another case; names the fields that differ.
         """
         return cls._agreed(path, lambda: _same_case(path, case), comm)
 
     @classmethod
-    def _agreed(cls, path: Path, action: Callable[[], None], comm: Any) -> RunFolder:
+    def _agreed(cls, path: Path, action: Callable[[], FolderLock], comm: Any) -> RunFolder:
         writes = comm is None or comm.rank == 0
         error: CaseError | None = None
+        lock: FolderLock | None = None
         if writes:
             try:
-                action()
+                lock = action()
             except CaseError as problem:
                 error = problem
             except OSError as problem:
@@ -100,7 +142,7 @@ class RunFolder:
             error = comm.bcast(error)
         if error is not None:
             raise error
-        return cls(path, writes)
+        return cls(path, writes, lock)
 
     def write_text(self, name: str, text: str) -> None:
         """Write a text file."""
@@ -144,18 +186,34 @@ class RunFolder:
         """Write run.json; keys of `RUN_KEYS` that are not given are null."""
         self.write_json(RUN_FILE, {**dict.fromkeys(RUN_KEYS), **entries})
 
+    def remove(self, name: str) -> None:
+        """Remove a file, if it is there."""
+        if self.writes:
+            (self.path / name).unlink(missing_ok=True)
+
+    def replace(self, name: str, other: str) -> None:
+        """Rename a file, if it is there."""
+        if self.writes:
+            with contextlib.suppress(FileNotFoundError):
+                os.replace(self.path / name, self.path / other)
+
     def write(self, name: str, fill: Callable[[IO[bytes]], object]) -> None:
         """Write a file under another name first, so that no reader ever sees half of it.
 
         Args:
             name: path within the folder.
             fill: writes the content.
+
+        Raises:
+            ValueError: a name that `FILES` does not have.
         """
+        if not remains.matches(name, FILES):
+            raise ValueError(f"{name} is no file of a run, expected one of running.folder.FILES")
         if not self.writes:
             return
         target = self.path / name
         target.parent.mkdir(parents=True, exist_ok=True)
-        handle, part = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
+        handle, part = remains.begin(target)
         try:
             with os.fdopen(handle, "wb") as file:
                 fill(file)
@@ -178,39 +236,83 @@ def read_history(path: Path) -> list[dict[str, float | None]]:
         ]
 
 
-def _make(path: Path, case: Case, overwrite: bool) -> None:
-    if path.exists():
+def _make(path: Path, case: Case, overwrite: bool) -> FolderLock:
+    there = path.exists()
+    if there:
+        _check(path, overwrite)
+    path.mkdir(parents=True, exist_ok=True)
+    lock = _hold(path)
+    try:
+        remains.clear(path, CASE_FILE, FILES)
         if not overwrite:
-            raise CaseError(
-                [Problem(str(path), "exists, expected a new folder, or --overwrite or --resume")]
-            )
-        if not path.is_dir():
-            raise CaseError([Problem(str(path), "is a file, expected a folder")])
-        if any(path.iterdir()) and not (path / CASE_FILE).exists():
-            raise CaseError([Problem(str(path), "contains no run, expected the folder of a run")])
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as scratch:
-        fresh = Path(scratch) / path.name
-        fresh.mkdir()
-        RunFolder(fresh).write_case(case)
-        if path.exists():
-            shutil.rmtree(path)
-        fresh.rename(path)
+            # another process may have been quicker
+            _check(path, overwrite)
+        with remains.aside(path, CASE_FILE, FILES):
+            RunFolder(path).write_case(case)
+    except BaseException:
+        lock.release()
+        if not there:
+            with contextlib.suppress(OSError):
+                path.rmdir()
+        raise
+    return lock
 
 
-def _same_case(path: Path, case: Case) -> None:
+def _check(path: Path, overwrite: bool) -> None:
+    """Whether a run may begin in a folder that is there; an empty one is as good as a new one."""
+    if not path.is_dir():
+        raise CaseError([Problem(str(path), "is a file, expected a folder")])
+    entries = remains.entries(path)
+    if not entries:
+        return
+    if not overwrite:
+        text = "exists, expected a new folder, or --overwrite or --resume"
+        raise CaseError([Problem(str(path), holder(path) or text)])
+    if not _is_run(path, entries):
+        raise CaseError([Problem(str(path), "contains no run, expected the folder of a run")])
+
+
+def _is_run(path: Path, entries: Sequence[str]) -> bool:
+    """Whether there is a run, one that was being replaced, or one that a sweep could not begin."""
+    kept = (path / CASE_FILE).exists() or (path / remains.ASIDE).exists()
+    return kept or (RUN_FILE in entries and {*entries} <= {RUN_FILE, "error.log"})
+
+
+def _hold(path: Path) -> FolderLock:
+    try:
+        return FolderLock(path)
+    except HeldError as error:
+        text = f"{error}, expected its end, or another folder by --out"
+        raise CaseError([Problem(str(path), text)]) from None
+
+
+def _same_case(path: Path, case: Case) -> FolderLock:
     from fiberbend.reader.yaml_file import load_yaml
 
-    if not (path / CASE_FILE).exists():
-        raise CaseError([Problem(str(path), f"contains no {CASE_FILE}, expected a run to resume")])
-    before, now = load_yaml(path / CASE_FILE), case.resolved()
-    changed = differences(before, now)
-    if changed:
-        raise CaseError(
-            Problem(field, f"{found(new)}, expected {found(old)} as in {path}")
-            for field in changed
-            for new, old in [(value_at(now, field), value_at(before, field))]
-        )
+    nothing = Problem(str(path), f"contains no {CASE_FILE}, expected a run to resume")
+    if not path.is_dir():
+        raise CaseError([nothing])
+    begun = (path / remains.ASIDE).exists() or not remains.entries(path)
+    if not begun and not (path / CASE_FILE).exists():
+        raise CaseError([nothing])
+    lock = _hold(path)
+    try:
+        remains.clear(path, CASE_FILE, FILES)
+        if not (path / CASE_FILE).exists():
+            # killed before it had written its case
+            RunFolder(path).write_case(case)
+        before, now = load_yaml(path / CASE_FILE), case.resolved()
+        changed = differences(before, now)
+        if changed:
+            raise CaseError(
+                Problem(field, f"{found(new)}, expected {found(old)} as in {path}")
+                for field in changed
+                for new, old in [(value_at(now, field), value_at(before, field))]
+            )
+    except BaseException:
+        lock.release()
+        raise
+    return lock
 
 
 def _cell(value: Any) -> Any:

@@ -13,7 +13,9 @@ from fem.results.checkpoint import Archive
 from fem.solver.newton import Outcome
 from fiberbend import columns as col
 from fiberbend.case.case import Case
-from fiberbend.running import messages, restart
+from fiberbend.models.model import MeshedModel
+from fiberbend.process import signals
+from fiberbend.running import messages, record, restart
 from fiberbend.running.assembly import Assembly
 from fiberbend.running.folder import RunFolder
 from fiberbend.running.history import Recorder
@@ -35,12 +37,14 @@ class Recording(Hook):
         recorder: the rows.
         folder: where snapshots and the checkpoint go, or None.
         progress: reports to the user.
-        resumes: leave a checkpoint after every step.
+        model: says whether a checkpoint is left after every step.
         snapshots: those of a run that is resumed.
 
     Attributes:
         snapshots: states that were asked for.
         warnings: what was warned of so far.
+        rows: the history so far.
+        kept: the step that is kept; 0: none.
     """
 
     def __init__(
@@ -51,12 +55,14 @@ class Recording(Hook):
         recorder: Recorder,
         folder: RunFolder | None,
         progress: Progress,
-        resumes: bool,
+        model: MeshedModel,
         snapshots: Sequence[Snapshot] = (),
     ) -> None:
         self._case, self._assembly, self._archive = case, assembly, archive
         self._recorder, self._folder, self._progress = recorder, folder, progress
-        self._resumes = resumes
+        self._model, self._resumes = model.name, model.resumes
+        self.rows = recorder.rows
+        self.kept = int(self.rows[-1][col.STEP]) if model.resumes else 0
         self.snapshots = list(snapshots)
         self.warnings: list[str] = []
         self._angles = angle_labels(case.output.at_angles)
@@ -78,7 +84,20 @@ class Recording(Hook):
             self.keep(label)
         if self._folder is not None and self._resumes:
             self._recorder.integrate()
-            restart.save(self._folder, self._archive, march.position, self._recorder.rows)
+            self._save(self._folder, march, row[col.STEP])
+        signals.check()
+
+    def _save(self, folder: RunFolder, march: Marching, step: int) -> None:
+        """Keep where it stands; run.json says so too, of a run that is killed."""
+        restart.save(folder, self._archive, march.saved(), self.rows)
+        self.kept = step
+        reason = f"at step {step}, kept; where no process runs it: go on with --resume"
+        scene = self._assembly.scene
+        spent = self._progress.wall_s
+        run = record.unfinished(
+            "running", reason, self._model, self.rows, spent, scene.domain.comm.size
+        )
+        folder.write_run(**run)
 
     def after_cutback(self, march: Marching, reason: str) -> None:
         """Report it."""

@@ -1,4 +1,4 @@
-"""How this process was launched, known before MPI starts: rank, number of ranks, threads."""
+"""How this process was launched, and how it ends with all other ranks."""
 
 from __future__ import annotations
 
@@ -7,14 +7,22 @@ import sys
 import time
 import traceback
 from pathlib import Path
-from typing import TextIO
+from types import TracebackType
+from typing import Any, TextIO
+
+from fiberbend.process import ranks
+from fiberbend.process.ranks import rank as rank
+from fiberbend.process.ranks import size as size
+from fiberbend.process.signals import Interrupted
 
 FAILED = 2
 """Exit code of a solution that failed."""
 
-_RANK = ("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "SLURM_PROCID")
-_PATIENCE = 20.0
-_SIZE = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_NTASKS")
+_PATIENCE = 5.0
+"""Seconds that an error of one rank waits for that of the others; all end within ten."""
+_HASTE = 0.3
+"""The same for a signal: mpirun kills a second after it has handed one on."""
+_GRACE = 1.5
 _ALONE = {
     "OMPI_MCA_ess_singleton_isolated": "1",
     "OMPI_MCA_pml": "ob1",
@@ -23,14 +31,14 @@ _ALONE = {
 """Open MPI's settings for a process that talks to itself only."""
 
 
-def rank() -> int:
-    """Rank of this process, 0 without mpirun."""
-    return _first(_RANK, 0)
+class _Group:
+    """All ranks, apart from what they compute together: by a communicator of its own."""
+
+    comm: Any = None
+    error = ""
 
 
-def size() -> int:
-    """Number of ranks, 1 without mpirun."""
-    return _first(_SIZE, 1)
+_group = _Group()
 
 
 def set_threads() -> None:
@@ -46,26 +54,89 @@ def set_threads() -> None:
 def start_mpi() -> None:
     """Start MPI; without mpirun in a quarter of the time, by looking for no other process.
 
-    What is set for it is taken back: an mpirun that is launched from here must not find it.
+    What is set for it is taken back: an mpirun that is launched from here must not find it. An
+    error that nobody catches ends all ranks from here on.
     """
-    alone = not any(name in os.environ for name in (*_RANK, *_SIZE))
+    alone = not ranks.launched()
     new = [name for name in _ALONE if alone and name not in os.environ]
     os.environ.update({name: _ALONE[name] for name in new})
     try:
-        import mpi4py.MPI  # noqa: F401
+        from mpi4py import MPI
     finally:
         for name in new:
             del os.environ[name]
+    if MPI.COMM_WORLD.size > 1 and _group.comm is None:
+        _group.comm = MPI.COMM_WORLD.Dup()
+        sys.excepthook = _end_all
+
+
+def all_here(seconds: float) -> bool:
+    """Whether all ranks come to this point within a time; True where this one is alone.
+
+    Errors of all ranks are one error, of which one rank speaks. Where others compute on, they wait
+    for this one for ever, and have to be ended.
+    """
+    if _group.comm is None:
+        return size() == 1
+    request = _group.comm.Ibarrier()
+    # the first rank to give up ends the others before they speak
+    end = time.monotonic() + seconds * (1 + 0.1 * min(rank(), 9))
+    while not request.Test():
+        if time.monotonic() > end:
+            return False
+        time.sleep(0.005)
+    return True
+
+
+def all_stopped() -> bool:
+    """Whether all ranks have been stopped by a signal, as mpirun does."""
+    return all_here(_HASTE)
+
+
+def stopped(stop: Interrupted) -> int:
+    """Say what a signal has left, from one rank, and end all ranks; the exit code."""
+    if stop.together is None:
+        stop.together = all_stopped()
+    if rank() == 0 or not stop.together:
+        print(f"fiberbend: {stop.reason}", file=sys.stderr, flush=True)
+    if not stop.together:
+        # mpirun ends all by itself where the signal came from there
+        time.sleep(_GRACE)
+        end_all(stop.code)
+    return stop.code
+
+
+def end_all(code: int) -> None:
+    """End all ranks at once, where there are others."""
+    if _group.comm is not None:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        _group.comm.Abort(code)
+
+
+def refuse(text: str, code: int) -> int:
+    """Say what is wrong with the input, from one rank; the exit code.
+
+    Every rank finds the same and ends by itself, MPI or not. What one rank alone finds ends all.
+    """
+    if _group.comm is None or all_here(_PATIENCE):
+        say(text, sys.stderr)
+        _group.error = text
+    else:
+        print(f"rank {rank()}: {text}", file=sys.stderr, flush=True)
+        end_all(code)
+    return code
 
 
 def let_rank_0_speak() -> None:
     """Delay the end of another rank: mpirun kills all when the first one ends with an error.
 
-    Rank 0 ends long before the time is up, and mpirun then ends this rank too. Once MPI is up,
-    its own end waits for all ranks.
+    Rank 0 ends long before the time is up, and mpirun then ends this rank too; else it has found
+    nothing, and this one speaks. Once MPI is up, its own end waits for all ranks.
     """
     if rank() > 0 and "mpi4py.MPI" not in sys.modules:
         time.sleep(_PATIENCE)
+        print(f"rank {rank()}: {_group.error}", file=sys.stderr, flush=True)
 
 
 def say(text: str, stream: TextIO | None = None) -> None:
@@ -87,7 +158,7 @@ def crash(error: BaseException, out: Path) -> int:
         out: its folder, which may not be there yet.
 
     Returns:
-        The exit code, where this process is alone.
+        The exit code, where all ranks end by themselves.
     """
     log = out / f"error.rank{rank()}.log" if out.is_dir() else Path(f"fiberbend.rank{rank()}.log")
     what = traceback.format_exception_only(error)[-1].strip().splitlines()[0]
@@ -96,17 +167,18 @@ def crash(error: BaseException, out: Path) -> int:
         where = f"; see {log}"
     except OSError:
         where = ""
-    print(f"fiberbend: rank {rank()} stopped: {what}{where}", file=sys.stderr, flush=True)
-    if size() > 1:
-        from mpi4py import MPI
-
-        MPI.COMM_WORLD.Abort(FAILED)
+    together = all_here(_PATIENCE / 2)
+    if not together or rank() == 0:
+        print(f"fiberbend: rank {rank()} stopped: {what}{where}", file=sys.stderr, flush=True)
+    if not together:
+        end_all(FAILED)
     return FAILED
 
 
-def _first(names: tuple[str, ...], default: int) -> int:
-    for name in names:
-        value = os.environ.get(name, "")
-        if value.isdecimal():
-            return int(value)
-    return default
+def _end_all(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+    """What becomes of an error that nobody catches, such as of a script: it ends all ranks."""
+    together = all_here(_PATIENCE / 2)
+    if not together or rank() == 0:
+        sys.__excepthook__(kind, error, trace)
+    if not together:
+        end_all(1)

@@ -43,7 +43,7 @@ def entries(
     """Entries of run.json for a run of any model, in this order.
 
     Args:
-        status: 'converged', 'stopped' or 'failed'.
+        status: 'converged', 'stopped' or 'failed'; see `unfinished`.
         reason: why not converged, or empty.
         model: name of the model.
         counts: "unknowns", "load_steps", "newton_iterations", "cutbacks" and what the model adds.
@@ -61,6 +61,37 @@ def entries(
         "peak_memory_MB": round(memory_mb, 1),
         "ranks": ranks,
         "versions": versions(libraries),
+    }
+
+
+def unfinished(
+    status: str,
+    reason: str,
+    model: str,
+    rows: Sequence[col.Row],
+    wall_s: Mapping[str, float],
+    ranks: int,
+) -> dict[str, Any]:
+    """Entries of run.json for a run that has not come to its end; asks no other rank.
+
+    Args:
+        status: 'running', also where a run was killed; 'interrupted' by a signal.
+        reason: what is kept.
+        model: name of the model.
+        rows: of the history so far.
+        wall_s: seconds by phase that has ended.
+        ranks: number of ranks.
+    """
+    return {
+        "status": status,
+        "reason": reason,
+        "model": model,
+        "load_steps": max(0, len(rows) - 1),
+        "newton_iterations": sum(row[col.ITERATIONS] for row in rows),
+        "wall_s": {name: round(value, 3) for name, value in wall_s.items()},
+        "peak_memory_MB": round(peak_memory_mb(), 1),
+        "ranks": ranks,
+        "versions": versions(),
     }
 
 

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import zipfile
+import zlib
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,9 +15,13 @@ import numpy as np
 from fem.march.position import Position
 from fem.results.checkpoint import Archive
 from fiberbend import columns as col
-from fiberbend.running.folder import CHECKPOINT, RunFolder
+from fiberbend.running.folder import CHECKPOINT, CHECKPOINT_BEFORE, MESH, RunFolder
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.states.snapshot import Snapshot
+from geometry.mesh.data import MeshData
+
+DAMAGED = (zipfile.BadZipFile, zlib.error, ValueError, EOFError, KeyError)
+"""How reading a file of arrays ends that is cut off or changed: zip has a check sum of each."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -36,6 +44,8 @@ def save(
 ) -> None:
     """Write all that is needed to go on from here, and the history; collective.
 
+    The checkpoint before stays, for when this one is damaged.
+
     Args:
         folder: the run folder.
         archive: moves states to rank 0.
@@ -44,31 +54,68 @@ def save(
     """
     arrays = archive.pack(position)
     history = np.array(json.dumps(rows, default=float))
+    folder.replace(CHECKPOINT, CHECKPOINT_BEFORE)
     folder.write_arrays(CHECKPOINT, rows=history, **arrays)
     folder.write_history(rows)
 
 
-def load(folder: RunFolder, archive: Archive) -> Saved | None:
-    """The checkpoint; None where the run was killed before its first step; collective.
+def load(folder: RunFolder, archive: Archive, say: Callable[[str], None]) -> Saved | None:
+    """The last checkpoint that is whole; None where there is none; collective.
 
     The scene is left in the last state.
+
+    Args:
+        folder: the run folder.
+        archive: moves states from rank 0.
+        say: takes a line for the user where a checkpoint is damaged.
     """
-    path = folder.path / CHECKPOINT
-    if not path.exists():
+    comm = archive.comm
+    arrays: dict[str, Any] | None = None
+    if comm.rank == 0:
+        arrays = _newest(folder.path, say)
+    arrays = comm.bcast(arrays)
+    if arrays is None:
         return None
-    with np.load(path) as file:
-        arrays = dict(file)
     if "rows" not in arrays:
         text = "of another version of fiberbend, cannot be resumed: expected --overwrite"
-        raise CaseError([Problem(str(path), text)])
+        raise CaseError([Problem(str(folder.path / CHECKPOINT), text)])
     rows = json.loads(str(arrays.pop("rows")))
     snapshots = []
     for shot in sorted((folder.path / "snapshots").glob("*.npz")):
-        with np.load(shot) as file:
-            entries = {k: file[k] if file[k].ndim else file[k].item() for k in file.files}
-        snapshot = Snapshot(**{"fiber_force": None, **entries})
-        if snapshot.step <= rows[-1][col.STEP] and snapshot.label != "last":
+        snapshot = _snapshot(shot, say)
+        if snapshot and snapshot.step <= rows[-1][col.STEP] and snapshot.label != "last":
             snapshots.append(snapshot)
     return Saved(
         archive.unpack(arrays), rows, sorted(snapshots, key=lambda snapshot: snapshot.step)
     )
+
+
+def mesh(folder: RunFolder) -> MeshData | None:
+    """The mesh of a run; None where it was killed before it had one, or where it is damaged."""
+    try:
+        return MeshData.load(folder.path / MESH)
+    except (FileNotFoundError, *DAMAGED):
+        return None
+
+
+def _newest(path: Path, say: Callable[[str], None]) -> dict[str, Any] | None:
+    for name, instead in ((CHECKPOINT, "the one before"), (CHECKPOINT_BEFORE, "the beginning")):
+        try:
+            with np.load(path / name) as file:
+                return dict(file)
+        except FileNotFoundError:
+            continue
+        except DAMAGED:
+            say(f"{path / name} is damaged: goes on from {instead}")
+    return None
+
+
+def _snapshot(path: Path, say: Callable[[str], None]) -> Snapshot | None:
+    """A state that was asked for; None where its file is damaged."""
+    try:
+        with np.load(path) as file:
+            entries = {k: file[k] if file[k].ndim else file[k].item() for k in file.files}
+    except DAMAGED:
+        say(f"{path} is damaged: left out")
+        return None
+    return Snapshot(**{"fiber_force": None, **entries})

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import contextlib
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +23,10 @@ from fiberbend.models.choice import choose_model
 from fiberbend.models.model import MeshedModel
 from fiberbend.models.resolution import winding_remark
 from fiberbend.models.result import RunResult
-from fiberbend.running import messages, record, restart
+from fiberbend.process.signals import Interrupted, stop_of
+from fiberbend.running import launch, messages, record, restart
 from fiberbend.running.assembly import Assembly, assemble
-from fiberbend.running.folder import RunFolder
+from fiberbend.running.folder import MESH, RUN_FILE, RunFolder
 from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording, ended, unmet
 from fiberbend.running.progress import Progress
@@ -30,7 +34,7 @@ from fiberbend.running.warm import SectionStates, section_guides, section_states
 from fiberbend.states.snapshot import ModelMesh
 from geometry.mesh.data import MeshData
 
-MESH = "mesh.npz"
+GMSH_FILE = "actuator.msh"
 
 
 def run_case(
@@ -55,11 +59,21 @@ def run_case(
     """
     comm = MPI.COMM_WORLD
     progress = progress or Progress(quiet=True)
-    folder = None
-    if out is not None and resume:
+    if out is None:
+        return _solve(case, None, progress, comm, False)
+    if resume:
         folder = RunFolder.resume(out, case, comm)
-    elif out is not None:
+    else:
         folder = RunFolder.create(out, case, overwrite, comm)
+    with folder:
+        # of an end that is no more
+        folder.remove(RUN_FILE)
+        return _solve(case, folder, progress, comm, resume)
+
+
+def _solve(
+    case: Case, folder: RunFolder | None, progress: Progress, comm: MPI.Comm, resume: bool
+) -> RunResult:
     model = choose_model(case)[0].elements()
     if model is None:
         from fiberbend.running.analytic import run_analytic
@@ -99,9 +113,14 @@ class _Run:
     ) -> None:
         self.case, self.model, self.folder = case, model, folder
         self.progress, self.comm = progress, comm
+        self.recording: Recording | None = None
 
     def go(self, again: bool) -> RunResult:
-        """Mesh, compile, solve, write."""
+        """Mesh, compile, solve, write; stopped by a signal, leave run.json."""
+        with self._stoppable():
+            return self._go(again)
+
+    def _go(self, again: bool) -> RunResult:
         progress, case = self.progress, self.case
         progress.phase("mesh")
         mesh = _on_rank_0(self.comm, lambda: self._mesh(again))
@@ -113,6 +132,7 @@ class _Run:
 
         assembly = assemble(case, mesh, self.comm, make_guide, watch=True)
         recorder, recording = self._recording(assembly, again)
+        self.recording = recording
         remark = winding_remark(case)
         if remark is not None and "NOT" in remark:
             progress.message(f"winding {remark}")
@@ -147,15 +167,57 @@ class _Run:
         self._report(run, check)
         return RunResult(status, reason, rows, run, self.folder.path if self.folder else None)
 
+    @contextlib.contextmanager
+    def _stoppable(self) -> Iterator[None]:
+        try:
+            yield
+        except KeyboardInterrupt as error:
+            stop = stop_of(error)
+            self._stopped(stop)
+            raise stop from None
+
+    def _stopped(self, stop: Interrupted) -> None:
+        """Say what is kept, and leave it in run.json: by the rank that still can."""
+        folder = self.folder
+        if folder is None:
+            return
+        rows = self.recording.rows if self.recording else []
+        kept = self.recording.kept if self.recording else 0
+        if kept:
+            stop.reason = f"stopped at step {kept}, kept; go on with --resume"
+        else:
+            stop.reason = f"stopped at step {rows[-1][col.STEP] if rows else 0}; "
+            stop.reason += "go on with --resume, from the beginning"
+        stop.together = self.comm.size == 1 == launch.size() or launch.all_stopped()
+        if folder.writes or not stop.together:
+            run = record.unfinished(
+                "interrupted",
+                stop.reason,
+                self.model.name,
+                rows[: kept + 1] if kept else rows,
+                self.progress.wall_s,
+                launch.size(),
+            )
+            RunFolder(folder.path).write_run(**run)
+
     # --- before the march ----------------------------------------------------------------------
 
     def _mesh(self, again: bool) -> MeshData:
         folder = self.folder
-        if folder is not None and again:
-            return MeshData.load(folder.path / MESH)
-        mesh = self.model.mesh(self.case, folder.path / "actuator.msh" if folder else None)
-        if folder is not None:
-            mesh.save(folder.path / MESH)
+        if folder is None:
+            return self.model.mesh(self.case, None)
+        if again:
+            mesh = restart.mesh(folder)
+            if mesh is not None:
+                return mesh
+        with tempfile.TemporaryDirectory() as scratch:
+            # where a mesher whose run is killed may go on
+            own = Path(scratch) / GMSH_FILE
+            mesh = self.model.mesh(self.case, own)
+            if own.exists():
+                with own.open("rb") as file:
+                    folder.write(GMSH_FILE, lambda target: shutil.copyfileobj(file, target))
+        folder.write(MESH, mesh.save)
         return mesh
 
     def _section(self) -> SectionStates | None:
@@ -170,7 +232,9 @@ class _Run:
         """The rows and what listens to the march, which goes on where the checkpoint is."""
         march, observables = assembly.march, assembly.observables
         archive, gauge = Archive(assembly.scene, observables.frames), observables.gauge()
-        saved = restart.load(self.folder, archive) if again and self.folder else None
+        saved = None
+        if again and self.folder:
+            saved = restart.load(self.folder, archive, self.progress.message)
         if saved is not None:
             march.resume(saved.position)
         rows = None if saved is None else saved.rows
@@ -182,7 +246,7 @@ class _Run:
             recorder,
             self.folder,
             self.progress,
-            self.model.resumes,
+            self.model,
             () if saved is None else saved.snapshots,
         )
         if again:

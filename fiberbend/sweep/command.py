@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import signal
 from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from types import FrameType
 
+from fiberbend.process.signals import Interrupted, stop_of
 from fiberbend.running import launch
 from fiberbend.running.folder import RunFolder
 from fiberbend.running.launch import FAILED
@@ -16,7 +15,6 @@ from fiberbend.sweep.points import Sweep, read_sweep
 from fiberbend.sweep.store import Store
 from fiberbend.sweep.workers import Event, WorkerPool, work
 
-INTERRUPTED = 130
 Say = Callable[[str], None]
 
 
@@ -39,7 +37,7 @@ def run_sweep(
         say: takes lines for the user.
 
     Returns:
-        The exit code: 0, 2 if a point failed, 130 if interrupted.
+        The exit code: 0, 2 if a point failed, that of the signal if stopped by one.
 
     Raises:
         CaseError: a file or a point is wrong, or the folder cannot be used; nothing has run.
@@ -55,13 +53,13 @@ def run_sweep(
             store.forget(point)
     before = sum(store.result(point) is not None for point in sweep.points)
     say(f"{len(sweep.points)} points, {before} finished before")
-    interrupted = False
+    stop = None
     try:
         _solve(sweep, store, jobs, _EventPrinter(len(sweep.points), before, say))
-    except KeyboardInterrupt:
-        interrupted = True
-    _write(sweep, store, say, pictures=not interrupted)
-    return _summary(sweep, store, interrupted, say)
+    except KeyboardInterrupt as error:
+        stop = stop_of(error)
+    _write(sweep, store, say, pictures=stop is None)
+    return _summary(sweep, store, stop, say)
 
 
 class _EventPrinter:
@@ -91,27 +89,19 @@ def _solve(sweep: Sweep, store: Store, jobs: int, on_event: _EventPrinter) -> No
         work(sweep.points, store, on_event)
         return
 
-    def stop(_number: int, _frame: FrameType | None) -> None:
-        raise KeyboardInterrupt
-
-    previous = {number: signal.signal(number, stop) for number in (signal.SIGTERM, signal.SIGHUP)}
-    try:
-        WorkerPool(sweep.points, store, on_event, min(jobs, left)).run()
-    finally:
-        for number, handler in previous.items():
-            signal.signal(number, handler)
+    WorkerPool(sweep.points, store, on_event, min(jobs, left)).run()
 
 
-def _summary(sweep: Sweep, store: Store, interrupted: bool, say: Say) -> int:
+def _summary(sweep: Sweep, store: Store, stop: Interrupted | None, say: Say) -> int:
     runs = {point.name: store.result(point) for point in sweep.points}
     counts = Counter("not run" if run is None else run["status"] for run in runs.values())
     say(f"{len(runs)} points: " + ", ".join(f"{n} {status}" for status, n in counts.items()))
     for name, run in runs.items():
         if run is not None and run["status"] == "failed":
             say(f"failed: {name}: {run['reason']}")
-    if interrupted:
+    if stop is not None:
         say("interrupted; the same command goes on where it was")
-        return INTERRUPTED
+        return stop.code
     return FAILED if counts["failed"] or counts["not run"] else 0
 
 

@@ -19,7 +19,9 @@ from typing import Any
 
 from fiberbend.case.case import Case
 from fiberbend.running.folder import (
+    BLOCKED,
     CHECKPOINT,
+    CHECKPOINT_BEFORE,
     HISTORY_FILE,
     RUN_FILE,
     RunFolder,
@@ -30,8 +32,6 @@ from fiberbend.sweep.points import Point
 
 MARK = "sweep"
 """Key of run.json under which a finished point stands."""
-BLOCKED = "blocked"
-"""Folder within that of a point with the same body kept straight."""
 _LOCKS = ".locks"
 
 
@@ -136,7 +136,8 @@ class Store:
             run = self.result(point)
             if mine and run is not None and run["status"] == "failed":
                 (self.folder(point) / RUN_FILE).unlink()
-                (self.folder(point) / CHECKPOINT).unlink(missing_ok=True)
+                for name in (CHECKPOINT, CHECKPOINT_BEFORE, "error.log"):
+                    (self.folder(point) / name).unlink(missing_ok=True)
 
     def _finish(self, point: Point, run: dict[str, Any], wall: float) -> dict[str, Any]:
         run = run | {MARK: {"point": point.name, "digest": point.digest, "wall_s": round(wall, 3)}}
@@ -148,7 +149,7 @@ def _run(case: Case, folder: Path) -> dict[str, Any]:
     """Solve a case, from the last state of a killed run of the same case if it left one."""
     from fiberbend.running.runner import run_case
 
-    if (folder / CHECKPOINT).exists():
+    if any((folder / name).exists() for name in (CHECKPOINT, CHECKPOINT_BEFORE)):
         try:
             return run_case(case, folder, resume=True).run
         except Exception:  # another case, or of another version: from the start

@@ -16,10 +16,11 @@ from fiberbend import columns as col
 from fiberbend.case.case import Case
 from fiberbend.models import lines
 from fiberbend.models.closed_form import analytic_curves, lever_arm
+from fiberbend.running.folder import BLOCKED
 from fiberbend.schema.units import show
 from fiberbend.sweep.file import ReportSpec
 from fiberbend.sweep.points import Point, Sweep
-from fiberbend.sweep.store import BLOCKED, MARK, Store
+from fiberbend.sweep.store import MARK, Store
 
 History = Sequence[Mapping[str, float | None]]
 TableRow = dict[str, Any]

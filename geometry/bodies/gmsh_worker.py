@@ -6,9 +6,11 @@ physical group is known by construction.
 
 from __future__ import annotations
 
+import ctypes
 import dataclasses
 import itertools
 import json
+import signal
 import sys
 from pathlib import Path
 from typing import Any
@@ -26,6 +28,8 @@ geo = gmsh.model.geo
 Edge = tuple[int, int]
 
 _HXT = 10
+_DEATH_SIGNAL = 1
+"""PR_SET_PDEATHSIG of Linux: the signal to a process whose parent ends."""
 
 
 class GmshBody:
@@ -207,6 +211,8 @@ def mesh_body(spec: dict[str, Any], out: Path) -> None:
 def main() -> None:
     """Read the description named first on the command line, write the mesh named second."""
     spec, out = Path(sys.argv[1]), Path(sys.argv[2])
+    # killed, the run cannot end it
+    ctypes.CDLL(None).prctl(_DEATH_SIGNAL, signal.SIGKILL)
     gmsh.initialize(["fiberbend"], False)
     gmsh.option.setNumber("General.NumThreads", 1)
     gmsh.option.setNumber("Geometry.AutoCoherence", 0)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import os
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,8 +115,12 @@ class MeshData:
         local = facet_positions(self.cell_type)[pairs[:, 1]]
         return self.cells[pairs[:, :1], local]
 
-    def save(self, path: Path) -> None:
-        """Write the mesh to an .npz file, atomically."""
+    def save(self, target: Path | IO[bytes]) -> None:
+        """Write the mesh to an .npz file.
+
+        Args:
+            target: its path, or a file open for writing bytes.
+        """
         header = {
             "cell_type": self.cell_type,
             "regions": self.regions,
@@ -124,16 +128,14 @@ class MeshData:
             "points": self.points,
         }
         arrays = {f"facets/{name}": pairs for name, pairs in self.facets.items()}
-        part = path.with_suffix(f".{os.getpid()}.part.npz")
         np.savez(
-            part,
+            target,
             header=np.array(json.dumps(header)),
             nodes=self.nodes,
             cells=self.cells,
             cell_region=self.cell_region,
             **arrays,
         )
-        part.replace(path)
 
     @classmethod
     def load(cls, path: Path) -> MeshData:

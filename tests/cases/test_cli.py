@@ -228,7 +228,7 @@ from tests.cases import bad_cases
 
 case, comm, out = read_case({case!r}), MPI.COMM_WORLD, Path({out!r})
 assert comm.size == 2
-RunFolder.create(out, case, comm=comm).write_text("mark", "kept")
+RunFolder.create(out, case, comm=comm).write_text("run.json", "kept")
 for overwrite in (False, True):
     try:
         folder = RunFolder.create(out, case, overwrite, comm)
@@ -263,7 +263,7 @@ def test_every_wrong_input_on_two_ranks(mpirun: Callable[..., Any], tmp_path: Pa
         assert len(lines) >= same, setting
     path = "actuator.radios: unknown key"
     assert done.stderr.count(path) == 1, "one rank speaks"
-    assert not (tmp_path / "run" / "mark").exists()
+    assert not (tmp_path / "run" / "run.json").exists()
 
 
 LATE = """

@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
 import numpy as np
 import pytest
 
+from fiberbend.process import remains
+from fiberbend.process.lock import LOCK_FILE
 from fiberbend.reader.reader import read_case
 from fiberbend.running.folder import (
+    CASE_FILE,
+    FILES,
     HISTORY_COLUMNS,
     RUN_KEYS,
     RunFolder,
@@ -30,6 +36,7 @@ def folder(tmp_path: Path) -> RunFolder:
 
 
 def test_new_folder_has_the_case(folder: RunFolder) -> None:
+    folder.close()
     assert [path.name for path in folder.path.iterdir()] == ["case.resolved.yaml"]
     assert [path.name for path in folder.path.parent.iterdir()] == ["run"]
 
@@ -58,24 +65,25 @@ def test_a_write_that_breaks_leaves_the_old_file(folder: RunFolder) -> None:
         file.write(b"half a fi")
         raise OSError("disk full")
 
-    folder.write_text("curve.txt", "whole")
+    folder.write_text("trends.md", "whole")
     with pytest.raises(OSError, match="disk full"):
-        folder.write("curve.txt", broken)
-    assert (folder.path / "curve.txt").read_text(encoding="utf-8") == "whole"
+        folder.write("trends.md", broken)
+    assert (folder.path / "trends.md").read_text(encoding="utf-8") == "whole"
     assert sorted(path.name for path in folder.path.iterdir()) == [
+        LOCK_FILE,
         "case.resolved.yaml",
-        "curve.txt",
+        "trends.md",
     ]
 
 
 def test_arrays_and_subfolders(folder: RunFolder) -> None:
-    folder.write_arrays("checkpoint/state.npz", u=np.arange(3.0))
-    with np.load(folder.path / "checkpoint" / "state.npz") as data:
+    folder.write_arrays("snapshots/008deg.npz", u=np.arange(3.0))
+    with np.load(folder.path / "snapshots" / "008deg.npz") as data:
         assert data["u"].tolist() == [0.0, 1.0, 2.0]
 
 
 def test_other_ranks_write_nothing(tmp_path: Path) -> None:
-    RunFolder(tmp_path, writes=False).write_text("a", "b")
+    RunFolder(tmp_path, writes=False).write_text("run.json", "b")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -88,6 +96,133 @@ def test_overwrite_spares_what_is_no_run(tmp_path: Path) -> None:
     with pytest.raises(CaseError, match="expected a folder"):
         RunFolder.create(tmp_path / "thesis.tex" / "run", CASE)
     assert (tmp_path / "thesis.tex").read_text(encoding="utf-8") == "years"
+
+
+OLD = {"history.csv": "old", "snapshots/008deg.npz": "old", "pictures/bent_last.png": "old"}
+MINE = {"notes.txt": "mine", "pictures/mine.png": "mine", ".lock.bak": "mine"}
+
+
+def _earlier(path: Path) -> Path:
+    """The folder of an earlier run, with files that no run wrote."""
+    RunFolder.create(path, CASE).close()
+    for name, text in {**OLD, **MINE}.items():
+        (path / name).parent.mkdir(exist_ok=True)
+        (path / name).write_text(text, encoding="utf-8")
+    return path
+
+
+def _files(path: Path) -> list[str]:
+    return sorted(str(file.relative_to(path)) for file in path.rglob("*") if file.is_file())
+
+
+@pytest.mark.parametrize("how", ["path", "link", ".", ".."])
+def test_overwrite_removes_what_a_run_wrote_and_nothing_else(
+    how: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = _earlier(tmp_path / "run")
+    inode = path.stat().st_ino
+    (tmp_path / "link").symlink_to(path)
+    monkeypatch.chdir({".": path, "..": path / "pictures"}.get(how, tmp_path))
+    given = Path({"path": "run"}.get(how, how))
+    RunFolder.create(given, CASE, overwrite=True).close()
+    assert _files(path) == sorted([CASE_FILE, *MINE])
+    assert all((path / name).read_text(encoding="utf-8") == "mine" for name in MINE)
+    # it may be a mount point: no other folder takes its place
+    assert path.stat().st_ino == inode
+    assert (tmp_path / "link").is_symlink()
+
+
+def test_an_overwrite_that_fails_puts_all_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = _earlier(tmp_path / "run")
+    before = _files(path)
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("os.fsync", full)
+        with pytest.raises(CaseError, match="No space left on device, expected a folder"):
+            RunFolder.create(path, CASE, overwrite=True)
+    assert _files(path) == before
+
+
+class _Kill(BaseException):
+    """Stands for the end of a process: nothing is put in order."""
+
+
+@pytest.mark.parametrize("after", [0, 1, 3, 4])
+def test_an_overwrite_that_is_killed_is_finished_or_undone(
+    after: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All of the old run or nothing of it, at whichever file the kill comes."""
+    path, replace = _earlier(tmp_path / "run"), os.replace
+    before = _files(path)
+    moved: list[Path] = []
+
+    def dying(source: Path, target: Path) -> None:
+        if len(moved) == after:
+            raise _Kill
+        moved.append(source)
+        replace(source, target)
+
+    with monkeypatch.context() as patch:
+        patch.setattr("os.replace", dying)
+        # what would be put back is not: the process is dead
+        with pytest.raises(_Kill):
+            RunFolder.create(path, CASE, overwrite=True)
+    if after < 4:  # four files are moved, the case last
+        remains.clear(path, CASE_FILE, FILES)
+        assert _files(path) == before
+    # whatever is left, the next run may have it
+    RunFolder.create(path, CASE, overwrite=True).close()
+    assert _files(path) == sorted([CASE_FILE, *MINE])
+
+
+def test_a_start_clears_what_kills_have_left(tmp_path: Path) -> None:
+    path = _earlier(tmp_path / "run")
+    part = remains.begin(path / "snapshots" / "last.npz")[1]
+    (path / LOCK_FILE).write_text("1\nelsewhere\n", encoding="utf-8")
+    assert Path(part).exists()
+    RunFolder.resume(path, CASE).close()
+    assert _files(path) == sorted([CASE_FILE, *OLD, *MINE])
+
+
+@pytest.mark.parametrize("left", [[], [LOCK_FILE], [".case.resolved.yaml.abcd1234.part"]])
+def test_killed_at_once_it_begins_anew(left: list[str], tmp_path: Path) -> None:
+    """Whichever of the three ways is taken."""
+    starts: list[Callable[[Path], RunFolder]] = [
+        lambda path: RunFolder.create(path, CASE),
+        lambda path: RunFolder.resume(path, CASE),
+        lambda path: RunFolder.create(path, CASE, overwrite=True),
+    ]
+    for number, start in enumerate(starts):
+        path = tmp_path / str(number)
+        path.mkdir()
+        for name in left:
+            (path / name).touch()
+        start(path).close()
+        assert _files(path) == [CASE_FILE]
+
+
+def test_one_run_at_a_time(tmp_path: Path) -> None:
+    first = RunFolder.create(tmp_path / "run", CASE)
+    who = r"run: in use by process \d+ on \S+, expected its end, or another folder by --out$"
+    with pytest.raises(CaseError, match=who):
+        RunFolder.create(tmp_path / "run", CASE, overwrite=True)
+    with pytest.raises(CaseError, match=who):
+        RunFolder.resume(tmp_path / "run", CASE)
+    with pytest.raises(CaseError, match="in use by process"):
+        RunFolder.create(tmp_path / "run", CASE)
+    first.close()
+    RunFolder.resume(tmp_path / "run", CASE).close()
+
+
+def test_a_file_that_is_not_listed_cannot_be_written(folder: RunFolder) -> None:
+    """Else `overwrite` would leave it there."""
+    with pytest.raises(ValueError, match=r"pictures/new\.png is no file of a run"):
+        folder.write_text("pictures/new.png", "")
 
 
 class _Terminal(io.StringIO):

@@ -115,6 +115,36 @@ def test_a_ramp_that_had_ended_is_not_gone_on_with(drive: str) -> None:
     assert body.march.states[-1].w == pytest.approx(end.states[-1].w, rel=1e-6, abs=1e-9)
 
 
+class _Counter(Hook):
+    """Remembers how many steps it has seen."""
+
+    count = 0
+
+    def after_step(self, march: Marching, state: State, outcome: Outcome) -> None:
+        """One more."""
+        self.count += 1
+
+    def memory(self) -> dict[str, Any]:
+        """So many."""
+        return {"count": self.count}
+
+    def recall(self, memory: dict[str, Any]) -> None:
+        """So many before."""
+        self.count = memory["count"]
+
+
+def test_what_hooks_and_solver_remember_is_saved() -> None:
+    """Unloaded, forces count no less than a thousandth of the greatest before the restart."""
+    first, again = bender(hooks=[_Counter()]), bender(hooks=[_Counter()])
+    first.march.run([Ramp("pressure", TARGET)])
+    saved, floor = first.march.saved(), first.march.equilibrium.scene.force_floor
+    assert (saved.memory[-1], saved.force_floor) == ({"count": saved.report.steps}, floor)
+    assert floor > 1e-6
+    again.march.resume(copy.deepcopy(saved))
+    assert again.march.equilibrium.scene.force_floor == floor
+    assert again.march.saved().memory == saved.memory
+
+
 class _Flaky:
     """A Newton that fails its third call after it has moved everything."""
 

@@ -207,7 +207,7 @@ def test_the_first_point_is_alone(lab: Lab) -> None:
     assert lab.starts() == Counter(NAMES[:1])
     process.terminate()
     out, err = process.communicate(timeout=60)
-    assert (process.returncode, err) == (130, "")
+    assert (process.returncode, err) == (143, "")
     assert "6 points: 6 not run" in out
     assert not alive(lab.pids(NAMES[0])[0])
 

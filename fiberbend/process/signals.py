@@ -1,0 +1,97 @@
+"""Ctrl-C, SIGTERM and SIGHUP: an end with one line, whenever they come.
+
+Imported before anything slow. Until a command has something to keep, a signal ends the process at
+once; from then on it is an exception, so that what is half done is left in order.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import time
+from collections.abc import Iterator
+from types import FrameType
+
+from fiberbend.process import ranks
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+_PATIENCE = 5.0
+"""Seconds after which a second signal ends a process that has not ended by the first."""
+
+
+class Interrupted(KeyboardInterrupt):
+    """A signal that asks to stop.
+
+    Attributes:
+        number: of the signal.
+        reason: what is kept, for the user.
+        together: all ranks have been stopped; None where nobody has looked.
+    """
+
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        self.number = number
+        self.reason = "stopped"
+        self.together: bool | None = None
+
+    @property
+    def code(self) -> int:
+        """Exit code: 128 and the number of the signal, as a shell has it."""
+        return 128 + self.number
+
+
+class _Pending:
+    """What has come, and whether it is an exception."""
+
+    number = 0
+    since = 0.0
+    raises = False
+
+
+_pending = _Pending()
+
+
+def install() -> None:
+    """Take the signals that this process does not ignore: nohup and a shell's & must go on."""
+    for number in _SIGNALS:
+        if signal.getsignal(number) != signal.SIG_IGN:
+            signal.signal(number, _handle)
+    # PETSc would take SIGTERM and SIGHUP and print a page
+    options = os.environ.get("PETSC_OPTIONS", "")
+    if "-no_signal_handler" not in options:
+        os.environ["PETSC_OPTIONS"] = f"{options} -no_signal_handler".strip()
+
+
+@contextlib.contextmanager
+def raising() -> Iterator[None]:
+    """Within, a signal raises `Interrupted`; it does where they are not installed too."""
+    before, _pending.raises = _pending.raises, True
+    try:
+        yield
+    finally:
+        _pending.raises = before
+
+
+def check() -> None:
+    """Raise what was lost: in a finaliser or a library's callback an exception goes nowhere."""
+    if _pending.number:
+        raise Interrupted(_pending.number)
+
+
+def stop_of(error: KeyboardInterrupt) -> Interrupted:
+    """A Ctrl-C as any other signal."""
+    return error if isinstance(error, Interrupted) else Interrupted(signal.SIGINT)
+
+
+def _handle(number: int, _frame: FrameType | None) -> None:
+    if not _pending.raises:
+        if ranks.rank() == 0:
+            with contextlib.suppress(OSError):
+                os.write(2, b"fiberbend: stopped before anything was written\n")
+        os._exit(128 + number)
+    if not _pending.number:
+        _pending.number, _pending.since = number, time.monotonic()
+        raise Interrupted(number)
+    if time.monotonic() - _pending.since > _PATIENCE:
+        os._exit(128 + number)

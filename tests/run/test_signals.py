@@ -1,0 +1,110 @@
+"""A run that is told to stop, and ranks of which one fails: one line, and nothing goes on alone."""
+
+from __future__ import annotations
+
+import json
+import signal
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from bench.survive import LIMIT, end, files, launch, session
+from tests.conftest import MpiRun
+from tests.run.conftest import small
+
+STOPPED = "stopped at step 1, kept; go on with --resume"
+
+
+def _stop(ranks: int, number: int, tmp_path: Path) -> tuple[int, str, dict[str, Any]]:
+    """Exit code, last lines and run.json of a run that gets a signal after its first step."""
+    case, out = tmp_path / "case.yaml", tmp_path / "run"
+    output = {"fields": False, "pictures": False}
+    case.write_text(
+        yaml.safe_dump(small(solver={"max_step": "12 kPa"}, mesh={"axial": "8 mm"}, output=output))
+    )
+    process = launch(ranks, ["run", case, "--out", out])
+    assert process.stdout is not None
+    for line in process.stdout:
+        if line.startswith("step   1"):
+            break
+    while not (out / "run.json").exists():
+        time.sleep(0.01)
+    assert json.loads((out / "run.json").read_text())["status"] == "running"
+    begin = time.monotonic()
+    process.send_signal(number)
+    code, text = end(process)
+    assert time.monotonic() - begin < 15
+    assert not session(process.pid), "a rank goes on"
+    run = json.loads((out / "run.json").read_text())
+    assert not any(".part" in name for name in files(out))
+    return code, text, run
+
+
+def test_a_run_that_is_told_to_stop_keeps_its_steps(tmp_path: Path) -> None:
+    code, text, run = _stop(1, signal.SIGTERM, tmp_path)
+    assert code == 143
+    assert text.endswith(f"fiberbend: {STOPPED}\n")
+    assert (run["status"], run["reason"], run["load_steps"]) == (
+        "interrupted",
+        STOPPED,
+        1,
+    )
+
+
+@pytest.mark.mpi
+def test_told_to_stop_on_two_ranks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By mpirun, which has an exit code of its own; with time to end beside other tests."""
+    monkeypatch.setenv("OMPI_MCA_odls_base_sigkill_timeout", "3")
+    _, text, run = _stop(2, signal.SIGINT, tmp_path)
+    assert text.count(f"fiberbend: {STOPPED}") == 1
+    assert (run["status"], run["ranks"]) == ("interrupted", 2)
+
+
+FAILS = """
+import sys
+import fiberbend
+from fiberbend.running import launch
+
+launch.start_mpi()
+from mpi4py import MPI
+
+if MPI.COMM_WORLD.rank == 1:
+    raise RuntimeError("out of luck")
+MPI.COMM_WORLD.Barrier()
+"""
+WRONG = """
+import sys
+from fiberbend.running import launch
+from fiberbend.cli import entry
+
+sys.argv[1:] = ["validate", "none.yaml"] if launch.rank() == 1 else ["validate", {case!r}]
+if launch.rank() == 0:
+    import time
+    time.sleep({late})
+entry()
+"""
+
+
+@pytest.mark.mpi
+def test_an_error_of_one_rank_of_a_script_ends_all(mpirun: MpiRun, tmp_path: Path) -> None:
+    script = tmp_path / "fails.py"
+    script.write_text(FAILS, encoding="utf-8")
+    begin = time.monotonic()
+    done = mpirun(2, [script], timeout=60)
+    assert done.returncode == 1
+    assert time.monotonic() - begin < 15, "ten seconds, and the start"
+    assert done.stderr.count("RuntimeError: out of luck") == 1
+
+
+@pytest.mark.mpi
+def test_what_one_rank_alone_finds_is_said(mpirun: MpiRun, tmp_path: Path) -> None:
+    """A file that is missing on another computer: rank 0 has nothing to say of it."""
+    script = tmp_path / "wrong.py"
+    case = str(Path(__file__).resolve().parents[2] / "cases" / "section.yaml")
+    script.write_text(WRONG.format(case=case, late=LIMIT), encoding="utf-8")
+    done = mpirun(2, [script], timeout=60)
+    assert done.returncode == 1
+    assert "rank 1: none.yaml: no such file" in done.stderr
