@@ -29,6 +29,8 @@ from fiberbend.models.model import (
     ProblemSize,
     count,
     found_pressure,
+    pieces,
+    thread_mb,
 )
 
 if TYPE_CHECKING:
@@ -122,21 +124,20 @@ class Body(MeshedModel):
 
     def size(self, case: Case) -> ProblemSize:
         """Of a body from the block layout, which is that of gmsh's hexahedra."""
-        from geometry.bodies.extrude import hexahedral_body
-        from geometry.mesh.tets import to_tetrahedra
+        from geometry.bodies.counts import body_counts, winding_sides
 
         actuator = convert.dimensions(case.actuator)
-        size = self.mesh_size(case, self.half(case)[0])
-        mesh, kind, pressures = (
-            hexahedral_body(actuator, size, tip_strips(case.effects)),
-            "hexahedra",
-            4,
-        )
+        half, _ = self.half(case)
+        size = self.mesh_size(case, half)
+        counts = body_counts(actuator, size, tip_strips(case.effects))
+        kind, pressures = "hexahedra", 4
         if case.mesh.element == "tetrahedron":
-            mesh, kind, pressures = to_tetrahedra(mesh), "tetrahedra", 0
+            kind, pressures = "tetrahedra", 0
         layers = actuator.total_length / case.mesh.axial
-        unknowns = count(mesh, 3, pressures)
-        return ProblemSize(len(mesh.cells), kind, unknowns, found_pressure(case), layers)
+        unknowns = count(counts, 3, pressures)
+        around, length = winding_sides(actuator, size), actuator.length
+        segments = pieces(case, half, around, length, length / size.axial)
+        return ProblemSize(counts.cells, kind, unknowns, found_pressure(case), layers, segments)
 
     def step_seconds(self, case: Case, size: ProblemSize) -> float:
         """Tangent by elements, factor by layers and by unknowns a layer.
@@ -151,8 +152,9 @@ class Body(MeshedModel):
         return iteration * (_TOUCHING_ITERATIONS if touching else _ITERATIONS)
 
     def memory_mb(self, size: ProblemSize) -> float:
-        """Mostly the factor."""
-        return 200 + 1e-3 * size.unknowns * (size.unknowns / size.layers) ** 0.3
+        """Mostly the factor, and the thread's own matrices."""
+        factor = 1e-3 * size.unknowns * (size.unknowns / size.layers) ** 0.3
+        return 200 + factor + thread_mb(size.segments)
 
     def errors(self, case: Case) -> Iterator[str]:
         """Mesh, effects, ends."""

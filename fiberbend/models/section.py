@@ -85,11 +85,16 @@ class Section(UniformModel):
         return [TwofoldAxis() if twists(case) else Symmetry()]
 
     def size(self, case: Case) -> ProblemSize:
-        """Of the mesh itself."""
-        mesh = self.mesh(case)
+        """Of its mesh."""
+        from geometry.bodies.counts import section_counts
+
+        size = self.mesh_size(case, self.half(case)[0])
+        counts = section_counts(convert.dimensions(case.actuator), size)
         components = 3 if twists(case) else 2
-        unknowns = count(mesh, components, 3)
-        return ProblemSize(len(mesh.cells), "quadrilaterals", unknowns, self.scalars(case), 1.0)
+        unknowns = count(counts, components, 3)
+        scalars = self.scalars(case)
+        # the thread of a section has a piece for each point of the outline: next to none
+        return ProblemSize(counts.cells, "quadrilaterals", unknowns, scalars, 1.0, 0.0)
 
     def step_seconds(self, case: Case, size: ProblemSize) -> float:
         """Two iterations."""

@@ -10,6 +10,7 @@ from fiberbend.case.case import Case
 from fiberbend.models.choice import MODELS, choose_model, objection
 from fiberbend.models.model import MeshedModel, ModelKind
 from fiberbend.models.resolution import lost_pressure, winding_remark
+from fiberbend.plan.memory import shortage
 
 WIDTH = 100
 """Columns of a plan."""
@@ -26,6 +27,7 @@ class Plan:
         elements: number of elements; none in a closed form.
         unknowns: displacements and pressures, before any are fixed.
         steps: load steps, where they can be predicted.
+        refusal: why a run would be refused here and now; empty where it would not.
     """
 
     model: str
@@ -33,6 +35,7 @@ class Plan:
     elements: int = 0
     unknowns: int = 0
     steps: int | None = None
+    refusal: str = ""
 
     def lines(self) -> list[str]:
         """The plan as lines of text, none longer than `WIDTH`."""
@@ -99,7 +102,15 @@ def _finite_elements(
         "unknowns": [f"{size.unknowns}{beside}"],
         **cost.rows(case, model),
     }
-    return Plan(model.name, _rows(head | body | tail), size.elements, size.unknowns, cost.steps)
+    short = shortage([cost.memory_mb], cost.free)
+    return Plan(
+        model.name,
+        _rows(head | body | tail),
+        size.elements,
+        size.unknowns,
+        cost.steps,
+        "" if short is None else f"memory: {short}",
+    )
 
 
 def _closed_form(case: Case, model: ModelKind) -> dict[str, list[str]]:

@@ -26,6 +26,7 @@ from fiberbend.effects.effect import (
 )
 from fiberbend.effects.table import EFFECTS
 from fiberbend.models.choice import MODELS, choose_model
+from fiberbend.reader.proportions import disproportions
 from fiberbend.schema.problems import Problem, found, meant
 from fiberbend.schema.units import show
 from materials.laws.table import LAWS
@@ -91,6 +92,7 @@ def check(parts: ValidParts) -> Iterator[Problem]:
     for path, effect in draft.effects.items():
         yield from effect.problems(path, draft)
     yield from _materials(parts)
+    yield from disproportions(draft, parts.materials)
     yield from _density(parts)
     yield from _mesh(parts)
     yield from _solver(parts)
@@ -172,7 +174,7 @@ def _density(parts: ValidParts) -> Iterator[Problem]:
         path, material = f"materials.{part}", getattr(parts.materials, part)
         if material is None:
             continue
-        if not weighing and material.density is not None:
+        if not weighing and material.density:
             names = " or ".join(name for name, effect in EFFECTS.items() if effect.needs_density)
             yield Problem(f"{path}.density", f"no effect without {names}, expected no value")
         if weighing and material.density is None:
@@ -180,6 +182,9 @@ def _density(parts: ValidParts) -> Iterator[Problem]:
 
             if material.name not in NAMED or NAMED[material.name].density is None:
                 yield Problem(f"{path}.density", f"missing, expected a density for {weighing[0]}")
+    given = [spec for spec in dict(parts.materials).values() if spec is not None]
+    if weighing and all(spec.density == 0 for spec in given):
+        yield Problem("materials", f"nothing has weight, expected a density for {weighing[0]}")
 
 
 def _mesh(parts: ValidParts) -> Iterator[Problem]:

@@ -20,6 +20,7 @@ from fiberbend.models.choice import choose_model
 from fiberbend.models.model import MeshedModel
 from fiberbend.models.resolution import winding_remark
 from fiberbend.models.result import RunResult
+from fiberbend.plan.memory import refuse_shortage
 from fiberbend.running import messages, record, restart
 from fiberbend.running.assembly import Assembly, assemble
 from fiberbend.running.folder import RunFolder
@@ -39,6 +40,7 @@ def run_case(
     overwrite: bool = False,
     progress: Progress | None = None,
     resume: bool = False,
+    force: bool = False,
 ) -> RunResult:
     """Solve a case; collective over MPI.COMM_WORLD.
 
@@ -48,13 +50,16 @@ def run_case(
         overwrite: replace an earlier run.
         progress: reports to the user; none by default.
         resume: go on from the checkpoint in the folder.
+        force: run whether its memory is free or not.
 
     Raises:
-        CaseError: the folder cannot be used.
+        CaseError: the folder cannot be used, or there is not enough memory for the run.
         MeshError: gmsh failed.
     """
     comm = MPI.COMM_WORLD
     progress = progress or Progress(quiet=True)
+    if not force:
+        refuse_shortage(case, comm)
     folder = None
     if out is not None and resume:
         folder = RunFolder.resume(out, case, comm)

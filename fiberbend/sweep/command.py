@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import FrameType
 
+from fiberbend.plan.memory import needed_mb, room, shortage
 from fiberbend.running import launch
 from fiberbend.running.folder import RunFolder
 from fiberbend.running.launch import FAILED
@@ -26,6 +27,7 @@ def run_sweep(
     settings: Sequence[str] = (),
     jobs: int = 1,
     retry: bool = False,
+    force: bool = False,
     say: Say = print,
 ) -> int:
     """Solve the points of a sweep that are not finished, then write its table and pictures.
@@ -36,23 +38,27 @@ def run_sweep(
         settings: changes to the base case.
         jobs: processes that solve at once; one works in this process.
         retry: run failed points again.
+        force: run whether there is enough memory or not.
         say: takes lines for the user.
 
     Returns:
         The exit code: 0, 2 if a point failed, 130 if interrupted.
 
     Raises:
-        CaseError: a file or a point is wrong, or the folder cannot be used; nothing has run.
+        CaseError: a file or a point is wrong, the folder cannot be used, or there is not enough
+            memory; nothing has run.
     """
     if launch.size() > 1:
         raise CaseError(
             [Problem("fiberbend sweep", "under mpirun, expected -j for more processes")]
         )
     sweep = read_sweep(path, settings)
-    store = Store.open(out)
+    store = Store.open(out, force)
     if retry:
         for point in sweep.points:
             store.forget(point)
+    if not force:
+        _refuse_shortage(sweep, store, jobs)
     before = sum(store.result(point) is not None for point in sweep.points)
     say(f"{len(sweep.points)} points, {before} finished before")
     interrupted = False
@@ -100,6 +106,17 @@ def _solve(sweep: Sweep, store: Store, jobs: int, on_event: _EventPrinter) -> No
     finally:
         for number, handler in previous.items():
             signal.signal(number, handler)
+
+
+def _refuse_shortage(sweep: Sweep, store: Store, jobs: int) -> None:
+    """Refuse points of which so many at once would not fit into memory, were they the largest."""
+    left = [point for point in sweep.points if store.result(point) is None]
+    cases = [case for point in left for case in (point.case, point.blocked) if case is not None]
+    largest = sorted((needed_mb(case) for case in cases), reverse=True)[: max(jobs, 1)]
+    text = shortage(largest, room(), "the sweep")
+    if text is not None:
+        fewer = " (or fewer -j)" if len(largest) > 1 else ""
+        raise CaseError([Problem("memory", f"{text}{fewer}")])
 
 
 def _summary(sweep: Sweep, store: Store, interrupted: bool, say: Say) -> int:
