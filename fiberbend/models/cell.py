@@ -121,6 +121,11 @@ class Cell(UniformModel):
             counts.cells, "hexahedra", count(counts, 3, 4), scalars, layers, segments
         )
 
+    def drawn(self, case: Case, size: ProblemSize) -> float:
+        """All slices of the length."""
+        extent = self.slice(case, self.half(case)[0])[0]
+        return size.elements * max(1.0, case.actuator.length / extent)
+
     def step_seconds(self, case: Case, size: ProblemSize) -> float:
         """By unknowns."""
         return _ITERATIONS * 0.069 * (size.unknowns / 3285) ** 1.15

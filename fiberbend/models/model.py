@@ -246,6 +246,10 @@ class MeshedModel(ModelKind):
     def memory_mb(self, size: ProblemSize) -> float:
         """Greatest memory on one rank, MB."""
 
+    def drawn(self, case: Case, size: ProblemSize) -> float:
+        """Elements in space that pictures and fields show."""
+        return float(size.elements)
+
     def largest_turn(self, case: Case) -> float:
         """Greatest change of the angle in a step, rad."""
         return self.bounded_turn(case, case.solver.max_turn or self.turn)

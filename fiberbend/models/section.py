@@ -23,6 +23,10 @@ if TYPE_CHECKING:
 
 _FLAT = 1e-9
 """Its elements have no length along the axis."""
+_PICTURE_LAYER = 0.4
+"""Length of the elements of a picture over the section's half width."""
+_PICTURE_LAYERS = 400
+"""The most that a picture has: beyond, no eye sees more."""
 _ERRORS = ((4, 0.03), (3, 0.06), (2, 0.13), (1, 0.3))
 """Refinement, and percent of the pressure for an angle up to 360° (docs/accuracy_uniform.md)."""
 
@@ -96,6 +100,10 @@ class Section(UniformModel):
         # the thread of a section has a piece for each point of the outline: next to none
         return ProblemSize(counts.cells, "quadrilaterals", unknowns, scalars, 1.0, 0.0)
 
+    def drawn(self, case: Case, size: ProblemSize) -> float:
+        """The section along the whole length."""
+        return float(size.elements * picture_layers(case))
+
     def step_seconds(self, case: Case, size: ProblemSize) -> float:
         """Two iterations."""
         return 0.015 + 9e-6 * size.unknowns
@@ -103,6 +111,12 @@ class Section(UniformModel):
     def mesh_error(self, case: Case) -> float:
         """By refinement."""
         return next(error for n, error in _ERRORS if case.mesh.section >= n)
+
+
+def picture_layers(case: Case) -> int:
+    """Layers of elements in which a picture in space has the length between the caps."""
+    width = convert.dimensions(case.actuator).outline_half_width
+    return min(math.ceil(case.actuator.length / (_PICTURE_LAYER * width)), _PICTURE_LAYERS)
 
 
 MODEL = Section()

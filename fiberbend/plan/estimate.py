@@ -13,7 +13,7 @@ from pathlib import Path
 from fiberbend.case.case import Case
 from fiberbend.models import lines
 from fiberbend.models.model import MACHINE, MeshedModel, ModelKind, ProblemSize
-from fiberbend.plan.memory import RANK_MB, Room, gigabytes, room
+from fiberbend.plan.memory import RANK_MB, Room, gigabytes, needed_mb, room
 
 _GROWTH = 1.5
 _NEAR = 0.2
@@ -84,7 +84,7 @@ def cost_of(case: Case, model: MeshedModel, size: ProblemSize) -> Cost:
         step_s=model.step_seconds(case, size),
         start_s=model.start_s,
         compile_s=model.compile_s,
-        memory_mb=model.memory_mb(size),
+        memory_mb=needed_mb(case),
         free=room(),
     )
 

@@ -14,8 +14,12 @@ from fiberbend.schema.problems import CaseError, Problem
 
 RANK_MB = 200.0
 """Memory of a further rank beside its part of the problem: libraries, kernels, buffers."""
-_ALONE_MB = 130.0
-"""Of a run without elements."""
+_ALONE_MB = 250.0
+"""Of a run without elements, its plots among it."""
+_PICTURES_MB = 300.0
+"""Of VTK and matplotlib."""
+_DRAWN_MB = 0.009
+"""Of an element in space that is drawn: measured on sections and cells 160 mm to 4 m long."""
 _MB = 1e-6
 _UNLIMITED = 2**60
 """A limit of a control group from here on is none."""
@@ -34,13 +38,28 @@ class Room:
     source: str
 
 
-def needed_mb(case: Case, ranks: int = 1) -> float:
-    """Greatest memory of a run, of all its ranks together, MB; an estimate, nothing is meshed."""
+def needed_mb(case: Case, ranks: int = 1, folder: bool = True) -> float:
+    """Greatest memory of a run, of all its ranks together, MB; an estimate, nothing is meshed.
+
+    Args:
+        case: the case.
+        ranks: how many solve it.
+        folder: the run has one, and leaves pictures and fields there.
+    """
     model = choose_model(case)[0].elements()
     if model is None:
         return _ALONE_MB
-    own = model.memory_mb(model.size(case))
-    return own + RANK_MB * (ranks - 1)
+    size = model.size(case)
+    # solution and pictures one after the other, and the solution's memory is not given back
+    drawing = _drawing_mb(case, model.drawn(case, size)) if folder else 0.0
+    return model.memory_mb(size) + drawing + RANK_MB * (ranks - 1)
+
+
+def _drawing_mb(case: Case, elements: float) -> float:
+    output = case.output
+    if not (output.pictures or output.fields):
+        return 0.0
+    return (_PICTURES_MB if output.pictures else 0.0) + _DRAWN_MB * elements
 
 
 def room(root: Path = Path("/")) -> Room | None:
@@ -113,16 +132,18 @@ def shortage(needs: Sequence[float], free: Room | None, what: str = "the run") -
     each = f" ({len(needs)} at once)" if len(needs) > 1 else ""
     return (
         f"{what} needs about {gigabytes(total)}{each}, {gigabytes(free.mb)} are free "
-        f"{free.source}: expected a coarser or smaller problem, or --force"
+        f"{free.source}: expected a coarser or smaller problem, fewer "
+        "pictures and fields, or --force"
     )
 
 
-def refuse_shortage(case: Case, comm: Any) -> None:
+def refuse_shortage(case: Case, comm: Any, folder: bool) -> None:
     """Refuse a case whose run would not fit into what is free; collective, the same on all ranks.
 
     Args:
         case: the case.
         comm: communicator of mpi4py whose ranks solve it, on one machine or several.
+        folder: the run has one, and leaves pictures and fields there.
 
     Raises:
         CaseError: with both figures.
@@ -130,7 +151,7 @@ def refuse_shortage(case: Case, comm: Any) -> None:
     from mpi4py import MPI
 
     here = comm.Split_type(MPI.COMM_TYPE_SHARED)
-    share = needed_mb(case, comm.size) * here.size / comm.size
+    share = needed_mb(case, comm.size, folder) * here.size / comm.size
     # one rank of each machine asks, for the others begin to take memory meanwhile
     mine = shortage([share], room()) if here.rank == 0 else None
     here.Free()

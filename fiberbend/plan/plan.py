@@ -10,6 +10,7 @@ from fiberbend.case.case import Case
 from fiberbend.models.choice import MODELS, choose_model, objection
 from fiberbend.models.model import MeshedModel, ModelKind
 from fiberbend.models.resolution import lost_pressure, winding_remark
+from fiberbend.plan.doubts import doubts
 from fiberbend.plan.memory import shortage
 
 WIDTH = 100
@@ -67,6 +68,8 @@ def make_plan(case: Case) -> Plan:
     remark = winding_remark(case)
     if remark is not None:
         tail["winding"] = [remark]
+    if found := doubts(case):
+        tail["warnings"] = found
     elements = model.elements()
     if elements is None:
         return Plan(model.name, _rows(head | _closed_form(case, model) | tail))

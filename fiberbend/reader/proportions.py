@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from fiberbend.case import convert
 from fiberbend.case.case import Materials
-from fiberbend.effects.effect import Draft, Effect
+from fiberbend.effects.effect import Draft
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.slips import LIMITS
 from fiberbend.schema.units import show
@@ -40,19 +40,6 @@ def disproportions(draft: Draft, materials: Materials | None) -> Iterator[Proble
             yield from _pressure(f"{path}.to", load.to, materials)
         if load.volume is not None and draft.actuator is not None:
             yield from _volume(f"{path}.volume", load.volume, draft.actuator)
-
-
-def thread_is_soft(effects: Mapping[str, Effect], materials: Materials) -> Iterator[str]:
-    """Sentences on thread that is softer than the wall it is to hold."""
-    stiff = 3 * convert.material(materials.wall).initial_shear_modulus
-    for path, effect in effects.items():
-        turns = effect.turns()
-        if turns is not None and turns.modulus < stiff:
-            meant = LIMITS["modulus"].meant(turns.modulus, "modulus")
-            yield (
-                f"{path}: the thread's modulus, {show(turns.modulus, 'modulus')}, is below the "
-                f"wall's, {stiff:.3g} MPa: it holds hardly anything{meant}"
-            )
 
 
 def _pressure(path: str, pressure: float, materials: Materials) -> Iterator[Problem]:

@@ -18,8 +18,8 @@ from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
 from fiberbend.models.choice import choose_model
 from fiberbend.models.model import MeshedModel
-from fiberbend.models.resolution import winding_remark
 from fiberbend.models.result import RunResult
+from fiberbend.plan.doubts import doubts, say_warnings
 from fiberbend.plan.memory import refuse_shortage
 from fiberbend.running import messages, record, restart
 from fiberbend.running.assembly import Assembly, assemble
@@ -59,7 +59,7 @@ def run_case(
     comm = MPI.COMM_WORLD
     progress = progress or Progress(quiet=True)
     if not force:
-        refuse_shortage(case, comm)
+        refuse_shortage(case, comm, out is not None)
     folder = None
     if out is not None and resume:
         folder = RunFolder.resume(out, case, comm)
@@ -118,14 +118,13 @@ class _Run:
 
         assembly = assemble(case, mesh, self.comm, make_guide, watch=True)
         recorder, recording = self._recording(assembly, again)
-        remark = winding_remark(case)
-        if remark is not None and "NOT" in remark:
-            progress.message(f"winding {remark}")
+        recording.warn(doubts(case))
         progress.phase("solve")
         assembly.march.run(assembly.ramps, [recording])
         status, reason = ended(case, assembly, recorder.rows)
         self._warn_of_ends(status, recorder, recording)
         check = self._cross_check(recorder.rows, section)
+        recording.warn([] if check is None else check.doubts(), silent=True)
         progress.phase("output")
         recording.keep("last")
         rows = check.beside(recorder.rows) if check else recorder.rows
@@ -147,6 +146,7 @@ class _Run:
                 why = f"{status}: {reason}" if reason else None
                 self._draw(assembly, recording, why, rows, check)
                 run["wall_s"] = self._wall(assembly)
+                run["warnings"] = list(recording.warnings)
                 self.folder.write_run(**run)
         self.comm.barrier()
         self._report(run, check)
@@ -242,6 +242,7 @@ class _Run:
         )
         phases = ", ".join(f"{name} {value:.1f} s" for name, value in run["wall_s"].items())
         say(f"{phases}; peak memory {run['peak_memory_MB']:.0f} MB on {run['ranks']} ranks")
+        say_warnings(run["warnings"], say)
 
     def _draw(
         self,
@@ -270,7 +271,7 @@ class _Run:
             recording.snapshots,
             rows,
             reason,
-            self.progress.message,
+            lambda text: recording.warn([text]),
             check,
             self.model.name,
         )
