@@ -176,7 +176,9 @@ def run(
         launch.start_mpi()
         from fiberbend.running.runner import run_case
 
-        result = run_case(checked, folder, overwrite, progress, resume, force)
+        result = run_case(
+            checked, folder, overwrite=overwrite, progress=progress, resume=resume, force=force
+        )
     except CaseError:
         raise
     except BaseException as error:

@@ -22,6 +22,7 @@ from fiberbend.effects.effect import (
     WOUND,
     tip_strips,
 )
+from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import (
     ENDS_BEND,
     MeshedModel,
@@ -163,7 +164,10 @@ class Body(MeshedModel):
         if case.straight:
             yield "mesh: moves the tip force by 1 to 3 % (docs/accuracy_blocked.md)"
         else:
-            yield "mesh: finer elements move P by 0.1 to 0.3 % (docs/accuracy_free.md)"
+            yield (
+                "mesh: shorter elements move P by 0.1 to 0.3 % (docs/accuracy_free.md), a finer "
+                f"section by up to {section_error(case)} % (docs/accuracy_uniform.md)"
+            )
         for effect in case.effects:
             yield from effect.uncertainties(case.straight)
         if not case.straight and not any(effect.alone() for effect in case.effects):

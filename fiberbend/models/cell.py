@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.effect import ARC, CHAMBER, THREAD, TURNS, TWIST, VOLUME, WOUND
+from fiberbend.models.mesh_error import cell_section_error, section_error
 from fiberbend.models.model import Objection, ProblemSize, completed_mesh, count, pieces
 from fiberbend.models.uniform import UniformModel, twists
 from fiberbend.schema.units import show
@@ -24,8 +25,8 @@ if TYPE_CHECKING:
 
 _ITERATIONS = 3.3
 """Newton iterations in a step."""
-_ERRORS = ((8, 0.2), (4, 0.4), (0, 1.9))
-"""Layers a half pitch, and percent of the pressure for an angle up to 360°
+_ERRORS = ((8, 0.3), (4, 0.5), (0, 1.9))
+"""Layers a half pitch, and percent of the pressure for an angle from 5 to 360°
 (docs/accuracy_uniform.md)."""
 
 
@@ -131,12 +132,14 @@ class Cell(UniformModel):
         return _ITERATIONS * 0.069 * (size.unknowns / 3285) ** 1.15
 
     def mesh_error(self, case: Case) -> float:
-        """By layers a half pitch."""
-        if case.turns is None:
-            return _ERRORS[-1][1]
+        """By layers a half pitch, and by the section."""
+        across, turns = cell_section_error(case), case.turns
+        if turns is None or not turns.discrete:
+            # alike along the axis: no layers count
+            return section_error(case)
         half, _ = self.half(case)
         layers = self.slice(case, half)[1] / (1 if half else 2)
-        return next(error for least, error in _ERRORS if layers >= least)
+        return max(across, next(error for least, error in _ERRORS if layers >= least))
 
 
 MODEL = Cell()

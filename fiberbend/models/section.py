@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.effect import ARC, CHAMBER, THREAD, TWIST, VOLUME, WOUND
+from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import Objection, ProblemSize, completed_mesh, count
 from fiberbend.models.uniform import UniformModel, twists
 
@@ -27,8 +28,6 @@ _PICTURE_LAYER = 0.4
 """Length of the elements of a picture over the section's half width."""
 _PICTURE_LAYERS = 400
 """The most that a picture has: beyond, no eye sees more."""
-_ERRORS = ((4, 0.03), (3, 0.06), (2, 0.13), (1, 0.3))
-"""Refinement, and percent of the pressure for an angle up to 360° (docs/accuracy_uniform.md)."""
 
 
 class Section(UniformModel):
@@ -110,7 +109,7 @@ class Section(UniformModel):
 
     def mesh_error(self, case: Case) -> float:
         """By refinement."""
-        return next(error for n, error in _ERRORS if case.mesh.section >= n)
+        return section_error(case)
 
 
 def picture_layers(case: Case) -> int:

@@ -151,3 +151,7 @@ def unused(case: Case, model: ModelKind) -> Iterator[str]:
     """
     for part, names in model.unused(case).items():
         yield from (f"{part}.{name}" for name in sorted(names))
+    if model.elements() and case.straight and "max_turn" in case.solver.model_fields_set:
+        yield "solver.max_turn"
+    if not model.ends and "support" in case.model_fields_set:
+        yield "support"

@@ -35,6 +35,9 @@ if TYPE_CHECKING:
     from geometry.sections.size import MeshSize
 
 
+_NO_ANGLE = "no angle is reached where {} keeps the actuator straight, expected no value"
+
+
 @dataclasses.dataclass(frozen=True)
 class ValidParts:
     """The parts of a case that are valid by themselves; the others are None or absent."""
@@ -97,6 +100,7 @@ def check(parts: ValidParts) -> Iterator[Problem]:
     yield from _mesh(parts)
     yield from _solver(parts)
     yield from _output(parts)
+    yield from _kept_straight(parts)
 
 
 def _dimensions(parts: ValidParts) -> Iterator[Problem]:
@@ -300,6 +304,25 @@ def _output(parts: ValidParts) -> Iterator[Problem]:
                 f'"{show(value, "pressure")}", expected a pressure between zero and '
                 f'"{show(pressure.to, "pressure")}"',
             )
+
+
+def _kept_straight(parts: ValidParts) -> Iterator[Problem]:
+    """Angles asked of an actuator that some effect keeps straight.
+
+    Between roof and post a tip turns a little, and the run says what it has not reached.
+    """
+    effects = parts.draft().effects
+    holds = next((path for path, effect in effects.items() if effect.keeps_straight()), "")
+    for path, effect in effects.items():
+        load = effect.inflation()
+        if holds and load is not None and load.angle is not None:
+            yield Problem(f"{path}.angle", _NO_ANGLE.format(holds))
+    fixes = next((path for path, e in effects.items() if "curvature" in e.fixed_scalars()), "")
+    if fixes and parts.output is not None:
+        if parts.output.stop_at_angle is not None:
+            yield Problem("output.stop_at_angle", _NO_ANGLE.format(fixes))
+        for index, _ in enumerate(parts.output.at_angles):
+            yield Problem(f"output.at_angles.{index}", _NO_ANGLE.format(fixes))
 
 
 def _up_to(end: float, output: Output) -> Iterator[Problem]:

@@ -50,10 +50,6 @@ BAD_SETTINGS = [
         "effects.1.winding.pitch=0 mm",
         'effects.1.winding.pitch: "0 mm", expected a length above zero',
     ),
-    (
-        "effects.1.winding.pitch=161 mm",
-        'effects.1.winding.pitch: "161 mm", expected a pitch not longer than the chamber, "160 mm"',
-    ),
     ("mesh.axial=161 mm", 'mesh.axial: "161 mm", expected elements not longer'),
     ("effects.2.blocked-tip.roof_width=30 mm", "effects.2.blocked-tip: roof half width 15 mm"),
     # unknown names
@@ -230,7 +226,7 @@ UNFIT_MODELS = [
             "effects.2.straight={}",
             "output={}",
         ],
-        "effects: model section does not support it: kept straight, it reaches no angle",
+        "effects.0.pressure.angle: no angle is reached where effects.2.straight keeps",
     ),
     (
         ["model=section", "effects.1.winding.as=discrete"],
