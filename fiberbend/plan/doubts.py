@@ -59,7 +59,7 @@ def _winding(case: Case, model: ModelKind) -> Iterator[str]:
             f"winding: {number:.2g} turns over the chamber's length are spread over its surface, "
             "where the thread lies in truth does not enter (as: discrete, model body)"
         )
-    if turns.pitch > FARTHEST_PITCH and model.resolved_bulging(case) < 1:
+    elif turns.pitch > FARTHEST_PITCH and model.resolved_bulging(case) < 1:
         yield (
             f"winding: rubber bulges between turns {turns.pitch:g} mm apart, how much too low that "
             f"makes the pressure is not known beyond {FARTHEST_PITCH:g} mm (docs/crosscheck.md)"
