@@ -57,6 +57,7 @@ class Comparison:
         at: where, such as "180.0°".
         band: percent within which they are expected to agree; None where that is not known.
         causes: estimates of what sets them apart there.
+        closed: the other one is a closed form.
     """
 
     name: str
@@ -65,6 +66,7 @@ class Comparison:
     at: str
     band: float | None
     causes: tuple[Cause, ...] = ()
+    closed: bool = False
 
     @property
     def beyond(self) -> bool:
@@ -147,9 +149,7 @@ class Check:
         difference from the section model or from measured points, or one without a reason, is not
         expected.
         """
-        unexpected = (
-            c for c in self._shown if c.beyond and not (c.name.startswith("analytic") and c.likely)
-        )
+        unexpected = (c for c in self._shown if c.beyond and not (c.closed and c.likely))
         return [*(c.line() for c in unexpected), *self.doubtful]
 
     def lines(self) -> list[str]:
@@ -224,7 +224,9 @@ def crosscheck(
                 limit = _limit(case, model, other, blocked)
                 causes = find_causes(case, model, rows[index], other, float(values[index]))
             comparisons.append(
-                Comparison(other.name, other.label, percent, where, limit, tuple(causes))
+                Comparison(
+                    other.name, other.label, percent, where, limit, tuple(causes), bool(other.line)
+                )
             )
     points: tuple[Points, ...] = ()
     remarks = [] if blocked else _unresolved(case, model, rows, [o.name for o in others])

@@ -18,6 +18,7 @@ from fiberbend.sweep.store import Store
 from fiberbend.sweep.workers import Event, WorkerPool, work
 
 INTERRUPTED = 130
+_MOST_WARNINGS = 10
 Say = Callable[[str], None]
 
 
@@ -126,10 +127,20 @@ def _summary(sweep: Sweep, store: Store, interrupted: bool, say: Say) -> int:
     for name, run in runs.items():
         if run is not None and run["status"] == "failed":
             say(f"failed: {name}: {run['reason']}")
+    _say_warnings([run for run in runs.values() if run is not None], say)
     if interrupted:
         say("interrupted; the same command goes on where it was")
         return INTERRUPTED
     return FAILED if counts["failed"] or counts["not run"] else 0
+
+
+def _say_warnings(runs: Sequence[Event], say: Say) -> None:
+    """What is doubtful of how many points; all of it stands in their run.json."""
+    counts = Counter(text for run in runs for text in run.get("warnings", ()))
+    for text, number in counts.most_common(_MOST_WARNINGS):
+        say(f"warning, {number} of {len(runs)} points: {text}")
+    if len(counts) > _MOST_WARNINGS:
+        say(f"{len(counts) - _MOST_WARNINGS} more warnings in run.json of the points")
 
 
 # --- table and pictures ------------------------------------------------------------------------

@@ -168,3 +168,30 @@ def test_plans_of_millions_of_steps_and_elements_come_at_once() -> None:
     huge: Any = read_case(BASELINE, ["model=cell", "mesh.axial=1e-6 mm", "mesh.section=16"])
     assert make_plan(huge).elements > 1e8
     assert time.perf_counter() - start < 5
+
+
+def test_a_sweep_counts_the_points_that_run_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two of 0.16 GB fit into 0.3 GB, three do not; the largest of them count."""
+    from fiberbend.sweep import command
+
+    solved: list[int] = []
+    monkeypatch.setattr(command, "_solve", lambda _sweep, _store, jobs, _say: solved.append(jobs))
+    monkeypatch.setattr(command, "_write", lambda *_args, **_more: None)
+    monkeypatch.setattr(command, "room", lambda: Room(300.0, "of this machine"))
+    file = tmp_path / "sweep.yaml"
+    quiet = "{pictures: false, fields: false}"
+    file.write_text(
+        f"case: {BASELINE}\nset: {{model: section, output: {quiet}}}\n"
+        "vary: {actuator.radius: [7 mm, 8 mm, 9 mm]}\n",
+        encoding="utf-8",
+    )
+    run_sweep = command.run_sweep
+    run_sweep(file, tmp_path / "two", jobs=2, say=lambda _: None)
+    with pytest.raises(
+        CaseError, match=r"the sweep needs about 0\.41 GB \(3 at once\), 0\.3 GB are"
+    ):
+        run_sweep(file, tmp_path / "three", jobs=3, say=lambda _: None)
+    run_sweep(file, tmp_path / "three", jobs=3, force=True, say=lambda _: None)
+    assert solved == [2, 3]
