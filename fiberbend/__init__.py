@@ -18,6 +18,7 @@ def run(
     out: Path | str | None = None,
     overwrite: bool = False,
     quiet: bool = True,
+    force: bool = False,
 ) -> RunResult:
     """Solve a case.
 
@@ -26,12 +27,14 @@ def run(
         out: run folder; without one nothing is written.
         overwrite: replace an earlier run in `out`.
         quiet: report no progress.
+        force: run whether the memory that it is expected to need is free or not.
 
     Returns:
         What was computed.
 
     Raises:
-        fiberbend.schema.problems.CaseError: everything that is wrong with the case.
+        fiberbend.schema.problems.CaseError: everything that is wrong with the case, or not
+            enough memory for it.
     """
     from fiberbend.reader.reader import as_case
     from fiberbend.running import launch
@@ -43,6 +46,7 @@ def run(
     progress = Progress(quiet=quiet)
     folder = None if out is None else Path(out)
     try:
-        return run_case(as_case(case), folder, overwrite=overwrite, progress=progress)
+        checked = as_case(case)
+        return run_case(checked, folder, overwrite, progress, force=force)
     finally:
         progress.close()

@@ -121,13 +121,24 @@ def validate(case: CaseFile, /, *, settings: Changes = ()) -> None:
   fiberbend plan cases/free_bending.yaml --set mesh.axial="3 mm"
 """
 )
-def plan(case: CaseFile, /, *, settings: Changes = ()) -> None:
-    """Print what a run would do: its model, size, time, memory and errors."""
+def plan(case: CaseFile, /, *, settings: Changes = (), force: bool = False) -> int:
+    """Print what a run would do: its model, size, time, memory and errors.
+
+    Args:
+        case: Case file.
+        settings: Changes to it.
+        force: Do not mind whether there is enough memory.
+    """
     from fiberbend.plan.plan import make_plan
     from fiberbend.reader.reader import read_case
 
-    for line in make_plan(read_case(case, settings)).lines():
+    made = make_plan(read_case(case, settings))
+    for line in made.lines():
         say(line)
+    if made.refusal and not force:
+        say(made.refusal, sys.stderr)
+        return WRONG_INPUT
+    return 0
 
 
 @app.command(
@@ -146,6 +157,7 @@ def run(
     overwrite: bool = False,
     resume: bool = False,
     quiet: bool = False,
+    force: bool = False,
 ) -> int:
     """Solve a case.
 
@@ -156,6 +168,7 @@ def run(
         overwrite: Replace an earlier run.
         resume: Go on with an interrupted run.
         quiet: No progress.
+        force: Run whether there is enough memory or not.
     """
     from fiberbend.reader.reader import read_case
     from fiberbend.running.progress import Progress
@@ -172,7 +185,12 @@ def run(
 
         with signals.raising():
             result = run_case(
-                checked, folder, overwrite=overwrite, progress=progress, resume=resume
+                checked,
+                folder,
+                overwrite=overwrite,
+                progress=progress,
+                resume=resume,
+                force=force,
             )
     except CaseError:
         raise
@@ -208,6 +226,7 @@ def sweep(
     out: Path | None = None,
     jobs: Annotated[int, Parameter(name=("--jobs", "-j"), validator=_count)] = 1,
     retry: bool = False,
+    force: bool = False,
 ) -> int:
     """Solve a case at many points, in a folder that can be gone on with.
 
@@ -217,6 +236,7 @@ def sweep(
         out: Folder; runs/SWEEP unless given.
         jobs: Processes that solve at once; 1 by default.
         retry: Run failed points again.
+        force: Run whether there is enough memory for all jobs or not.
     """
     from fiberbend.schema.problems import CaseError
     from fiberbend.sweep.command import run_sweep
@@ -224,7 +244,7 @@ def sweep(
     folder = out or Path("runs") / file.stem
     try:
         with signals.raising():
-            return run_sweep(file, folder, settings, jobs, retry, say=say)
+            return run_sweep(file, folder, settings, jobs, retry, force, say=say)
     except CaseError:
         raise
     except KeyboardInterrupt as error:

@@ -65,7 +65,7 @@ class Material:
     Attributes:
         law: name of the law, a key of `materials.laws.table.LAWS`.
         parameters: values of its parameters in their units; those with a default may be left out.
-        density: density in kg/m³, or None.
+        density: density in kg/m³, 0 of what has no weight, or None.
         bulk: bulk modulus in MPa of a nearly incompressible material, or None for incompressible.
         source: where the numbers come from.
 
@@ -94,10 +94,10 @@ class Material:
         for name, reason in law.refusals(self.parameters):
             unit = {p.name: "" if p.unit == "1" else f" {p.unit}" for p in law.parameters}[name]
             raise ValueError(f"{name} {self.parameters[name]}{unit}: {reason}")
-        for name in ("density", "bulk"):
-            value = getattr(self, name)
-            if value is not None and not (math.isfinite(value) and value > 0):
-                raise ValueError(f"{name} {value}: expected a positive number")
+        if self.bulk is not None and not (math.isfinite(self.bulk) and self.bulk > 0):
+            raise ValueError(f"bulk {self.bulk}: expected a positive number")
+        if self.density is not None and not (math.isfinite(self.density) and self.density >= 0):
+            raise ValueError(f"density {self.density}: expected a number, 0 or more")
         stresses = (p.name for p in law.parameters if p.unit != "1")
         scale = sum(abs(self.values[name]) for name in stresses)
         if not self.initial_shear_modulus > ROUND_OFF * scale:

@@ -7,6 +7,7 @@ from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial import cKDTree
 
 from analytic.path import CentreLine
 from fem.kinematics.kinematics import Kinematics
@@ -84,13 +85,21 @@ def clearance(pose: Pose, most: float = np.inf) -> float:
     wide = np.linalg.norm(points - middles[:, None], axis=2).max(axis=1)
     slices, halves = (middles[1:] + middles[:-1]) / 2, np.maximum(wide[1:], wide[:-1])
     halves = halves + np.linalg.norm(np.diff(middles, axis=0), axis=1) / 2
-    between = np.linalg.norm(middles[:, None] - slices, axis=2) - wide[:, None] - halves
-    far = np.abs(pose.z[:, None] - (pose.z[1:] + pose.z[:-1]) / 2) > 1.5 * size
     least = min(size, most)
-    # |m_i − m_j| − r_i − r_j of the balls around section and slice: a bound that most pairs pass
-    candidates = far & (between < least)
-    for j in np.flatnonzero(candidates.any(axis=0)):
-        some = points[candidates[:, j]].reshape(-1, 3)
+    # |m_i − m_j| − r_i − r_j of the balls around section and slice: a bound that most pairs pass,
+    # asked of neighbours in space alone, so that memory grows with the length and not its square
+    radii = float(wide.max() + halves.max() + least)
+    found = cKDTree(slices).query_ball_point(middles, radii)
+    i = np.repeat(np.arange(len(found)), [len(others) for others in found])
+    j_of = np.concatenate([np.asarray(others, dtype=int) for others in found])
+    between = np.linalg.norm(middles[i] - slices[j_of], axis=1) - wide[i] - halves[j_of]
+    far = np.abs(pose.z[i] - (pose.z[j_of + 1] + pose.z[j_of]) / 2) > 1.5 * size
+    kept = far & (between < least)
+    order = np.argsort(j_of[kept], kind="stable")
+    i, j_of = i[kept][order], j_of[kept][order]
+    hit, first, number = np.unique(j_of, return_index=True, return_counts=True)
+    for j, begin, count in zip(hit, first, number, strict=True):
+        some = points[i[begin : begin + count]].reshape(-1, 3)
         below = (some - pose.centre[j]) @ pose.rotation[j]
         above = (some - pose.centre[j + 1]) @ pose.rotation[j + 1]
         axial = np.maximum(-below[:, 2], above[:, 2])

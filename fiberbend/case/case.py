@@ -6,7 +6,7 @@ values against each other, and reports every problem at once.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -24,14 +24,17 @@ from fiberbend.effects.effect import Effect, Inflation, Turns, keep_straight
 from fiberbend.effects.table import EffectEntry, unwrap
 from fiberbend.schema.quantities import (
     Angle,
+    BodyLength,
     Density,
+    Dimension,
+    DimensionOrZero,
     Length,
-    LengthOrZero,
     Modulus,
     Pressure,
     SignedPressure,
     Spec,
 )
+from geometry.sections.table import SECTIONS
 from materials.laws.table import LAWS
 
 E = TypeVar("E", bound=Effect)
@@ -40,38 +43,40 @@ if TYPE_CHECKING:
     AnyEffect = Effect
     LawName = str
     ModelName = str
+    SectionName = str
 else:
     LawName = Literal[tuple(LAWS)]
     ModelName = Literal[(*MODELS, "auto")]
+    SectionName = Literal[tuple(SECTIONS)]
     AnyEffect = Annotated[EffectEntry, AfterValidator(unwrap)]
 
 
 class ActuatorSpec(Spec):
     """Dimensions of the actuator."""
 
-    section: Literal["hemicircle", "rectangle", "circle"] = "hemicircle"
+    section: SectionName = "hemicircle"
     """Shape of the cross-section."""
-    radius: Length | None = None
+    radius: Dimension | None = None
     """Radius of the chamber; hemicircle and circle."""
-    width: Length | None = None
+    width: Dimension | None = None
     """Width of the chamber; rectangle."""
-    height: Length | None = None
+    height: Dimension | None = None
     """Height of the chamber; rectangle."""
-    length: Length
+    length: BodyLength
     """Length of the chamber, without the caps."""
-    wall: Length
+    wall: Dimension
     """Thickness of the wall around the chamber."""
-    floor: Length | None = None
+    floor: DimensionOrZero | None = None
     """Thickness of the floor under the chamber; of a circle the outer part of the wall's thickness
     over the lowest quarter, none by default."""
-    sheath: LengthOrZero | None = None
+    sheath: DimensionOrZero | None = None
     """Thickness of the sheath around everything; none by default."""
-    cap: Length = 15.0
+    cap: Dimension = 15.0
     """Length of each of the two solid end caps."""
-    layer: LengthOrZero | None = None
+    layer: DimensionOrZero | None = None
     """Thickness of a separate strain-limiting layer under a flat floor; none by default."""
 
-    @field_validator("sheath", "layer")
+    @field_validator("floor", "sheath", "layer")
     @classmethod
     def _none_if_zero(cls, value: float | None) -> float | None:
         """What has no thickness does not exist."""
@@ -100,7 +105,7 @@ class MaterialSpec(_Coefficients):
     """A material by name, or a law with its coefficients."""
 
     density: Density | None = None
-    """Density; gravity needs it."""
+    """Density; gravity needs it. "0 g/cm^3" is a part without weight."""
     bulk: Modulus | None = None
     """Bulk modulus of a nearly incompressible material; exactly incompressible by default."""
 
@@ -109,6 +114,21 @@ class MaterialSpec(_Coefficients):
         """The coefficients that are given, in MPa where they have a unit."""
         given = {key: getattr(self, key) for key in _COEFFICIENTS}
         return {key: value for key, value in given.items() if value is not None}
+
+    def plain(self, weighs: bool) -> Self:
+        """The same without keys whose zero says no more than leaving them out.
+
+        Args:
+            weighs: densities count: a part of none is weightless.
+        """
+        if self.law is None:
+            off = set()
+        else:
+            given = self.coefficients
+            off = given.keys() - LAWS[self.law].plain(given).keys()
+        if self.density == 0 and not weighs:
+            off = {*off, "density"}
+        return self.model_copy(update=dict.fromkeys(off)) if off else self
 
     @model_validator(mode="before")
     @classmethod

@@ -31,7 +31,7 @@ from fiberbend.compare.others import (
 from fiberbend.drawing.overlay import Line, Overlay, Points
 from fiberbend.models.closed_form import dimensions, no_analytic
 from fiberbend.models.model import ModelKind
-from fiberbend.models.resolution import BULGING_PITCH, bulging
+from fiberbend.models.resolution import BULGING_PITCH, FARTHEST_PITCH, bulging
 from fiberbend.models.result import Curve
 
 PAPER_PRESSURE = 11.0
@@ -57,6 +57,7 @@ class Comparison:
         at: where, such as "180.0°".
         band: percent within which they are expected to agree; None where that is not known.
         causes: estimates of what sets them apart there.
+        closed: the other one is a closed form.
     """
 
     name: str
@@ -65,6 +66,7 @@ class Comparison:
     at: str
     band: float | None
     causes: tuple[Cause, ...] = ()
+    closed: bool = False
 
     @property
     def beyond(self) -> bool:
@@ -112,6 +114,7 @@ class Check:
         forces: what is drawn beside the tip force over the pressure, or None.
         missing: models that are not beside it, and why.
         remarks: what limits the comparison.
+        doubtful: what of them casts doubt on the run.
         calibration: effective modulus fitted to measured angles, or why there is none.
     """
 
@@ -121,6 +124,7 @@ class Check:
     forces: Overlay | None = None
     missing: Mapping[str, str] = dataclasses.field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+    doubtful: tuple[str, ...] = ()
     calibration: Mapping[str, Any] | None = None
 
     def beside(self, rows: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -133,9 +137,24 @@ class Check:
         extra = {"missing": self.missing, "remarks": self.remarks, "calibration": self.calibration}
         return entry | {key: value for key, value in extra.items() if value}
 
+    @property
+    def _shown(self) -> list[Comparison]:
+        """The comparisons that a user reads of."""
+        return [c for c in self.comparisons if c.name != "analytic_winding"]
+
+    def doubts(self) -> list[str]:
+        """What casts doubt on the run, not on the other model.
+
+        A closed form is further off than its band on most cases, for reasons that are known; a
+        difference from the section model or from measured points, or one without a reason, is not
+        expected.
+        """
+        unexpected = (c for c in self._shown if c.beyond and not (c.closed and c.likely))
+        return [*(c.line() for c in unexpected), *self.doubtful]
+
     def lines(self) -> list[str]:
         """A few lines for the user."""
-        shown = [c for c in self.comparisons if c.name != "analytic_winding"]
+        shown = self._shown
         lines = [c.line() for c in shown]
         lines += [
             f"no {model} model to compare with: {text}" for model, text in self.missing.items()
@@ -205,10 +224,13 @@ def crosscheck(
                 limit = _limit(case, model, other, blocked)
                 causes = find_causes(case, model, rows[index], other, float(values[index]))
             comparisons.append(
-                Comparison(other.name, other.label, percent, where, limit, tuple(causes))
+                Comparison(
+                    other.name, other.label, percent, where, limit, tuple(causes), bool(other.line)
+                )
             )
     points: tuple[Points, ...] = ()
     remarks = [] if blocked else _unresolved(case, model, rows, [o.name for o in others])
+    doubtful = [*remarks]
     if alone:
         remarks.append(f"{alone} in this run alone: its differences are shown without a band")
     if measured is not None:
@@ -216,6 +238,7 @@ def crosscheck(
         comparison, outside = _beside_measured(rows, columns, points[0], blocked)
         comparisons += [comparison] if comparison is not None else []
         remarks += [outside] if outside else []
+        doubtful += [outside] if outside else []
     overlay = Overlay(tuple(lines), points)
     reasons = {"section": no_section, "analytic": no_analytic(case) or ""}
     return Check(
@@ -225,6 +248,7 @@ def crosscheck(
         forces=overlay if blocked else None,
         missing={name: text for name, text in reasons.items() if text},
         remarks=tuple(remarks),
+        doubtful=tuple(doubtful),
         calibration=None if measured is None or blocked else _calibration(case, measured),
     )
 
@@ -247,7 +271,11 @@ def band(case: Case, model: ModelKind) -> float:
     return round(max(model.agreement, _SMEARED + _BULGING * scale), 2)
 
 
-def _limit(case: Case, model: ModelKind, other: OtherModel, blocked: bool) -> float:
+def _limit(case: Case, model: ModelKind, other: OtherModel, blocked: bool) -> float | None:
+    turns = case.turns
+    far = turns is not None and turns.pitch > FARTHEST_PITCH
+    if far and (model.resolved_bulging(case) > 0 or other.name != "section"):
+        return None
     if other.name == "section" and not (blocked and model.ends):
         return band(case, model)
     return PAPER_FORCE if blocked else PAPER_PRESSURE

@@ -68,12 +68,16 @@ class Turns:
         discrete: every turn by itself, not spread over its surface.
         twists: the pattern has a hand, so that the body may twist.
         stiffness: axial stiffness EA of the thread, N.
+        modulus: Young's modulus of the thread, MPa.
+        curves: lines that stand for the thread: helices, times the lines of a ribbon.
     """
 
     pitch: float
     discrete: bool
     twists: bool
     stiffness: float
+    modulus: float
+    curves: int
 
 
 @dataclasses.dataclass(frozen=True)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, Literal
 
-from fiberbend.effects.effect import ARC, Built, Effect, Requests, Site
+from fiberbend.effects.effect import ARC, Built, Draft, Effect, Requests, Site
+from fiberbend.schema.problems import Problem
 
 if TYPE_CHECKING:
     from geometry.mesh.data import MeshData
@@ -30,6 +31,12 @@ class StraightEffect(Effect):
     def bends(self) -> bool:
         """It keeps it from bending."""
         return False
+
+    def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
+        """Once is enough."""
+        for other, effect in draft.effects.items():
+            if effect is not self and effect.keeps_straight():
+                yield Problem(path, f"{other} keeps it straight already, expected one of them")
 
     def keeps_straight(self) -> bool:
         """That is all it does."""

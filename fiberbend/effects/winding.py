@@ -23,7 +23,7 @@ from fiberbend.effects.effect import (
 from fiberbend.schema.problems import Problem, found, meant
 from fiberbend.schema.quantities import Length, LengthOrZero, Modulus, Spec
 from fiberbend.schema.units import show
-from geometry.winding.patterns import PATTERNS
+from geometry.winding.patterns import PATTERNS, least_pitch, turn_spacing
 
 if TYPE_CHECKING:
     PatternName = str
@@ -36,6 +36,7 @@ else:
 
 DEFAULT_LINES = 5
 _POINTS_A_TURN = 24
+_ROUNDING = 1e-9
 
 
 class FiberSpec(Spec):
@@ -153,13 +154,7 @@ class WindingEffect(Effect):
         return False
 
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
-        """Pitch, ribbon and thread."""
-        if draft.length is not None and self.pitch > draft.length:
-            yield Problem(
-                f"{path}.pitch",
-                f'"{show(self.pitch, "length")}", expected a pitch not longer than the chamber, '
-                f'"{show(draft.length, "length")}"',
-            )
+        """Ribbon and thread, and whether there is room for them."""
         if self.representation == "smeared":
             for key in ("width", "lines"):
                 if getattr(self, key) is not None:
@@ -167,7 +162,39 @@ class WindingEffect(Effect):
                     yield Problem(f"{path}.{key}", text)
         elif self.width == 0 and (self.lines or 1) > 1:
             yield Problem(f"{path}.lines", f"{self.lines}, expected 1 line where the width is zero")
-        yield from self.fiber.problems(f"{path}.fiber")
+        wrong = list(self.fiber.problems(f"{path}.fiber"))
+        yield from wrong
+        if not wrong and draft.actuator is not None:
+            yield from self._room(path, draft.actuator)
+
+    def _room(self, path: str, actuator: Actuator) -> Iterator[Problem]:
+        """A thread or ribbon that lies over itself, or that no place around the body holds."""
+        diameter, width = self.fiber.thread().diameter, self.width or 0.0
+        wide, what = (diameter, "thread") if diameter >= width else (width, "ribbon")
+        perimeter = actuator.winding_perimeter
+        apart = turn_spacing(self.pattern, self.pitch, perimeter)
+        if wide > apart * (1 + _ROUNDING):
+            least = least_pitch(self.pattern, wide, perimeter)
+            wanted = f"a thinner {what}"
+            if least is not None:
+                wanted = f'at least "{show(_rounded_up(least), "length")}" or {wanted}'
+            yield Problem(
+                f"{path}.pitch",
+                f'"{show(self.pitch, "length")}" lays the turns over each other, {apart:.3g} mm '
+                f"apart where the {what} is {wide:.3g} mm wide, expected {wanted}",
+            )
+        if actuator.sheath is not None:
+            under = min(actuator.wall, actuator.profile.bottom - actuator.outline_bottom)
+            most, place = under + actuator.sheath, "wall or floor and sheath together"
+        else:
+            high = actuator.outline_top - actuator.outline_bottom
+            most, place = min(2 * actuator.outline_half_width, high), "the body within"
+        if diameter > most * (1 + _ROUNDING):
+            yield Problem(
+                f"{path}.fiber",
+                f"a thread {diameter:.4g} mm thick, expected one not thicker than {place}, "
+                f"{most:.4g} mm",
+            )
 
     def completed(self, offers: frozenset[str] | None) -> Self:
         """As finely as the model can have it; every turn where the model is to be chosen."""
@@ -189,7 +216,16 @@ class WindingEffect(Effect):
     def turns(self) -> Turns:
         """Pitch, pattern and thread."""
         discrete = self.representation != "smeared"
-        return Turns(self.pitch, discrete, self._twists, self.fiber.thread().stiffness)
+        thread = self.fiber.thread()
+        lines = (self.lines or DEFAULT_LINES) if discrete else 1
+        return Turns(
+            self.pitch,
+            discrete,
+            self._twists,
+            thread.stiffness,
+            thread.modulus,
+            lines * len(PATTERNS[self.pattern].helices),
+        )
 
     def fixes_circumference(self) -> bool:
         """Its thread hardly stretches."""
@@ -246,3 +282,9 @@ class WindingEffect(Effect):
         kind = SmearedWinding if smeared else Winding
         term = kind(fibers, self.fiber.thread().stiffness, self.tension_only)
         return Built((term,), (), fibers, smeared)
+
+
+def _rounded_up(length: float) -> float:
+    """The next length of four digits."""
+    step = 10.0 ** (math.floor(math.log10(length)) - 3)
+    return float(f"{math.ceil(length / step) * step:.4g}")

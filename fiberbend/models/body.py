@@ -22,6 +22,7 @@ from fiberbend.effects.effect import (
     WOUND,
     tip_strips,
 )
+from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import (
     ENDS_BEND,
     MeshedModel,
@@ -29,6 +30,8 @@ from fiberbend.models.model import (
     ProblemSize,
     count,
     found_pressure,
+    pieces,
+    thread_mb,
 )
 
 if TYPE_CHECKING:
@@ -122,21 +125,20 @@ class Body(MeshedModel):
 
     def size(self, case: Case) -> ProblemSize:
         """Of a body from the block layout, which is that of gmsh's hexahedra."""
-        from geometry.bodies.extrude import hexahedral_body
-        from geometry.mesh.tets import to_tetrahedra
+        from geometry.bodies.counts import body_counts, winding_sides
 
         actuator = convert.dimensions(case.actuator)
-        size = self.mesh_size(case, self.half(case)[0])
-        mesh, kind, pressures = (
-            hexahedral_body(actuator, size, tip_strips(case.effects)),
-            "hexahedra",
-            4,
-        )
+        half, _ = self.half(case)
+        size = self.mesh_size(case, half)
+        counts = body_counts(actuator, size, tip_strips(case.effects))
+        kind, pressures = "hexahedra", 4
         if case.mesh.element == "tetrahedron":
-            mesh, kind, pressures = to_tetrahedra(mesh), "tetrahedra", 0
+            kind, pressures = "tetrahedra", 0
         layers = actuator.total_length / case.mesh.axial
-        unknowns = count(mesh, 3, pressures)
-        return ProblemSize(len(mesh.cells), kind, unknowns, found_pressure(case), layers)
+        unknowns = count(counts, 3, pressures)
+        around, length = winding_sides(actuator, size), actuator.length
+        segments = pieces(case, half, around, length, length / size.axial)
+        return ProblemSize(counts.cells, kind, unknowns, found_pressure(case), layers, segments)
 
     def step_seconds(self, case: Case, size: ProblemSize) -> float:
         """Tangent by elements, factor by layers and by unknowns a layer.
@@ -151,8 +153,9 @@ class Body(MeshedModel):
         return iteration * (_TOUCHING_ITERATIONS if touching else _ITERATIONS)
 
     def memory_mb(self, size: ProblemSize) -> float:
-        """Mostly the factor."""
-        return 200 + 1e-3 * size.unknowns * (size.unknowns / size.layers) ** 0.3
+        """Mostly the factor, and the thread's own matrices."""
+        factor = 1e-3 * size.unknowns * (size.unknowns / size.layers) ** 0.3
+        return 200 + factor + thread_mb(size.segments)
 
     def errors(self, case: Case) -> Iterator[str]:
         """Mesh, effects, ends."""
@@ -161,7 +164,10 @@ class Body(MeshedModel):
         if case.straight:
             yield "mesh: moves the tip force by 1 to 3 % (docs/accuracy_blocked.md)"
         else:
-            yield "mesh: finer elements move P by 0.1 to 0.3 % (docs/accuracy_free.md)"
+            yield (
+                "mesh: shorter elements move P by 0.1 to 0.3 % (docs/accuracy_free.md), a finer "
+                f"section by up to {section_error(case)} % (docs/accuracy_uniform.md)"
+            )
         for effect in case.effects:
             yield from effect.uncertainties(case.straight)
         if not case.straight and not any(effect.alone() for effect in case.effects):

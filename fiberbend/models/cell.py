@@ -5,14 +5,17 @@ from __future__ import annotations
 import dataclasses
 import functools
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.effect import ARC, CHAMBER, THREAD, TURNS, TWIST, VOLUME, WOUND
-from fiberbend.models.model import ProblemSize, completed_mesh, count
+from fiberbend.models.mesh_error import cell_section_error, section_error
+from fiberbend.models.model import Objection, ProblemSize, completed_mesh, count, pieces
 from fiberbend.models.uniform import UniformModel, twists
+from fiberbend.schema.units import show
 
 if TYPE_CHECKING:
     from fem.effects.effect import Effect as Term
@@ -22,8 +25,8 @@ if TYPE_CHECKING:
 
 _ITERATIONS = 3.3
 """Newton iterations in a step."""
-_ERRORS = ((8, 0.2), (4, 0.4), (0, 1.9))
-"""Layers a half pitch, and percent of the pressure for an angle up to 360°
+_ERRORS = ((8, 0.3), (4, 0.5), (0, 1.9))
+"""Layers a half pitch, and percent of the pressure for an angle from 5 to 360°
 (docs/accuracy_uniform.md)."""
 
 
@@ -46,6 +49,19 @@ class Cell(UniformModel):
         if turns is None:
             return case
         return case.model_copy(update={"mesh": completed_mesh(case.mesh, axial=turns.pitch / 8)})
+
+    def limits(self, case: Case) -> Iterator[Objection]:
+        """No uniform bend, and no slice that the chamber has no room for."""
+        yield from super().limits(case)
+        extent, length = self.slice(case, self.half(case)[0])[0], case.actuator.length
+        for index, effect in enumerate(case.effects):
+            turns = effect.turns()
+            if turns is not None and turns.discrete and extent > length * (1 + 1e-9):
+                yield (
+                    f"effects.{index}.{effect.name}",
+                    f"the slice that repeats is {show(extent, 'length')} long, longer than the "
+                    f"chamber, {show(length, 'length')} (as: smeared, or model body)",
+                )
 
     def slice(self, case: Case, half: bool) -> tuple[float, int]:
         """Length in mm of the slice that repeats, and its number of layers.
@@ -92,22 +108,38 @@ class Cell(UniformModel):
         return 1.0 if turns is not None and turns.discrete else 0.0
 
     def size(self, case: Case) -> ProblemSize:
-        """Of the mesh itself."""
-        mesh, layers = self.mesh(case), self.slice(case, self.half(case)[0])[1]
-        unknowns = count(mesh, 3, 4)
-        return ProblemSize(len(mesh.cells), "hexahedra", unknowns, self.scalars(case), layers)
+        """Of its mesh."""
+        from geometry.bodies.counts import slice_counts, winding_sides
+
+        half, _ = self.half(case)
+        length, layers = self.slice(case, half)
+        size = self.mesh_size(case, half)
+        actuator = convert.dimensions(case.actuator)
+        counts = slice_counts(actuator, size, length, layers)
+        segments = pieces(case, half, winding_sides(actuator, size), length, layers)
+        scalars = self.scalars(case)
+        return ProblemSize(
+            counts.cells, "hexahedra", count(counts, 3, 4), scalars, layers, segments
+        )
+
+    def drawn(self, case: Case, size: ProblemSize) -> float:
+        """All slices of the length."""
+        extent = self.slice(case, self.half(case)[0])[0]
+        return size.elements * max(1.0, case.actuator.length / extent)
 
     def step_seconds(self, case: Case, size: ProblemSize) -> float:
         """By unknowns."""
         return _ITERATIONS * 0.069 * (size.unknowns / 3285) ** 1.15
 
     def mesh_error(self, case: Case) -> float:
-        """By layers a half pitch."""
-        if case.turns is None:
-            return _ERRORS[-1][1]
+        """By layers a half pitch, and by the section."""
+        across, turns = cell_section_error(case), case.turns
+        if turns is None or not turns.discrete:
+            # alike along the axis: no layers count
+            return section_error(case)
         half, _ = self.half(case)
         layers = self.slice(case, half)[1] / (1 if half else 2)
-        return next(error for least, error in _ERRORS if layers >= least)
+        return max(across, next(error for least, error in _ERRORS if layers >= least))
 
 
 MODEL = Cell()

@@ -14,6 +14,8 @@ from fiberbend.schema.units import show
 
 BULGING_PITCH = 3.0
 """Pitch in mm for which the bulging between the fibers was measured."""
+FARTHEST_PITCH = 6.0
+"""Twice that: beyond, nothing is known of it."""
 _BULGING = ((90.0, 3.5), (180.0, 4.1), (270.0, 4.7), (360.0, 5.1))
 """Angle in degrees, and percent of pressure that every fiber by itself takes beyond a smeared
 winding: the cell against the section model, baseline."""
@@ -40,6 +42,12 @@ def lost_pressure(case: Case, model: ModelKind) -> Iterator[str]:
     if turns is None or case.inflation is None or case.straight or not model.elements():
         return
     missing = 1 - model.resolved_bulging(case)
+    if missing and turns.pitch > FARTHEST_PITCH:
+        yield (
+            f"winding: P too low, as the rubber between turns {turns.pitch:g} mm apart bulges; by "
+            f"how much is not known beyond {FARTHEST_PITCH:g} mm (docs/crosscheck.md)"
+        )
+        return
     low, high = (missing * bulging(turns.pitch, angle) for angle in (90.0, 360.0))
     if high >= 0.05:
         scaled = "" if turns.pitch == BULGING_PITCH else f", scaled from {BULGING_PITCH:g} mm"

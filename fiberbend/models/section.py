@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.effect import ARC, CHAMBER, THREAD, TWIST, VOLUME, WOUND
+from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import Objection, ProblemSize, completed_mesh, count
 from fiberbend.models.uniform import UniformModel, twists
 
@@ -23,8 +24,10 @@ if TYPE_CHECKING:
 
 _FLAT = 1e-9
 """Its elements have no length along the axis."""
-_ERRORS = ((4, 0.03), (3, 0.06), (2, 0.13), (1, 0.3))
-"""Refinement, and percent of the pressure for an angle up to 360° (docs/accuracy_uniform.md)."""
+_PICTURE_LAYER = 0.4
+"""Length of the elements of a picture over the section's half width."""
+_PICTURE_LAYERS = 400
+"""The most that a picture has: beyond, no eye sees more."""
 
 
 class Section(UniformModel):
@@ -85,11 +88,20 @@ class Section(UniformModel):
         return [TwofoldAxis() if twists(case) else Symmetry()]
 
     def size(self, case: Case) -> ProblemSize:
-        """Of the mesh itself."""
-        mesh = self.mesh(case)
+        """Of its mesh."""
+        from geometry.bodies.counts import section_counts
+
+        size = self.mesh_size(case, self.half(case)[0])
+        counts = section_counts(convert.dimensions(case.actuator), size)
         components = 3 if twists(case) else 2
-        unknowns = count(mesh, components, 3)
-        return ProblemSize(len(mesh.cells), "quadrilaterals", unknowns, self.scalars(case), 1.0)
+        unknowns = count(counts, components, 3)
+        scalars = self.scalars(case)
+        # the thread of a section has a piece for each point of the outline: next to none
+        return ProblemSize(counts.cells, "quadrilaterals", unknowns, scalars, 1.0, 0.0)
+
+    def drawn(self, case: Case, size: ProblemSize) -> float:
+        """The section along the whole length."""
+        return float(size.elements * picture_layers(case))
 
     def step_seconds(self, case: Case, size: ProblemSize) -> float:
         """Two iterations."""
@@ -97,7 +109,13 @@ class Section(UniformModel):
 
     def mesh_error(self, case: Case) -> float:
         """By refinement."""
-        return next(error for n, error in _ERRORS if case.mesh.section >= n)
+        return section_error(case)
+
+
+def picture_layers(case: Case) -> int:
+    """Layers of elements in which a picture in space has the length between the caps."""
+    width = convert.dimensions(case.actuator).outline_half_width
+    return min(math.ceil(case.actuator.length / (_PICTURE_LAYER * width)), _PICTURE_LAYERS)
 
 
 MODEL = Section()

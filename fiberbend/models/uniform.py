@@ -16,6 +16,7 @@ from fiberbend.models.model import (
     Observables,
     ProblemSize,
     found_pressure,
+    thread_mb,
 )
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ class UniformModel(MeshedModel):
 
     def memory_mb(self, size: ProblemSize) -> float:
         """Little beside the libraries."""
-        return 130 + 7e-3 * size.unknowns
+        return 130 + 7e-3 * size.unknowns + thread_mb(size.segments)
 
     def scalars(self, case: Case) -> tuple[str, ...]:
         """Global unknowns: those of uniform bending that no effect fixes, and a pressure found."""

@@ -13,6 +13,7 @@ from pathlib import Path
 from fiberbend.case.case import Case
 from fiberbend.models import lines
 from fiberbend.models.model import MACHINE, MeshedModel, ModelKind, ProblemSize
+from fiberbend.plan.memory import RANK_MB, Room, gigabytes, needed_mb, room
 
 _GROWTH = 1.5
 _NEAR = 0.2
@@ -29,6 +30,7 @@ class Cost:
         start_s: seconds before the first step, kernels compiled.
         compile_s: seconds more where they are not.
         memory_mb: greatest memory on one rank, MB.
+        free: what there is, where that is known.
     """
 
     steps: int | None
@@ -36,6 +38,7 @@ class Cost:
     start_s: float
     compile_s: float
     memory_mb: float
+    free: Room | None = None
 
     def rows(self, case: Case, model: MeshedModel) -> dict[str, list[str]]:
         """Steps, time and memory in words."""
@@ -56,7 +59,9 @@ class Cost:
             more.append(f"about {_rounded(drawing)} s more for pictures and fields")
         memory = f"about {_rounded(self.memory_mb / 1000)} GB"
         if model.shared:
-            memory += ", and 0.2 GB for each further rank"
+            memory += f", and {RANK_MB / 1000:g} GB for each further rank"
+        if self.free is not None:
+            memory += f"; {gigabytes(self.free.mb)} are free {self.free.source}"
         return {"steps": [steps], "time": [time, *more], "memory": [memory]}
 
     def seconds(self, ranks: int = 1) -> float | None:
@@ -79,7 +84,8 @@ def cost_of(case: Case, model: MeshedModel, size: ProblemSize) -> Cost:
         step_s=model.step_seconds(case, size),
         start_s=model.start_s,
         compile_s=model.compile_s,
-        memory_mb=model.memory_mb(size),
+        memory_mb=needed_mb(case),
+        free=room(),
     )
 
 
@@ -152,6 +158,11 @@ def count_steps(first: float, most: float, goals: list[float]) -> int:
     for goal in sorted(goals):
         while here < goal * (1 - 1e-9):
             size = min(size, most)
+            if size == most:
+                # from here on all alike: counted, for there may be millions
+                steps += max(1, math.ceil((goal - here) / size - _NEAR - 1e-9))
+                here = goal
+                break
             here = goal if here + size > goal - _NEAR * size else here + size
             size *= _GROWTH
             steps += 1

@@ -10,6 +10,8 @@ from fiberbend.case.case import Case
 from fiberbend.models.choice import MODELS, choose_model, objection
 from fiberbend.models.model import MeshedModel, ModelKind
 from fiberbend.models.resolution import lost_pressure, winding_remark
+from fiberbend.plan.doubts import doubts
+from fiberbend.plan.memory import shortage
 
 WIDTH = 100
 """Columns of a plan."""
@@ -26,6 +28,7 @@ class Plan:
         elements: number of elements; none in a closed form.
         unknowns: displacements and pressures, before any are fixed.
         steps: load steps, where they can be predicted.
+        refusal: why a run would be refused here and now; empty where it would not.
     """
 
     model: str
@@ -33,6 +36,7 @@ class Plan:
     elements: int = 0
     unknowns: int = 0
     steps: int | None = None
+    refusal: str = ""
 
     def lines(self) -> list[str]:
         """The plan as lines of text, none longer than `WIDTH`."""
@@ -64,6 +68,8 @@ def make_plan(case: Case) -> Plan:
     remark = winding_remark(case)
     if remark is not None:
         tail["winding"] = [remark]
+    if found := doubts(case):
+        tail["warnings"] = found
     elements = model.elements()
     if elements is None:
         return Plan(model.name, _rows(head | _closed_form(case, model) | tail))
@@ -99,7 +105,15 @@ def _finite_elements(
         "unknowns": [f"{size.unknowns}{beside}"],
         **cost.rows(case, model),
     }
-    return Plan(model.name, _rows(head | body | tail), size.elements, size.unknowns, cost.steps)
+    short = shortage([cost.memory_mb], cost.free)
+    return Plan(
+        model.name,
+        _rows(head | body | tail),
+        size.elements,
+        size.unknowns,
+        cost.steps,
+        "" if short is None else f"memory: {short}",
+    )
 
 
 def _closed_form(case: Case, model: ModelKind) -> dict[str, list[str]]:
@@ -137,3 +151,7 @@ def unused(case: Case, model: ModelKind) -> Iterator[str]:
     """
     for part, names in model.unused(case).items():
         yield from (f"{part}.{name}" for name in sorted(names))
+    if model.elements() and case.straight and "max_turn" in case.solver.model_fields_set:
+        yield "solver.max_turn"
+    if not model.ends and "support" in case.model_fields_set:
+        yield "support"

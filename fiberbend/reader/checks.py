@@ -26,12 +26,16 @@ from fiberbend.effects.effect import (
 )
 from fiberbend.effects.table import EFFECTS
 from fiberbend.models.choice import MODELS, choose_model
+from fiberbend.reader.proportions import disproportions
 from fiberbend.schema.problems import Problem, found, meant
 from fiberbend.schema.units import show
 from materials.laws.table import LAWS
 
 if TYPE_CHECKING:
     from geometry.sections.size import MeshSize
+
+
+_NO_ANGLE = "no angle is reached where {} keeps the actuator straight, expected no value"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -92,10 +96,12 @@ def check(parts: ValidParts) -> Iterator[Problem]:
         yield from effect.problems(path, draft)
     yield from _materials(parts)
     yield from _bends(parts)
+    yield from disproportions(draft, parts.materials)
     yield from _density(parts)
     yield from _mesh(parts)
     yield from _solver(parts)
     yield from _output(parts)
+    yield from _kept_straight(parts)
 
 
 def _dimensions(parts: ValidParts) -> Iterator[Problem]:
@@ -201,7 +207,7 @@ def _density(parts: ValidParts) -> Iterator[Problem]:
         path, material = f"materials.{part}", getattr(parts.materials, part)
         if material is None:
             continue
-        if not weighing and material.density is not None:
+        if not weighing and material.density:
             names = " or ".join(name for name, effect in EFFECTS.items() if effect.needs_density)
             yield Problem(f"{path}.density", f"no effect without {names}, expected no value")
         if weighing and material.density is None:
@@ -209,6 +215,9 @@ def _density(parts: ValidParts) -> Iterator[Problem]:
 
             if material.name not in NAMED or NAMED[material.name].density is None:
                 yield Problem(f"{path}.density", f"missing, expected a density for {weighing[0]}")
+    given = [spec for spec in dict(parts.materials).values() if spec is not None]
+    if weighing and all(spec.density == 0 for spec in given):
+        yield Problem("materials", f"nothing has weight, expected a density for {weighing[0]}")
 
 
 def _mesh(parts: ValidParts) -> Iterator[Problem]:
@@ -327,6 +336,25 @@ def _output(parts: ValidParts) -> Iterator[Problem]:
                 f'"{show(value, "pressure")}", expected a pressure between zero and '
                 f'"{show(pressure.to, "pressure")}"',
             )
+
+
+def _kept_straight(parts: ValidParts) -> Iterator[Problem]:
+    """Angles asked of an actuator that some effect keeps straight.
+
+    Between roof and post a tip turns a little, and the run says what it has not reached.
+    """
+    effects = parts.draft().effects
+    holds = next((path for path, effect in effects.items() if effect.keeps_straight()), "")
+    for path, effect in effects.items():
+        load = effect.inflation()
+        if holds and load is not None and load.angle is not None:
+            yield Problem(f"{path}.angle", _NO_ANGLE.format(holds))
+    fixes = next((path for path, e in effects.items() if "curvature" in e.fixed_scalars()), "")
+    if fixes and parts.output is not None:
+        if parts.output.stop_at_angle is not None:
+            yield Problem("output.stop_at_angle", _NO_ANGLE.format(fixes))
+        for index, _ in enumerate(parts.output.at_angles):
+            yield Problem(f"output.at_angles.{index}", _NO_ANGLE.format(fixes))
 
 
 def _up_to(end: float, output: Output) -> Iterator[Problem]:

@@ -9,8 +9,13 @@ from fiberbend.models.choice import MODELS, choose_model
 def complete(case: Case) -> Case:
     """Fill in the defaults that depend on other values of a checked case.
 
-    The effects come first: the model is chosen by them, and the mesh by the model.
+    The effects come first: the model is chosen by them, and the mesh by the model. What is zero
+    and says no more than leaving it out is left out: one actuator is one case.
     """
+    weighs = any(effect.needs_density for effect in case.effects)
+    given = {part: spec for part, spec in dict(case.materials).items() if spec is not None}
+    plain = {part: spec.plain(weighs) for part, spec in given.items()}
+    case = case.model_copy(update={"materials": case.materials.model_copy(update=plain)})
     named = MODELS.get(case.model)
     offers = None if named is None else named.offers
     effects = tuple(effect.completed(offers) for effect in case.effects)

@@ -24,6 +24,7 @@ from fiberbend.models.closed_form import (
     no_analytic,
 )
 from fiberbend.models.result import Curve, RunResult
+from fiberbend.plan.doubts import doubts, say_warnings
 from fiberbend.running import launch, messages
 from fiberbend.running.folder import RunFolder
 from fiberbend.running.progress import Progress
@@ -75,7 +76,11 @@ def run_analytic(
             "load_steps": len(rows) - 1,
             "newton_iterations": 0,
             "cutbacks": 0,
-            "warnings": [messages.missed(missed)] if missed else [],
+            "warnings": [
+                *doubts(case),
+                *check.doubts(),
+                *([messages.missed(missed)] if missed else []),
+            ],
         },
         {name: round(value, 6) for name, value in progress.wall_s.items()},
         peak_memory_mb(),
@@ -105,6 +110,7 @@ def run_analytic(
             )
     for line in check.lines():
         progress.message(line)
+    say_warnings(run["warnings"], progress.message)
     return RunResult(status, reason, rows, run, folder.path if folder is not None else None)
 
 

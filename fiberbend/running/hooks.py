@@ -103,12 +103,13 @@ class Recording(Hook):
         """Report it."""
         self._progress.message(f"increment cut back: {reason}")
 
-    def warn(self, lines: Sequence[str]) -> None:
-        """Report each line once."""
+    def warn(self, lines: Sequence[str], silent: bool = False) -> None:
+        """Report each line once; `silent`: with the others at the end only."""
         for text in lines:
             if text not in self.warnings:
                 self.warnings.append(text)
-                self._progress.message(text)
+                if not silent:
+                    self._progress.message(text)
 
     def keep(self, label: str) -> None:
         """Keep the present state for fields and pictures; collective."""

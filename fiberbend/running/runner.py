@@ -21,8 +21,9 @@ from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
 from fiberbend.models.choice import choose_model
 from fiberbend.models.model import MeshedModel
-from fiberbend.models.resolution import winding_remark
 from fiberbend.models.result import RunResult
+from fiberbend.plan.doubts import doubts, say_warnings
+from fiberbend.plan.memory import refuse_shortage
 from fiberbend.process.signals import Interrupted, stop_of
 from fiberbend.running import launch, messages, record, restart
 from fiberbend.running.assembly import Assembly, assemble
@@ -43,6 +44,7 @@ def run_case(
     overwrite: bool = False,
     progress: Progress | None = None,
     resume: bool = False,
+    force: bool = False,
 ) -> RunResult:
     """Solve a case; collective over MPI.COMM_WORLD.
 
@@ -52,13 +54,16 @@ def run_case(
         overwrite: replace an earlier run.
         progress: reports to the user; none by default.
         resume: go on from the checkpoint in the folder.
+        force: run whether its memory is free or not.
 
     Raises:
-        CaseError: the folder cannot be used.
+        CaseError: the folder cannot be used, or there is not enough memory for the run.
         MeshError: gmsh failed.
     """
     comm = MPI.COMM_WORLD
     progress = progress or Progress(quiet=True)
+    if not force:
+        refuse_shortage(case, comm, out is not None)
     if out is None:
         return _solve(case, None, progress, comm, False)
     if resume:
@@ -133,14 +138,13 @@ class _Run:
         assembly = assemble(case, mesh, self.comm, make_guide, watch=True)
         recorder, recording = self._recording(assembly, again)
         self.recording = recording
-        remark = winding_remark(case)
-        if remark is not None and "NOT" in remark:
-            progress.message(f"winding {remark}")
+        recording.warn(doubts(case))
         progress.phase("solve")
         assembly.march.run(assembly.ramps, [recording])
         status, reason = ended(case, assembly, recorder.rows)
         self._warn_of_ends(status, assembly, recorder, recording)
         check = self._cross_check(recorder.rows, section)
+        recording.warn([] if check is None else check.doubts(), silent=True)
         progress.phase("output")
         recording.keep("last")
         rows = check.beside(recorder.rows) if check else recorder.rows
@@ -162,6 +166,7 @@ class _Run:
                 why = f"{status}: {reason}" if reason else None
                 self._draw(assembly, recording, why, rows, check)
                 run["wall_s"] = self._wall(assembly)
+                run["warnings"] = list(recording.warnings)
                 self.folder.write_run(**run)
         self.comm.barrier()
         self._report(run, check)
@@ -305,6 +310,7 @@ class _Run:
         )
         phases = ", ".join(f"{name} {value:.1f} s" for name, value in run["wall_s"].items())
         say(f"{phases}; peak memory {run['peak_memory_MB']:.0f} MB on {run['ranks']} ranks")
+        say_warnings(run["warnings"], say)
 
     def _draw(
         self,
@@ -333,7 +339,7 @@ class _Run:
             recording.snapshots,
             rows,
             reason,
-            self.progress.message,
+            lambda text: recording.warn([text]),
             check,
             self.model.name,
         )

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.models.section import picture_layers
 from fiberbend.running.folder import RunFolder
 from fiberbend.states.bend import Bend
 from fiberbend.states.recovery import NodalFields, recover
@@ -20,9 +20,6 @@ from fiberbend.states.stack import (
     repeated,
     split_alike,
 )
-
-_LAYER = 4.0
-"""Length in mm of the elements of an extruded section."""
 
 
 def draw_states(
@@ -149,7 +146,7 @@ def _whole(case: Case, model_mesh: ModelMesh, snapshots: Sequence[Snapshot]) -> 
     if not _is_section(model_mesh):
         return repeated(model_mesh, max(1, round(length / model_mesh.mesh.nodes[-1, 2])))
     warps = snapshots[0].displacement.shape[1] == 3
-    return extruded(model_mesh, length, math.ceil(length / _LAYER), turned=warps)
+    return extruded(model_mesh, length, picture_layers(case), turned=warps)
 
 
 def _slices_a_pitch(model_mesh: ModelMesh) -> int:

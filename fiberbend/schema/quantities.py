@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import PydanticCustomError, core_schema
 
+from fiberbend.schema.slips import DIMENSION, LENGTH, LIMITS, Limits
 from fiberbend.schema.units import KINDS, parse, show
 
 Sign = Literal["above zero", "zero or above", "other than zero", "any"]
@@ -28,10 +29,12 @@ class Quantity:
     Attributes:
         kind: a key of `fiberbend.schema.units.KINDS`.
         sign: which values are allowed.
+        limits: magnitudes beyond which a value is asked back; those of its kind by default.
     """
 
     kind: str
     sign: Sign = "above zero"
+    limits: Limits | None = None
 
     @property
     def expected(self) -> str:
@@ -74,6 +77,11 @@ class Quantity:
         if not allowed[self.sign]:
             message = f"expected {KINDS[self.kind].name} {self.sign}"
             raise PydanticCustomError("quantity", "{message}", {"message": message})
+        limits = self.limits or LIMITS.get(self.kind)
+        if limits is not None:
+            refusal = limits.refusal(value, self.kind, small=self.sign != "any")
+            if refusal is not None:
+                raise PydanticCustomError("quantity", "{message}", {"message": refusal})
         return value
 
 
@@ -81,6 +89,12 @@ Length = Annotated[float, Quantity("length")]
 """mm, above zero."""
 LengthOrZero = Annotated[float, Quantity("length", "zero or above")]
 """mm, zero allowed."""
+Dimension = Annotated[float, Quantity("length", limits=DIMENSION)]
+"""mm, above zero, across a body."""
+DimensionOrZero = Annotated[float, Quantity("length", "zero or above", limits=DIMENSION)]
+"""mm, zero allowed, across a body."""
+BodyLength = Annotated[float, Quantity("length", limits=LENGTH)]
+"""mm, above zero, along a body."""
 Coordinate = Annotated[float, Quantity("length", "any")]
 """mm, of either sign."""
 Pressure = Annotated[float, Quantity("pressure")]
@@ -93,8 +107,8 @@ Angle = Annotated[float, Quantity("angle", "other than zero")]
 """rad."""
 Volume = Annotated[float, Quantity("volume")]
 """mm³, above zero."""
-Density = Annotated[float, Quantity("density")]
-"""t/mm³, above zero."""
+Density = Annotated[float, Quantity("density", "zero or above")]
+"""t/mm³, zero allowed."""
 PenaltyStiffness = Annotated[float, Quantity("penalty stiffness")]
 """MPa/mm, above zero."""
 Acceleration = Annotated[float, Quantity("acceleration")]

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from fiberbend.plan.memory import needed_mb, room, shortage
 from fiberbend.process.signals import Interrupted, stop_of
 from fiberbend.running import launch
 from fiberbend.running.folder import RunFolder
@@ -15,6 +16,7 @@ from fiberbend.sweep.points import Sweep, read_sweep
 from fiberbend.sweep.store import Store
 from fiberbend.sweep.workers import Event, WorkerPool, work
 
+_MOST_WARNINGS = 10
 Say = Callable[[str], None]
 
 
@@ -24,6 +26,7 @@ def run_sweep(
     settings: Sequence[str] = (),
     jobs: int = 1,
     retry: bool = False,
+    force: bool = False,
     say: Say = print,
 ) -> int:
     """Solve the points of a sweep that are not finished, then write its table and pictures.
@@ -34,23 +37,27 @@ def run_sweep(
         settings: changes to the base case.
         jobs: processes that solve at once; one works in this process.
         retry: run failed points again.
+        force: run whether there is enough memory or not.
         say: takes lines for the user.
 
     Returns:
         The exit code: 0, 2 if a point failed, that of the signal if stopped by one.
 
     Raises:
-        CaseError: a file or a point is wrong, or the folder cannot be used; nothing has run.
+        CaseError: a file or a point is wrong, the folder cannot be used, or there is not enough
+            memory; nothing has run.
     """
     if launch.size() > 1:
         raise CaseError(
             [Problem("fiberbend sweep", "under mpirun, expected -j for more processes")]
         )
     sweep = read_sweep(path, settings)
-    store = Store.open(out)
+    store = Store.open(out, force)
     if retry:
         for point in sweep.points:
             store.forget(point)
+    if not force:
+        _refuse_shortage(sweep, store, jobs)
     before = sum(store.result(point) is not None for point in sweep.points)
     say(f"{len(sweep.points)} points, {before} finished before")
     stop = None
@@ -92,6 +99,17 @@ def _solve(sweep: Sweep, store: Store, jobs: int, on_event: _EventPrinter) -> No
     WorkerPool(sweep.points, store, on_event, min(jobs, left)).run()
 
 
+def _refuse_shortage(sweep: Sweep, store: Store, jobs: int) -> None:
+    """Refuse points of which so many at once would not fit into memory, were they the largest."""
+    left = [point for point in sweep.points if store.result(point) is None]
+    cases = [case for point in left for case in (point.case, point.blocked) if case is not None]
+    largest = sorted((needed_mb(case) for case in cases), reverse=True)[: max(jobs, 1)]
+    text = shortage(largest, room(), "the sweep")
+    if text is not None:
+        fewer = " (or fewer -j)" if len(largest) > 1 else ""
+        raise CaseError([Problem("memory", f"{text}{fewer}")])
+
+
 def _summary(sweep: Sweep, store: Store, stop: Interrupted | None, say: Say) -> int:
     runs = {point.name: store.result(point) for point in sweep.points}
     counts = Counter("not run" if run is None else run["status"] for run in runs.values())
@@ -99,10 +117,20 @@ def _summary(sweep: Sweep, store: Store, stop: Interrupted | None, say: Say) -> 
     for name, run in runs.items():
         if run is not None and run["status"] == "failed":
             say(f"failed: {name}: {run['reason']}")
+    _say_warnings([run for run in runs.values() if run is not None], say)
     if stop is not None:
         say("interrupted; the same command goes on where it was")
         return stop.code
     return FAILED if counts["failed"] or counts["not run"] else 0
+
+
+def _say_warnings(runs: Sequence[Event], say: Say) -> None:
+    """What is doubtful of how many points; all of it stands in their run.json."""
+    counts = Counter(text for run in runs for text in run.get("warnings", ()))
+    for text, number in counts.most_common(_MOST_WARNINGS):
+        say(f"warning, {number} of {len(runs)} points: {text}")
+    if len(counts) > _MOST_WARNINGS:
+        say(f"{len(counts) - _MOST_WARNINGS} more warnings in run.json of the points")
 
 
 # --- table and pictures ------------------------------------------------------------------------

@@ -40,13 +40,14 @@ class Store:
 
     Attributes:
         path: the folder; each point has its run folder in `points/`.
+        force: points run whether there is enough memory or not.
     """
 
-    def __init__(self, path: Path) -> None:
-        self.path = path
+    def __init__(self, path: Path, force: bool = False) -> None:
+        self.path, self.force = path, force
 
     @classmethod
-    def open(cls, path: Path) -> Store:
+    def open(cls, path: Path, force: bool = False) -> Store:
         """Make the folder, or go on with the sweep that is in it.
 
         Raises:
@@ -64,7 +65,7 @@ class Store:
             (path / _LOCKS).mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise CaseError([Problem(str(path), f"{error.strerror}, expected a folder")]) from None
-        return cls(path)
+        return cls(path, force)
 
     def folder(self, point: Point) -> Path:
         """The run folder of a point."""
@@ -104,9 +105,10 @@ class Store:
         """
         start = time.monotonic()
         try:
-            run = _run(point.case, self.folder(point))
+            folder, force = self.folder(point), self.force
+            run = _run(point.case, folder, force)
             if point.blocked is not None:
-                run = _with_blocked(run, _run(point.blocked, self.folder(point) / BLOCKED))
+                run = _with_blocked(run, _run(point.blocked, folder / BLOCKED, force))
         except Exception as error:
             reason = traceback.format_exception_only(error)[-1].strip().splitlines()[0]
             text = "".join(traceback.format_exception(error))
@@ -145,16 +147,16 @@ class Store:
         return run
 
 
-def _run(case: Case, folder: Path) -> dict[str, Any]:
+def _run(case: Case, folder: Path, force: bool) -> dict[str, Any]:
     """Solve a case, from the last state of a killed run of the same case if it left one."""
     from fiberbend.running.runner import run_case
 
     if any((folder / name).exists() for name in (CHECKPOINT, CHECKPOINT_BEFORE)):
         try:
-            return run_case(case, folder, resume=True).run
+            return run_case(case, folder, resume=True, force=force).run
         except Exception:  # another case, or of another version: from the start
             gc.collect()
-    return run_case(case, folder, overwrite=True).run
+    return run_case(case, folder, overwrite=True, force=force).run
 
 
 def _with_blocked(run: dict[str, Any], blocked: dict[str, Any]) -> dict[str, Any]:

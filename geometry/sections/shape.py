@@ -76,7 +76,7 @@ class ShapedActuator(Actuator):
             value = given.get(name)
             if value is None and name in own and own[name].default is dataclasses.MISSING:
                 complete = False
-                yield name, f"missing, expected the {name} of a {cls.section}"
+                yield name, f"missing, expected the {name} of a {cls.section}, above zero"
             if value is not None and name not in own:
                 yield name, f"no effect on a {cls.section}, expected no value"
         if complete:

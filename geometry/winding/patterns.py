@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
+import math
 
 
 @dataclasses.dataclass(frozen=True)
@@ -54,6 +56,52 @@ class Pattern:
         across = sorted(_modulo(-h.hand, h.start) for h in self.helices)
         along = sorted(_modulo(-h.hand, -h.start) for h in self.helices)
         return helices == across == along
+
+    @property
+    def gap(self) -> float:
+        """Least distance along the axis of neighbouring turns of one hand, in parts of the pitch.
+
+        Helices of the other hand cross them and lie over or under.
+        """
+        gaps = [1.0]
+        for hand in (1, -1):
+            starts = sorted(h.start % 1 for h in self.helices if h.hand == hand)
+            gaps += [after - before for before, after in itertools.pairwise(starts)]
+            gaps += [1 + starts[0] - starts[-1]] if starts else []
+        return min(gaps)
+
+
+def turn_spacing(pattern: str, pitch: float, perimeter: float) -> float:
+    """Distance of neighbouring turns of one hand, perpendicular to them.
+
+    On the developed surface (s, z) the turns of a helix are parallel lines of slope pitch/S, which
+    lie a pitch apart along z: p S/√(S² + p²) apart, times the gap between several starts.
+
+    Args:
+        pattern: name in `PATTERNS`.
+        pitch: rise p of a turn, mm.
+        perimeter: S of the winding's outline, mm.
+
+    Returns:
+        The distance in mm; it grows with the pitch toward gap · S, all around the section.
+    """
+    return PATTERNS[pattern].gap * pitch * perimeter / math.hypot(perimeter, pitch)
+
+
+def least_pitch(pattern: str, width: float, perimeter: float) -> float | None:
+    """The pitch at which turns as wide as `width` (mm) touch; None where every pitch is too small.
+
+    Args:
+        pattern: name in `PATTERNS`.
+        width: of what is wound, perpendicular to it, mm.
+        perimeter: S of the winding's outline, mm.
+    """
+    widest = PATTERNS[pattern].gap * perimeter
+    return (
+        None
+        if width >= widest
+        else width / math.sqrt(1 - (width / widest) ** 2) * (perimeter / widest)
+    )
 
 
 def _modulo(hand: int, start: float) -> tuple[int, float]:

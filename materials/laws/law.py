@@ -137,6 +137,16 @@ class Law:
         values = {p.name: p.neutral if p.default is None else p.default for p in self.parameters}
         return values | {name: float(value) for name, value in given.items()}
 
+    def plain(self, given: Mapping[str, float]) -> dict[str, float]:
+        """The given values without those that say no more than leaving them out: zero terms."""
+        default = {p.name: p.default for p in self.parameters}
+        off = {p.name for p in self.parameters if p.term and not given.get(p.term)}
+        return {
+            name: value
+            for name, value in given.items()
+            if name not in off and value != default.get(name)
+        }
+
     def used(self, rows: Iterable[Mapping[str, float]]) -> list[str]:
         """Parameters that the energy needs, by complete sets of values of one or more materials."""
         rows = list(rows)

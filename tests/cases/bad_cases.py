@@ -50,9 +50,28 @@ BAD_SETTINGS = [
         "effects.1.winding.pitch=0 mm",
         'effects.1.winding.pitch: "0 mm", expected a length above zero',
     ),
+    # turns that lie over each other, threads that nothing holds
     (
-        "effects.1.winding.pitch=161 mm",
-        'effects.1.winding.pitch: "161 mm", expected a pitch not longer than the chamber, "160 mm"',
+        "effects.1.winding.pitch=0.3 mm",
+        'effects.1.winding.pitch: "0.3 mm" lays the turns over each other, 0.3 mm apart where the '
+        'thread is 0.38 mm wide, expected at least "0.3801 mm" or a thinner thread',
+    ),
+    (
+        "effects.1.winding.width=4 mm",
+        'effects.1.winding.pitch: "3 mm" lays the turns over each other, 3 mm apart where the '
+        'ribbon is 4 mm wide, expected at least "4.011 mm" or a thinner ribbon',
+    ),
+    (
+        "effects.1.winding={pattern: single-helix-left, pitch: 100 mm, as: smeared, "
+        "fiber: {modulus: 3 GPa, diameter: 56 mm}}",
+        'effects.1.winding.pitch: "100 mm" lays the turns over each other, 48.5 mm apart where the '
+        "thread is 56 mm wide, expected a thinner thread",
+    ),
+    (
+        "effects.1.winding={pattern: double-helix, pitch: 9 mm, "
+        "fiber: {modulus: 3 GPa, diameter: 3.2 mm}}",
+        "effects.1.winding.fiber: a thread 3.2 mm thick, expected one not thicker than wall or "
+        "floor and sheath together, 3 mm",
     ),
     ("mesh.axial=161 mm", 'mesh.axial: "161 mm", expected elements not longer'),
     ("effects.2.blocked-tip.roof_width=30 mm", "effects.2.blocked-tip: roof half width 15 mm"),
@@ -230,7 +249,7 @@ UNFIT_MODELS = [
             "effects.2.straight={}",
             "output={}",
         ],
-        "effects: model section does not support it: kept straight, it reaches no angle",
+        "effects.0.pressure.angle: no angle is reached where effects.2.straight keeps",
     ),
     (
         ["model=section", "effects.1.winding.as=discrete"],
@@ -257,6 +276,19 @@ UNFIT_MODELS = [
         )
         for model in ("analytic", "section", "cell")
     ],
+    # a slice longer than the chamber that it is to be cut from
+    (
+        ["model=cell", "effects.1.winding={pattern: double-helix, pitch: 330 mm, fiber: kevlar}"],
+        "effects.1.winding: model cell does not support it: the slice that repeats is 165 mm long, "
+        "longer than the chamber, 160 mm",
+    ),
+    (
+        [
+            "model=cell",
+            "effects.1.winding={pattern: single-helix-left, pitch: 165 mm, fiber: kevlar}",
+        ],
+        "effects.1.winding: model cell does not support it: the slice that repeats is 165 mm long",
+    ),
     # what only a uniform bend, or only a closed form, can hold
     (
         ["model=body", "effects.2.straight={}", "output={}"],

@@ -28,7 +28,7 @@ from fiberbend.reader.reader import (
 )
 from fiberbend.schema.problems import CaseError
 from materials.laws.table import LAWS
-from tests.cases import bad_cases
+from tests.cases import bad_cases, contradictions
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = sorted((ROOT / "cases").glob("*.yaml"))
@@ -125,6 +125,46 @@ def test_valid_variants_round_trip(settings: list[str]) -> None:
 def test_wrong_input_is_named(setting: str, line: str) -> None:
     lines = complaint([setting])
     assert any(text.startswith(line) for text in lines), lines
+
+
+@pytest.mark.parametrize(("settings", "line"), contradictions.CONTRADICTIONS)
+def test_a_contradiction_names_both_sides(settings: list[str], line: str) -> None:
+    lines = complaint(settings)
+    assert any(text.startswith(line) for text in lines), lines
+
+
+@pytest.mark.parametrize(("setting", "path", "bound", "meant"), contradictions.UNIT_SLIPS)
+def test_a_slip_of_the_unit_is_asked_back(setting: str, path: str, bound: str, meant: str) -> None:
+    (line,) = (text for text in complaint([setting]) if text.startswith(f"{path}: "))
+    assert bound in line
+    assert line.endswith(f'; did you mean "{meant}"?')
+
+
+@pytest.mark.parametrize("unit", ["um", "mm", "m"])
+@pytest.mark.parametrize("model", ["section", "cell", "body"])
+def test_micrometres_and_metres_are_legal(unit: str, model: str, data: dict[str, Any]) -> None:
+    text = json.dumps(data | {"model": model, "mesh": {}}).replace(' mm"', f' {unit}"')
+    scaled = json.loads(text)
+    scaled["actuator"]["cap"] = f"15 {unit}"
+    if model == "body":
+        scaled["mesh"] = {"axial": f"1.5 {unit}"}
+    scaled["effects"][1]["winding"]["fiber"] = {"modulus": "31 GPa", "diameter": f"0.38 {unit}"}
+    assert parse_case(scaled).actuator.wall == pytest.approx({"um": 2e-3, "mm": 2, "m": 2e3}[unit])
+
+
+@pytest.mark.parametrize("factor", [1e-6, 1e6])
+def test_rubber_of_any_stiffness_is_legal(factor: float) -> None:
+    mu = f"{{law: neo-hooke, mu: {0.22 * factor} MPa}}"
+    settings = [f"materials.{part}={mu}" for part in ("wall", "floor", "sheath")]
+    thread = f"{{modulus: {31e3 * factor} MPa, diameter: 0.38 mm}}"
+    read_case(
+        BASELINE,
+        [
+            *settings,
+            f"effects.0.pressure.to={0.2 * factor} MPa",
+            f"effects.1.winding.fiber={thread}",
+        ],
+    )
 
 
 @pytest.mark.parametrize(
@@ -252,12 +292,24 @@ def test_schema_has_a_key_for_every_parameter_of_a_law() -> None:
             ["actuator.sheath=0 mm", "actuator.layer=0 mm", "materials.sheath="],
             ["actuator.sheath=", "materials.sheath="],
         ),
+        (
+            ["materials.wall={law: mooney-rivlin, c10: 1 MPa, c01: 0 Pa, density: 0 g/cm^3}"],
+            ["materials.wall={law: mooney-rivlin, c10: 1 MPa}"],
+        ),
+        (
+            ["actuator={section: circle, radius: 8 mm, length: 160 mm, wall: 2 mm, floor: 0 mm}",
+             "materials.floor=", "materials.sheath="],
+            ["actuator={section: circle, radius: 8 mm, length: 160 mm, wall: 2 mm}",
+             "materials.floor=", "materials.sheath="],
+        ),
     ],
-    ids=["yeoh", "ogden", "sheath"],
-)
+    ids=["yeoh", "ogden", "sheath", "mooney-rivlin and density", "floor"],
+)  # fmt: skip
 def test_zero_is_the_same_as_left_out(zero: list[str], plain: list[str]) -> None:
     with_zero, without = read_case(BASELINE, zero), read_case(BASELINE, plain)
     assert with_zero.actuator == without.actuator
+    # one actuator is one case: resumed, and the same point of a sweep
+    assert with_zero.resolved() == without.resolved()
     rubbers = [convert.material(case.materials.wall) for case in (with_zero, without)]
     law = LAWS[rubbers[0].law]
     (one, used), (other, alike) = ((r.values, law.used([r.values])) for r in rubbers)

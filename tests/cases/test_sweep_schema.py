@@ -173,12 +173,12 @@ def test_every_wrong_value_once_where_it_stands(complaint: Any) -> None:
 
 
 def test_wrong_combinations_name_their_points(complaint: Any) -> None:
-    """A pitch longer than one of the chambers: the value is right in the other points."""
-    data = grid(vary={"actuator.length": ["100 mm", "40 mm"]})
-    data["zip"] = {"effects.1.winding.pitch": ["3 mm", "50 mm"]}
+    """A first step above the greatest: the value is right in the other points."""
+    data = grid(vary={"solver.first_step": ["1 kPa", "5 kPa"]})
+    data["zip"] = {"solver.max_step": ["10 kPa", "2 kPa"]}
     assert complaint(data) == [
-        "point 4 (effects.1.winding.pitch 50 mm, actuator.length 40 mm): effects.1.winding.pitch: "
-        '"50 mm", expected a pitch not longer than the chamber, "40 mm"'
+        "point 4 (solver.max_step 2 kPa, solver.first_step 5 kPa): solver.first_step: "
+        '"5 kPa", expected at most max_step, "2 kPa"'
     ]
 
 

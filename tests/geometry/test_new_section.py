@@ -71,7 +71,7 @@ def test_a_new_shape_tells_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setitem(SECTIONS, SquareActuator.section, SquareActuator)
     assert not list(inconsistencies(GIVEN))
     assert dict(inconsistencies(GIVEN | {"side": None, "radius": 8.0, "layer": 0.5})) == {
-        "side": "missing, expected the side of a square",
+        "side": "missing, expected the side of a square, above zero",
         "radius": "no effect on a square, expected no value",
         "layer": "no effect on a square, expected no value",
     }

@@ -55,7 +55,7 @@ from pathlib import Path
 
 ACTS = dict(item.split("=", 1) for item in os.environ["FAKE"].split() if "=" in item)
 
-def run_case(case, out, overwrite=False, progress=None, resume=False):
+def run_case(case, out, overwrite=False, progress=None, resume=False, force=False):
     from fiberbend.models.result import RunResult
     from fiberbend.running.folder import RunFolder
     folder = RunFolder.resume(out, case) if resume else RunFolder.create(out, case, overwrite)

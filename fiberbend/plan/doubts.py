@@ -1,0 +1,93 @@
+"""What is known to be doubtful of an answer before it is solved: plain sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+from fiberbend.case import convert
+from fiberbend.case.case import Case
+from fiberbend.effects.effect import Effect, Turns
+from fiberbend.models.choice import choose_model
+from fiberbend.models.model import ModelKind
+from fiberbend.models.resolution import FARTHEST_PITCH, winding_remark
+from fiberbend.plan.memory import gigabytes, needed_mb, room
+from fiberbend.schema.slips import LIMITS
+from fiberbend.schema.units import show
+
+_LOOSE = 1e-5
+"""Tolerance of Newton's method from which it shows in the curves."""
+_TIGHT = 0.5
+"""Part of the free memory beyond which an estimate good to a factor of two may not be enough."""
+_FEW_TURNS = 3.0
+
+
+def doubts(case: Case) -> list[str]:
+    """Every doubt that is known of a case's answer, before anything is solved."""
+    model = choose_model(case)[0]
+    return [*_model(case, model), *_winding(case, model), *_numbers(case)]
+
+
+def say_warnings(warnings: Sequence[str], say: Callable[[str], None]) -> None:
+    """The last lines of a run: everything that is doubtful of it, once more and together."""
+    if warnings:
+        say(f"{len(warnings)} warning{'s' if len(warnings) > 1 else ''}:")
+    for text in warnings:
+        say(f"  {text}")
+
+
+def _model(case: Case, model: ModelKind) -> Iterator[str]:
+    for path, text in model.leaves_out(case):
+        yield f"model {model.name} leaves out {path}: {text}"
+    for effect in case.effects:
+        # an effect that says nothing of its errors
+        if type(effect).uncertainties is Effect.uncertainties:
+            yield from effect.uncertainties(case.straight)
+    if model.elements() and case.mesh.element == "tetrahedron":
+        yield "tetrahedra are too stiff beside hexahedra of the same length: refine once to see it"
+
+
+def _winding(case: Case, model: ModelKind) -> Iterator[str]:
+    turns = case.turns
+    if turns is None or model.elements() is None:
+        return
+    remark = winding_remark(case)
+    if remark is not None and remark.startswith("NOT"):
+        yield f"winding {remark}"
+    number = case.actuator.length / turns.pitch
+    if not turns.discrete and number < _FEW_TURNS:
+        yield (
+            f"winding: {number:.2g} turns over the chamber's length are spread over its surface, "
+            "where the thread lies in truth does not enter (as: discrete, model body)"
+        )
+    elif turns.pitch > FARTHEST_PITCH and model.resolved_bulging(case) < 1:
+        yield (
+            f"winding: rubber bulges between turns {turns.pitch:g} mm apart, how much too low that "
+            f"makes the pressure is not known beyond {FARTHEST_PITCH:g} mm (docs/crosscheck.md)"
+        )
+    yield from _thread(case, turns)
+
+
+def _thread(case: Case, turns: Turns) -> Iterator[str]:
+    stiff = 3 * convert.material(case.materials.wall).initial_shear_modulus
+    if turns.modulus < stiff:
+        meant = LIMITS["modulus"].meant(turns.modulus, "modulus")
+        yield (
+            f"winding: the thread's modulus, {show(turns.modulus, 'modulus')}, is below the "
+            f"wall's, {stiff:.3g} MPa: it holds hardly anything{meant}"
+        )
+
+
+def _numbers(case: Case) -> Iterator[str]:
+    if choose_model(case)[0].elements() is None:
+        return
+    if case.solver.tolerance > _LOOSE:
+        yield (
+            f"solver.tolerance {case.solver.tolerance:g}: forces balance to that part only, "
+            "1e-8 is usual"
+        )
+    free, need = room(), needed_mb(case)
+    if free is not None and need > _TIGHT * free.mb:
+        yield (
+            f"memory: about {gigabytes(need)} of the {gigabytes(free.mb)} that are free, an "
+            "estimate good to a factor of two"
+        )

@@ -1,0 +1,74 @@
+"""Counts of a mesh that is not built: those of the mesh, and as quick for a billion elements."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+
+from geometry.bodies.counts import (
+    Counts,
+    body_counts,
+    section_counts,
+    slice_counts,
+    winding_sides,
+)
+from geometry.bodies.extrude import hexahedral_body, hexahedral_slice, section_quadrilaterals
+from geometry.mesh.data import MeshData, vertex_positions
+from geometry.mesh.tets import to_tetrahedra
+from geometry.sections.shape import ShapedActuator
+from geometry.sections.size import MeshSize, Strips
+from geometry.sections.table import make_actuator
+
+SHAPES: dict[str, dict[str, Any]] = {
+    "hemicircle": {"section": "hemicircle", "radius": 8.0, "floor": 2.0, "layer": 0.3},
+    "rectangle": {"section": "rectangle", "width": 10.0, "height": 12.0, "floor": 2.0},
+    "tube": {"section": "circle", "radius": 8.0},
+    "floored circle": {"section": "circle", "radius": 8.0, "floor": 1.0},
+}
+STRIPS = Strips(roof_half_width=2.0, post_length=2.0)
+
+
+def actuator(shape: str, sheath: float | None = 1.0) -> ShapedActuator:
+    return make_actuator(SHAPES[shape] | {"sheath": sheath, "length": 9.0, "wall": 2.0, "cap": 5.0})
+
+
+def counted(mesh: MeshData) -> Counts:
+    corners = mesh.cells[:, vertex_positions(mesh.cell_type)]
+    return Counts(len(mesh.cells), len(mesh.nodes), len(np.unique(corners)))
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize(
+    ("half", "n", "strips"), list(itertools.product((True, False), (1, 2), (None, STRIPS)))
+)
+def test_a_body_has_as_many_as_are_counted(
+    shape: str, half: bool, n: int, strips: Strips | None
+) -> None:
+    body = actuator(shape, None if n == 2 else 1.0)
+    size = MeshSize(3.0, n, "hexahedron", half)
+    mesh = hexahedral_body(body, size, strips)
+    assert body_counts(body, size, strips) == counted(mesh)
+    split = MeshSize(3.0, n, "tetrahedron", half)
+    assert body_counts(body, split, strips) == counted(to_tetrahedra(mesh))
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("half", [True, False])
+def test_sections_and_slices_have_as_many_as_are_counted(shape: str, half: bool) -> None:
+    body, size = actuator(shape), MeshSize(1.0, 2, "hexahedron", half)
+    flat = section_quadrilaterals(body, size)
+    assert section_counts(body, size) == counted(flat)
+    assert slice_counts(body, size, 1.5, 3) == counted(hexahedral_slice(body, size, 1.5, 3))
+    assert winding_sides(body, size) == len(flat.facets["winding"])
+
+
+def test_a_kilometre_is_counted_at_once() -> None:
+    body = make_actuator(SHAPES["tube"] | {"length": 1e6, "wall": 2.0, "cap": 15.0})
+    start = time.perf_counter()
+    counts = body_counts(body, MeshSize(1e-3, 16))
+    assert counts.cells > 1e12
+    assert time.perf_counter() - start < 0.5

@@ -1,0 +1,146 @@
+"""Every doubt that the program knows stands in `warnings`, in the plan, and at a run's end."""
+
+from __future__ import annotations
+
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fiberbend.columns import ANGLE, PRESSURE
+from fiberbend.effects.effect import Effect
+from fiberbend.plan import doubts as known
+from fiberbend.plan.doubts import doubts
+from fiberbend.plan.memory import Room
+from fiberbend.plan.plan import make_plan
+from fiberbend.reader.reader import parse_case, read_case
+from fiberbend.running.progress import Progress
+from fiberbend.running.runner import run_case
+from tests.conftest import ROOT
+from tests.run.conftest import small
+
+BASELINE = ROOT / "cases" / "free_bending.yaml"
+SOFT = "effects.1.winding.fiber={modulus: 31076 Pa, diameter: 0.38 mm}"
+BEFORE: dict[str, tuple[list[str], str]] = {
+    "unresolved": (["mesh.axial=4 mm"], "winding NOT resolved (elements of 4 mm under a pitch of"),
+    "soft thread": (
+        ["model=section", SOFT],
+        "winding: the thread's modulus, 0.031076 MPa, is below the wall's, 0.66 MPa: it holds "
+        'hardly anything; did you mean "31.076 MPa"?',
+    ),
+    "few turns": (
+        ["model=section", "effects.1.winding.pitch=80 mm"],
+        "winding: 2 turns over the chamber's length are spread over its surface",
+    ),
+    "far turns": (
+        ["model=section", "effects.1.winding.pitch=9 mm"],
+        "winding: rubber bulges between turns 9 mm apart, how much too low that makes the pressure "
+        "is not known beyond 6 mm",
+    ),
+    "tetrahedra": (["mesh.element=tetrahedron"], "tetrahedra are too stiff beside hexahedra"),
+    "closed form": (
+        ["model=analytic", "materials.wall={name: elastosil-m4601, bulk: 100 MPa}"],
+        "model analytic leaves out materials.wall.bulk: in closed forms every material is",
+    ),
+    "loose": (["solver.tolerance=0.001"], "solver.tolerance 0.001: forces balance to that part"),
+}
+
+
+@pytest.mark.parametrize("name", BEFORE)
+def test_a_doubt_known_before_stands_in_the_plan(name: str) -> None:
+    settings, text = BEFORE[name]
+    case = read_case(BASELINE, settings)
+    assert sum(line.startswith(text) for line in doubts(case)) == 1
+    assert dict(make_plan(case).rows)["warnings"] == tuple(doubts(case))
+
+
+@pytest.mark.parametrize("model", ["section", "cell", "body"])
+def test_the_baseline_is_not_doubtful(model: str) -> None:
+    case = read_case(BASELINE, [f"model={model}"])
+    assert doubts(case) == []
+    assert "warnings" not in dict(make_plan(case).rows)
+
+
+def test_little_memory_is_a_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(known, "room", lambda: Room(600.0, "of this machine"))
+    (text,) = doubts(read_case(BASELINE, ["model=section"]))
+    assert text.startswith("memory: about 0.4")
+    assert "of the 0.6 GB that are free" in text
+
+
+def test_an_effect_that_knows_no_error_is_a_doubt() -> None:
+    class Wind(Effect):
+        name = "wind"
+
+    case = read_case(BASELINE)
+    blown = case.model_copy(update={"effects": (*case.effects, Wind())})
+    assert doubts(blown) == ["wind: what it adds to the error is not known"]
+
+
+def ran(case: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[str]]:
+    """Content of run.json, and what a run has printed."""
+    stream = io.StringIO()
+    result = run_case(parse_case(case), folder, progress=Progress(stream=stream))
+    written = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+    assert written["warnings"] == result.run["warnings"]
+    return written, stream.getvalue().splitlines()
+
+
+def end_of(printed: list[str], count: int) -> list[str]:
+    """The last lines of a run, its warnings."""
+    assert printed[-count - 1] == f"{count} warning{'s' if count > 1 else ''}:"
+    return [line.removeprefix("  ") for line in printed[-count:]]
+
+
+def test_doubts_stand_in_run_json_and_at_the_end(tmp_path: Path) -> None:
+    """Known before, found on the way (none here) and by the other models, in one list."""
+    pressure, file = {"pressure": {"to": "4 kPa"}}, tmp_path / "points.csv"
+    # a finger that needs much less pressure, and a point beyond the run
+    file.write_text(f"{PRESSURE},{ANGLE}\n1,1.1\n100,90\n", encoding="utf-8")
+    output = {"pictures": False, "fields": False, "measured": str(file)}
+    case = small(effects=[pressure, small()["effects"][1]], output=output)
+    run, printed = ran(case, tmp_path / "body")
+    warnings = run["warnings"]
+    assert warnings[0].startswith("winding NOT resolved (elements of 4 mm")
+    assert any(text.startswith("run against measured") and "BEYOND" in text for text in warnings)
+    assert any("measured points lie beyond the run" in text for text in warnings)
+    assert end_of(printed, len(warnings)) == warnings
+
+
+def test_closed_forms_have_warnings_too(tmp_path: Path) -> None:
+    run, printed = ran(small(model="analytic", mesh={}), tmp_path / "analytic")
+    assert run["warnings"][0].startswith("model analytic leaves out effects.1.winding")
+    assert end_of(printed, len(run["warnings"])) == run["warnings"]
+
+
+def test_pictures_that_cannot_be_drawn_are_a_warning(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from fiberbend.drawing.renderer import PictureError
+    from fiberbend.running import uniform_report
+
+    def blind(*_: Any) -> None:
+        raise PictureError("no display")
+
+    monkeypatch.setattr(uniform_report, "draw_bent", blind)
+    spread = small()["effects"][1]["winding"] | {"as": "smeared"}
+    effects = [{"pressure": {"to": "2 kPa"}}, {"winding": spread}]
+    output = {"pictures": True, "fields": False}
+    run, printed = ran(
+        small(model="section", mesh={}, effects=effects, output=output), tmp_path / "section"
+    )
+    assert run["warnings"] == ["no pictures in space: no display"]
+    assert end_of(printed, 1) == run["warnings"]
+
+
+def test_a_run_without_doubts_says_nothing(tmp_path: Path) -> None:
+    spread = small()["effects"][1]["winding"] | {"as": "smeared"}
+    effects = [{"pressure": {"to": "2 kPa"}}, {"winding": spread}]
+    output = {"pictures": False, "fields": False}
+    run, printed = ran(
+        small(model="section", mesh={}, effects=effects, output=output), tmp_path / "section"
+    )
+    assert run["warnings"] == []
+    assert not any("warning" in line for line in printed)
