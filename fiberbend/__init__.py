@@ -37,12 +37,13 @@ def run(
     from fiberbend.running import launch
     from fiberbend.running.progress import Progress
 
+    checked = as_case(case)
     launch.start_mpi()
     from fiberbend.running.runner import run_case
 
     progress = Progress(quiet=quiet)
     folder = None if out is None else Path(out)
     try:
-        return run_case(as_case(case), folder, overwrite=overwrite, progress=progress)
+        return run_case(checked, folder, overwrite=overwrite, progress=progress)
     finally:
         progress.close()
