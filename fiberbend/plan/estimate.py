@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import os
-from pathlib import Path
 
 from fiberbend.case.case import Case
 from fiberbend.models import lines
 from fiberbend.models.model import MACHINE, MeshedModel, ModelKind, ProblemSize
+from machine.folders import MachineError, cache_root
 
 _GROWTH = 1.5
 _NEAR = 0.2
@@ -106,7 +105,10 @@ def _compiled() -> str:
 
 def cold() -> bool:
     """Whether no run has compiled anything yet for this user."""
-    root = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "fiberbend"
+    try:
+        root = cache_root().path
+    except MachineError:
+        return True
     return next(root.glob("*/*.so"), None) is None
 
 

@@ -9,6 +9,8 @@ import traceback
 from pathlib import Path
 from typing import TextIO
 
+from machine.folders import settle
+
 FAILED = 2
 """Exit code of a solution that failed."""
 
@@ -48,6 +50,8 @@ def start_mpi() -> None:
 
     What is set for it is taken back: an mpirun that is launched from here must not find it.
     """
+    for line in settle():
+        say(f"fiberbend: {line}", sys.stderr)
     alone = not any(name in os.environ for name in (*_RANK, *_SIZE))
     new = [name for name in _ALONE if alone and name not in os.environ]
     os.environ.update({name: _ALONE[name] for name in new})

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 import types
 from pathlib import Path
 from typing import Any
@@ -92,7 +95,7 @@ def test_a_hostile_file_is_one_line(name: str, tmp_path: Path) -> None:
     [
         (b"# " + b"x" * MOST_BYTES, "longer than 1 MB"),
         ("title: é".encode("latin-1"), "not text in UTF-8"),
-        (SECTION.encode("utf-16-le"), "malformed YAML"),
+        (SECTION.encode("utf-16-le"), "not text in UTF-8"),
         (SECTION.encode("utf-32"), "malformed YAML"),
         (SECTION.encode() + b"\0", "malformed YAML, unacceptable character #x0000"),
     ],
@@ -169,3 +172,31 @@ def test_an_angle_is_shown_as_it_was_written(tenths: int) -> None:
 )
 def test_unusual_units_are_read(text: str, kind: str, value: float) -> None:
     assert parse(text, kind) == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize("module", ["yaml", "json", "numpy", "materials", "cyclopts"])
+def test_what_lies_beside_a_case_is_not_imported(module: str, tmp_path: Path) -> None:
+    (tmp_path / f"{module}.py").write_text("raise SystemExit('imported from beside the case')")
+    done = subprocess.run(
+        [sys.executable, "-m", "fiberbend", "validate", str(ROOT / "cases" / "section.yaml")],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_terminal_without_our_signs_and_a_name_that_is_no_text(tmp_path: Path) -> None:
+    path = os.fsencode(tmp_path) + b"/\xff.yaml"
+    Path(os.fsdecode(path)).write_text(SECTION.replace("title: ", "title: \u03b8 "))
+    for arguments in ((b"validate", path), (b"plan", path), (b"validate", path, b"--set", b"a=1")):
+        done = subprocess.run(
+            [os.fsencode(sys.executable), b"-m", b"fiberbend", *arguments],
+            cwd=ROOT,
+            env=os.environ | {"PYTHONIOENCODING": "ascii"},
+            capture_output=True,
+        )
+        assert done.returncode == (1 if b"--set" in arguments else 0)
+        assert b"Traceback" not in done.stderr
+        assert len(done.stderr.splitlines()) == (1 if b"--set" in arguments else 0)
