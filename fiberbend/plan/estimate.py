@@ -131,7 +131,7 @@ def steps_of(case: Case, model: MeshedModel) -> int | None:
         goals = [value / load.to for value in output.at_pressures]
         return steps + max(least, count_steps(model.straight_start, math.inf, [*goals, 1.0]))
     end = expected_angle(case)
-    if end is None:
+    if not end:
         return None
     turn = model.largest_turn(case)
     goals = [angle for angle in output.at_angles if 0 < angle / end < 1]

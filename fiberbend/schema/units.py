@@ -60,7 +60,13 @@ KINDS = {
     ),
     "pressure": Kind("a pressure", "MPa", "kPa", "200 kPa", _STRESS),
     "modulus": Kind("a modulus", "MPa", "MPa", "0.11 MPa", _STRESS),
-    "angle": Kind("an angle", "rad", "deg", "90 deg", {"rad": "1", "deg": repr(math.pi / 180)}),
+    "angle": Kind(
+        "an angle",
+        "rad",
+        "deg",
+        "90 deg",
+        {"rad": "1"} | dict.fromkeys(("deg", "degree", "degrees", "°"), repr(math.pi / 180)),
+    ),
     "volume": Kind(
         "a volume", "mm^3", "mL", "45 mL", {"mm^3": "1", "mL": "1e3", "cm^3": "1e3", "L": "1e6"}
     ),
