@@ -374,9 +374,10 @@ def table(
         "",
         "## Damaged cases",
         "",
-        "The shipped cases, damaged by a seed (`bench/survive_fuzz.py`), through `validate` and `plan`.",
+        "The shipped cases, damaged by a seed, through `validate` and `plan` (`bench/survive_fuzz.py`;",
+        "`--first` takes other seeds).",
         "",
-        "| damage | cases | valid | refused, a line a problem | tracebacks, hangs, numbers that are none |",
+        "| damage | cases | valid | refused, a line a problem | traceback, hang or no number |",
         "|---|---|---|---|---|",
         *(
             f"| {kind} | {sum(count[end] for end in count if end != 'fault')} | {count['valid']} "
