@@ -7,7 +7,6 @@ from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import KDTree
 
 from analytic.path import screw
 from fem.kinematics.kinematics import Kinematics
@@ -85,21 +84,13 @@ def clearance(pose: Pose, most: float = np.inf) -> float:
     wide = np.linalg.norm(points - middles[:, None], axis=2).max(axis=1)
     slices, halves = (middles[1:] + middles[:-1]) / 2, np.maximum(wide[1:], wide[:-1])
     halves = halves + np.linalg.norm(np.diff(middles, axis=0), axis=1) / 2
-    along = (pose.z[1:] + pose.z[:-1]) / 2
+    between = np.linalg.norm(middles[:, None] - slices, axis=2) - wide[:, None] - halves
+    far = np.abs(pose.z[:, None] - (pose.z[1:] + pose.z[:-1]) / 2) > 1.5 * size
     least = min(size, most)
-    # |m_i − m_j| − r_i − r_j of the balls around section and slice: a bound that most pairs pass.
-    # A tree finds the pairs: a table of all would hold n² of them.
-    tree, furthest = KDTree(middles), float(wide.max()) + least
-    for j, slice_ in enumerate(slices):
-        around = np.array(tree.query_ball_point(slice_, furthest + halves[j]), dtype=int)
-        far = around[np.abs(pose.z[around] - along[j]) > 1.5 * size]
-        if not len(far):
-            continue
-        between = np.linalg.norm(middles[far] - slice_, axis=1) - wide[far] - halves[j]
-        chosen = far[between < least]
-        if not len(chosen):
-            continue
-        some = points[chosen].reshape(-1, 3)
+    # |m_i − m_j| − r_i − r_j of the balls around section and slice: a bound that most pairs pass
+    candidates = far & (between < least)
+    for j in np.flatnonzero(candidates.any(axis=0)):
+        some = points[candidates[:, j]].reshape(-1, 3)
         below = (some - pose.centre[j]) @ pose.rotation[j]
         above = (some - pose.centre[j + 1]) @ pose.rotation[j + 1]
         axial = np.maximum(-below[:, 2], above[:, 2])
