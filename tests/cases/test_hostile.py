@@ -174,7 +174,9 @@ def test_unusual_units_are_read(text: str, kind: str, value: float) -> None:
     assert parse(text, kind) == pytest.approx(value, rel=1e-12)
 
 
-@pytest.mark.parametrize("module", ["yaml", "json", "numpy", "materials", "cyclopts"])
+@pytest.mark.parametrize(
+    "module", ["yaml", "json", "numpy", "materials", "cyclopts", "socket", "pathlib", "email"]
+)
 def test_what_lies_beside_a_case_is_not_imported(module: str, tmp_path: Path) -> None:
     (tmp_path / f"{module}.py").write_text("raise SystemExit('imported from beside the case')")
     done = subprocess.run(
