@@ -1,3 +1,7 @@
 """Finite elements: kinematics, effects, Newton, march, measures."""
 
-from fem import compat as compat  # before anything else loads dolfinx
+from fem import quick_start as quick_start  # before anything else loads PETSc or dolfinx
+
+quick_start.start_petsc()
+
+from fem import compat as compat  # noqa: E402

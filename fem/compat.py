@@ -13,7 +13,7 @@ import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fem.quick_start import without_pkg_resources
+from fem.quick_start import without_pkg_resources, without_settings_files
 
 with without_pkg_resources():
     import basix
@@ -23,9 +23,12 @@ with without_pkg_resources():
     import dolfinx.fem.petsc
     import dolfinx.jit
     import dolfinx.mesh
+    import ffcx.parameters
     import ufl
 
     from fem import kernels
+
+    without_settings_files(dolfinx.jit, ffcx.parameters)
 
 from fem.matrix import Ties, upper_triangle
 from geometry.mesh.data import reference_nodes

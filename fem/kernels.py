@@ -9,16 +9,25 @@ import hashlib
 import logging
 import os
 import platform
+import shlex
+import shutil
+import sys
+import sysconfig
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import cffi
 import dolfinx
 import ffcx
 import numpy as np
 import ufl
+from ffcx.codegeneration import jit
 from mpi4py import MPI
 from petsc4py import PETSc
+
+from machine import folders
+from machine.folders import MachineError
 
 COMPILER_FLAGS = [
     *("-O3", "-march=native", "-g0"),
@@ -26,6 +35,8 @@ COMPILER_FLAGS = [
     *("-fassociative-math", "-fno-signed-zeros", "-fno-trapping-math", "-fno-math-errno"),
     "-freciprocal-math",
 ]
+
+_SUM = ".sum"
 
 for _name in ("FFCx", "ffcx", "UFL", "UFL_LEGACY"):
     logging.getLogger(_name).setLevel(logging.ERROR)
@@ -40,15 +51,25 @@ def _processor() -> str:
     return platform.processor()
 
 
+@functools.cache
+def _key() -> str:
+    """What tells kernels apart that do not replace each other."""
+    versions = [dolfinx.__version__, ffcx.__version__, ufl.__version__, np.__version__]
+    key = "|".join([*versions, str(COMPILER_FLAGS), _processor(), _SUM])
+    return hashlib.sha1(key.encode()).hexdigest()[:12]
+
+
 def cache_folder() -> Path:
-    """Folder of compiled kernels, keyed by versions, compiler flags and processor."""
-    key = "|".join([dolfinx.__version__, ffcx.__version__, ufl.__version__, np.__version__])
-    digest = hashlib.sha1(f"{key}|{COMPILER_FLAGS}|{_processor()}".encode()).hexdigest()[:12]
-    root = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
-    return root / "fiberbend" / digest
+    """Folder of compiled kernels, keyed by versions, compiler flags and processor.
+
+    Raises:
+        MachineError: there is none that only this user can write.
+    """
+    return folders.cache_root().path / _key()
 
 
 _locked: list[Path] = []
+_told: set[str] = set()
 
 
 @contextlib.contextmanager
@@ -62,7 +83,10 @@ def compiling(comm: MPI.Comm) -> Iterator[None]:
     if comm.rank != 0 or folder in _locked:
         yield
         return
-    folder.mkdir(parents=True, exist_ok=True)
+    _tell(folders.cache_root().remark)
+    folders.make_private(folder)
+    if why := folders.refusal(folder):
+        raise MachineError(f"{folder} holds no kernels that can be trusted: {why}; remove it")
     with (folder / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         names = {entry.name for entry in os.scandir(folder)}
@@ -77,7 +101,11 @@ def compiling(comm: MPI.Comm) -> Iterator[None]:
 
 
 def compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
-    """What `make` compiles with the options of the compiler that it is given; collective."""
+    """What `make` compiles with the options of the compiler that it is given; collective.
+
+    Raises:
+        MachineError: no C compiler, or it failed.
+    """
     options = {
         "cache_dir": str(cache_folder()),
         "cffi_extra_compile_args": COMPILER_FLAGS,
@@ -86,10 +114,73 @@ def compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
     previous = logging.root.manager.disable
     logging.disable(logging.INFO)  # the C compiler's calls
     try:
-        with compiling(comm):
+        with compiling(comm), _only_sound() if comm.rank == 0 else contextlib.nullcontext():
             return make(options)
+    except (cffi.VerificationError, RuntimeError) as error:
+        # on several ranks dolfinx hands on the text of the error only
+        if "Compil" not in f"{type(error).__name__} {error}":
+            raise
+        name = shlex.split(os.environ.get("CC") or str(sysconfig.get_config_var("CC")))[0]
+        if shutil.which(name) is None:
+            text = f"no C compiler: {name} is not found; install gcc, or set CC or PATH"
+            raise MachineError(text) from error
+        what = str(error).splitlines()[0]
+        raise MachineError(f"no kernel compiled in {options['cache_dir']}: {what}") from error
     finally:
         logging.disable(previous)
+
+
+@contextlib.contextmanager
+def _only_sound() -> Iterator[None]:
+    """Kernels are loaded as they were compiled, or compiled anew.
+
+    A truncated library kills the process that loads it. Beside each stands the sum of its bytes;
+    one without a sum was not finished.
+    """
+    original, fresh = jit.get_cached_module, []
+
+    def checked(name: str, objects: Any, folder: Any, timeout: int) -> Any:
+        files, record = _files(Path(folder), name)
+        library = next((file for file in files if file.suffix == ".so"), None)
+        if record.exists() and (library is None or record.read_text() != _sum(library)):
+            _tell(f"compiled kernels in {folder} were damaged: they are compiled anew")
+            record.unlink()
+        if not record.exists():
+            for file in files:
+                file.unlink()
+        result = original(name, objects, folder, timeout)
+        if result[0] is None:
+            fresh.append((Path(folder), name))
+        return result
+
+    jit.get_cached_module = checked
+    try:
+        yield
+    finally:
+        jit.get_cached_module = original
+    for folder, name in fresh:
+        files, record = _files(folder, name)
+        library = next(file for file in files if file.suffix == ".so")
+        draft = folder / f"{record.name}.draft"
+        draft.write_text(_sum(library))
+        draft.replace(record)
+
+
+def _files(folder: Path, name: str) -> tuple[list[Path], Path]:
+    """What the compiler makes of a module, and the file with the sum of its library."""
+    record = folder / f"{name}{_SUM}"
+    return [file for file in folder.glob(f"{name}.*") if file != record], record
+
+
+def _sum(library: Path) -> str:
+    return hashlib.blake2b(library.read_bytes()).hexdigest()
+
+
+def _tell(line: str) -> None:
+    """A line for the user, once."""
+    if line and line not in _told:
+        _told.add(line)
+        print(f"fiberbend: {line}", file=sys.stderr, flush=True)
 
 
 def versions() -> dict[str, str]:

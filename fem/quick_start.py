@@ -1,4 +1,4 @@
-"""A quicker import of ufl and ffcx."""
+"""Imports of PETSc, ufl and ffcx: quicker, and not steered by what lies in the working folder."""
 
 from __future__ import annotations
 
@@ -8,6 +8,21 @@ import types
 from collections.abc import Iterator
 from importlib import metadata
 from typing import Any
+
+from machine import folders
+
+
+def start_petsc() -> None:
+    """Start MPI and PETSc; a file .petscrc of the working folder sets nothing.
+
+    Raises:
+        MachineError: the folders that MPI and dolfinx need cannot be used.
+    """
+    folders.settle()
+    import mpi4py.MPI  # noqa: F401
+    import petsc4py
+
+    petsc4py.init(["fiberbend", "-skip_petscrc"])
 
 
 class _Versions(types.ModuleType):
@@ -30,3 +45,15 @@ def without_pkg_resources() -> Iterator[None]:
         yield
     finally:
         del sys.modules["pkg_resources"]
+
+
+def without_settings_files(*modules: Any) -> None:
+    """Let dolfinx and ffcx read no settings from JSON files of the home or the working folder.
+
+    Args:
+        modules: those that read them; their function is _load_options from dolfinx 0.6 on.
+    """
+    for module in modules:
+        for name in ("_load_parameters", "_load_options"):
+            if hasattr(module, name):
+                setattr(module, name, lambda: ({}, {}))

@@ -2,6 +2,18 @@
 
 from __future__ import annotations
 
+import os
+import sys
+
+# `python -m fiberbend` puts the working folder first in the path: before anything else is imported
+# it is taken out, or a file yaml.py beside a case would be yaml.
+if (
+    sys.argv[:1] == ["-m"]
+    and not sys.flags.safe_path
+    and sys.path[:1] != [os.path.dirname(os.path.dirname(__file__))]
+):
+    del sys.path[0]
+
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -40,13 +52,13 @@ def run(
     from fiberbend.running import launch
     from fiberbend.running.progress import Progress
 
+    checked = as_case(case)
     launch.start_mpi()
     from fiberbend.running.runner import run_case
 
     progress = Progress(quiet=quiet)
     folder = None if out is None else Path(out)
     try:
-        checked = as_case(case)
         return run_case(checked, folder, overwrite, progress, force=force)
     finally:
         progress.close()

@@ -5,6 +5,7 @@ Exit codes: 0 done, 1 wrong input, 2 a solution that failed, 128 and its number 
 
 from __future__ import annotations
 
+import io
 import json
 import sys
 from collections.abc import Sequence
@@ -18,6 +19,7 @@ from fiberbend.reader.arguments import CaseFile, Changes
 from fiberbend.running import launch
 from fiberbend.running.launch import FAILED, say
 from fiberbend.version import __version__
+from machine.folders import MachineError
 
 WRONG_INPUT = 1
 COMPUTING = ("run", "sweep", "control")
@@ -76,6 +78,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         SystemExit: with code 1 for a command line that cannot be read.
     """
     launch.set_threads()
+    for stream in (sys.stdout, sys.stderr):
+        # a terminal that knows no θ, and a file name that is no text, cost no line
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
     tokens = list(sys.argv[1:] if arguments is None else arguments)
     if tokens == ["--version"]:
         # without the 25 ms of what prints help
@@ -95,7 +101,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         from fiberbend.schema.problems import CaseError
 
-        if not isinstance(error, CaseError):
+        if not isinstance(error, (CaseError, MachineError)):
             raise
         return launch.refuse(str(error), WRONG_INPUT)
     return code or 0
@@ -199,6 +205,8 @@ def run(
         return launch.stopped(signals.stop_of(error))
     except BaseException as error:
         progress.close()
+        if isinstance(error, MachineError) and launch.size() == 1:
+            raise
         return launch.crash(error, folder)
     progress.close()
     if result.status != "converged":
@@ -245,7 +253,7 @@ def sweep(
     try:
         with signals.raising():
             return run_sweep(file, folder, settings, jobs, retry, force, say=say)
-    except CaseError:
+    except (CaseError, MachineError):
         raise
     except KeyboardInterrupt as error:
         return launch.stopped(signals.stop_of(error))

@@ -28,6 +28,7 @@ from fiberbend.compare.others import (
     force_models,
     through_rows,
 )
+from fiberbend.compare.unit_check import unit_remark
 from fiberbend.drawing.overlay import Line, Overlay, Points
 from fiberbend.models.closed_form import dimensions, no_analytic
 from fiberbend.models.model import ModelKind
@@ -237,8 +238,9 @@ def crosscheck(
         points = (Points(f"measured ({measured.source})", *measured.shown()),)
         comparison, outside = _beside_measured(rows, columns, points[0], blocked)
         comparisons += [comparison] if comparison is not None else []
-        remarks += [outside] if outside else []
-        doubtful += [outside] if outside else []
+        found = [text for text in (outside, unit_remark(rows, points[0], blocked)) if text]
+        remarks += found
+        doubtful += found
     overlay = Overlay(tuple(lines), points)
     reasons = {"section": no_section, "analytic": no_analytic(case) or ""}
     return Check(

@@ -171,11 +171,13 @@ def _check_folder(out: Path, overwrite: bool) -> None:
 
 def _write(result: ControlResult, case: Case, folder: RunFolder) -> None:
     from fiberbend.control.plot import plot_control
+    from fiberbend.drawing.page import own_style
 
     folder.write_text("control.csv", trace_csv({"steps": result.steps, "sine": result.sine}))
     folder.write_text("filter.csv", table_csv(result.table))
     folder.write_text("angle_filter.h", table_header(result.table, case.title, result.fit.source))
-    folder.write("control.png", functools.partial(plot_control, result, title=case.title))
+    with own_style():
+        folder.write("control.png", functools.partial(plot_control, result, title=case.title))
     folder.write_json(CONTROL_FILE, result.report())
 
 

@@ -12,7 +12,7 @@ from analytic.control.loop import Trace
 from analytic.stress import Floats
 from fiberbend.control.export import shown_time
 from fiberbend.control.result import ControlResult
-from fiberbend.drawing.page import figure, save
+from fiberbend.drawing.page import figure, literal, save
 from fiberbend.states.snapshot import Target
 
 SIZE = (1500, 900)
@@ -33,7 +33,7 @@ def plot_control(result: ControlResult, target: Target, title: str = "") -> None
     """
     page = figure(SIZE)
     shown = textwrap.shorten(title, 90, placeholder=" …")
-    page.text(0.5, 0.965, shown, ha="center", va="center", fontsize=16)
+    page.text(0.5, 0.965, literal(shown), ha="center", va="center", fontsize=16)
     step, sine, settings = result.step_metrics, result.sine_metrics, result.settings
     hold = settings.steps.hold
     times = f"filling {shown_time(step.fill_s)}, emptying {shown_time(step.vent_s)}"

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.page import figure, nice_above, save
+from fiberbend.drawing.page import figure, literal, nice_above, save
 from fiberbend.drawing.side_by_side import SideBySide
 from fiberbend.states.bend import in_frame
 from fiberbend.states.snapshot import (
@@ -144,7 +144,8 @@ def plot_tension(
     axes.axhline(0.0, color="0.5", linewidth=0.8)
     _name_pieces(axes, actuator, model_mesh.mesh.half)
     extent = "to the middle of the floor" if model_mesh.mesh.half else "once around"
-    page.text(0.5, 0.95, f"{model_mesh.title}: tension of the fiber", ha="center", fontsize=15)
+    title = literal(f"{model_mesh.title}: tension of the fiber")
+    page.text(0.5, 0.95, title, ha="center", fontsize=15)
     axes.set_xlabel(f"distance along the outline from the crown {extent} (mm)", fontsize=13)
     axes.set_ylabel("axial force (N)", fontsize=13)
     strain = axes.secondary_yaxis(

@@ -19,7 +19,7 @@ from fiberbend.drawing.overlay import (
     Overlay,
     Points,
 )
-from fiberbend.drawing.page import figure, save
+from fiberbend.drawing.page import figure, literal, save
 from fiberbend.states.snapshot import Target, Write
 from geometry.mesh.data import Floats
 
@@ -252,10 +252,10 @@ def _smooth(points: Floats) -> Floats:
 def _axes(title: str, reason: str | None, across: str, up: str) -> tuple[Any, Any]:
     page = figure(SIZE)
     axes = page.add_axes((0.1, 0.11, 0.86, 0.77))
-    axes.set_title(title, fontsize=15, pad=24 if reason else 10)
+    axes.set_title(literal(title), fontsize=15, pad=24 if reason else 10)
     if reason:
         place = {"transform": axes.transAxes, "ha": "center", "color": _RED, "fontsize": 10}
-        axes.text(0.5, 1.015, _note(reason), **place)
+        axes.text(0.5, 1.015, literal(_note(reason)), **place)
     axes.set_xlabel(across, fontsize=13)
     axes.set_ylabel(up, fontsize=13)
     axes.tick_params(labelsize=11)
@@ -287,7 +287,7 @@ def _curves(axes: Any, data: Sequence[Floats], overlay: Overlay | None, name: st
     for points in overlay.points:
         text = points.label if len(points.label) <= _LONG else f"{points.label[:_LONG]}…"
         mark = {"color": _MEASURED, "markersize": 7, "zorder": 3.5}
-        axes.plot(points.across, points.up, "x", **mark, label=text)
+        axes.plot(points.across, points.up, "x", **mark, label=literal(text))
     if overlay.lines or overlay.points:
         axes.legend(fontsize=11, loc="best", edgecolor="none", framealpha=0.8)
 

@@ -5,8 +5,10 @@ matplotlib is imported where it is used, and without its global state.
 
 from __future__ import annotations
 
+import contextlib
 import math
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -29,6 +31,26 @@ COLORS = {
 NAMES = {"layer": "strain-limiting layer", "fiber": "fibers"}
 """Names in a legend that are not those of the regions."""
 _DPI = 100
+_LONGEST = 120
+"""Characters of a line of text; the end of a title, which tells pictures apart, is kept."""
+
+
+@contextlib.contextmanager
+def own_style() -> Iterator[None]:
+    """What is drawn meanwhile looks as we want it, whatever a file matplotlibrc says."""
+    import matplotlib
+
+    with matplotlib.rc_context():
+        matplotlib.rcdefaults()
+        yield
+
+
+def literal(text: str) -> str:
+    """A user's text for matplotlib: as it is, in one line, and no formula where it has a $."""
+    text = " ".join("".join(c if c.isprintable() else " " for c in text).split())
+    if len(text) > _LONGEST:
+        text = f"{text[: _LONGEST - 42]} … {text[-39:]}"
+    return text.replace("$", r"\$")
 
 
 def figure(size: tuple[int, int]) -> Any:
@@ -52,7 +74,10 @@ def colormap() -> Any:
 def save(page: Any, target: Target) -> None:
     """Write a matplotlib figure as PNG to a path or to a file open for writing bytes."""
     quick = {"compress_level": 4}
-    page.savefig(target, format="png", dpi=_DPI, facecolor="white", pil_kwargs=quick)
+    with warnings.catch_warnings():
+        # a sign that the font does not have is drawn as a box
+        warnings.filterwarnings("ignore", message="Glyph .* missing")
+        page.savefig(target, format="png", dpi=_DPI, facecolor="white", pil_kwargs=quick)
 
 
 class Page:
@@ -66,7 +91,8 @@ class Page:
     def __init__(self, size: tuple[int, int], title: str) -> None:
         self._size = size
         self._figure = figure(size)
-        self._figure.text(0.5, 1 - 28 / size[1], title, ha="center", va="center", fontsize=17)
+        heading = {"ha": "center", "va": "center", "fontsize": 17}
+        self._figure.text(0.5, 1 - 28 / size[1], literal(title), **heading)
 
     @classmethod
     def of_panels(

@@ -15,6 +15,7 @@ from fiberbend.drawing.page import (
     colormap,
     columns_of,
     figure,
+    literal,
     nice_above,
     save,
 )
@@ -63,7 +64,8 @@ class SectionPage:
         tall = across * slope
         self.height = round(_ABOVE + rows * (tall + head) + _BELOW)
         self._figure = figure((_WIDTH, self.height))
-        self._figure.text(0.5, 1 - 30 / self.height, title, ha="center", va="center", fontsize=17)
+        heading = {"ha": "center", "va": "center", "fontsize": 17}
+        self._figure.text(0.5, 1 - 30 / self.height, literal(title), **heading)
         self.panels = []
         self._mm = across / (high[0] - low[0])
         for i, caption in enumerate(captions):

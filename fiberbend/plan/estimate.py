@@ -7,13 +7,12 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import os
-from pathlib import Path
 
 from fiberbend.case.case import Case
 from fiberbend.models import lines
 from fiberbend.models.model import MACHINE, MeshedModel, ModelKind, ProblemSize
 from fiberbend.plan.memory import RANK_MB, Room, gigabytes, needed_mb, room
+from machine.folders import MachineError, cache_root
 
 _GROWTH = 1.5
 _NEAR = 0.2
@@ -112,7 +111,10 @@ def _compiled() -> str:
 
 def cold() -> bool:
     """Whether no run has compiled anything yet for this user."""
-    root = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "fiberbend"
+    try:
+        root = cache_root().path
+    except MachineError:
+        return True
     return next(root.glob("*/*.so"), None) is None
 
 
@@ -136,7 +138,7 @@ def steps_of(case: Case, model: MeshedModel) -> int | None:
         return steps + max(least, count_steps(model.straight_start, math.inf, [*goals, 1.0]))
     end = expected_angle(case)
     wound = any(effect.fixes_circumference() for effect in case.effects)
-    if end is None or (load.angle is not None and not wound):
+    if not end or (load.angle is not None and not wound):
         # without a winding it hardly bends at first: the chamber's volume bounds the steps
         return None
     turn = model.largest_turn(case)

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
 
 _NO_ANGLE = "no angle is reached where {} keeps the actuator straight, expected no value"
+_MOST_STEPS = 100_000
+"""Steps of a run that takes hours where one takes tenths of a second."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -290,6 +292,7 @@ def _solver(parts: ValidParts) -> Iterator[Problem]:
             yield Problem(
                 f"solver.{key}", "no effect without a pressure to reach, expected no value"
             )
+    yield from _endless(parts.solver, pressure, parts.output)
     first, largest = given["first_step"], given["max_step"]
     if first is not None and largest is not None and first > largest:
         yield Problem(
@@ -297,6 +300,23 @@ def _solver(parts: ValidParts) -> Iterator[Problem]:
             f'"{show(first, "pressure")}", expected at most max_step, '
             f'"{show(largest, "pressure")}"',
         )
+
+
+def _endless(
+    solver: Solver, pressure: Inflation | None, output: Output | None
+) -> Iterator[Problem]:
+    """Steps so small that a run has no end."""
+    if pressure is None:
+        return
+    angle = pressure.angle if output is None else pressure.angle or output.stop_at_angle
+    for key, end, kind in (("max_step", pressure.to, "pressure"), ("max_turn", angle, "angle")):
+        step = getattr(solver, key)
+        if step is not None and end is not None and abs(end) > _MOST_STEPS * abs(step):
+            yield Problem(
+                f"solver.{key}",
+                f'"{show(step, kind)}", expected at least a {_MOST_STEPS}th of '
+                f'"{show(abs(end), kind)}"',
+            )
 
 
 def _output(parts: ValidParts) -> Iterator[Problem]:

@@ -27,7 +27,7 @@ from fiberbend.reader.yaml_file import (
     root_paths,
     setting_path,
 )
-from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.schema.problems import CaseError, Problem, found
 from fiberbend.schema.validation import from_pydantic
 
 _PARTS: dict[str, type[BaseModel]] = {
@@ -82,7 +82,12 @@ def as_case(case: Case | Mapping[str, Any] | Path | str) -> Case:
     """
     if isinstance(case, Case):
         return case
-    return parse_case(case) if isinstance(case, Mapping) else read_case(case)
+    if isinstance(case, Mapping):
+        return parse_case(dict(case))
+    if isinstance(case, (str, Path)):
+        return read_case(case)
+    wanted = "expected a Case, a mapping or the path of a case file"
+    raise CaseError([Problem("case", f"{found(case)}, {wanted}")])
 
 
 def parse_case(data: Mapping[str, Any]) -> Case:

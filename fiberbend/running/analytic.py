@@ -106,7 +106,13 @@ def run_analytic(
             from fiberbend.running.report import draw_curves
 
             draw_curves(
-                folder, case, rows, f"{status}: {reason}" if reason else None, check, kind.name
+                folder,
+                case,
+                rows,
+                f"{status}: {reason}" if reason else None,
+                check,
+                kind.name,
+                progress.message,
             )
     for line in check.lines():
         progress.message(line)

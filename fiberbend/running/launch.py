@@ -15,6 +15,8 @@ from fiberbend.process.ranks import rank as rank
 from fiberbend.process.ranks import size as size
 from fiberbend.process.signals import Interrupted
 
+from machine.folders import settle
+
 FAILED = 2
 """Exit code of a solution that failed."""
 
@@ -57,6 +59,8 @@ def start_mpi() -> None:
     What is set for it is taken back: an mpirun that is launched from here must not find it. An
     error that nobody catches ends all ranks from here on.
     """
+    for line in settle():
+        say(f"fiberbend: {line}", sys.stderr)
     alone = not ranks.launched()
     new = [name for name in _ALONE if alone and name not in os.environ]
     os.environ.update({name: _ALONE[name] for name in new})

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import contextlib
+from collections.abc import Callable, Iterator, Sequence
 from typing import IO, Any
 
 import numpy as np
@@ -44,7 +45,7 @@ def draw(
         return lambda name, fill: folder.write(f"{sub}/{name}", fill)
 
     if output.pictures:
-        draw_curves(folder, case, rows, reason, check, model)
+        draw_curves(folder, case, rows, reason, check, model, say)
     if not (snapshots and (output.fields or output.pictures)):
         return
     if model_mesh.uniform:
@@ -59,12 +60,9 @@ def draw(
         write_fields(model_mesh, snapshots, into("fields"), fields)
     if output.pictures:
         from fiberbend.drawing.body import draw_pictures
-        from fiberbend.drawing.renderer import PictureError
 
-        try:
+        with pictures(say):
             draw_pictures(model_mesh, snapshots, into("pictures"), fields)
-        except PictureError as error:
-            say(f"no pictures: {error}")
 
 
 def draw_curves(
@@ -74,6 +72,7 @@ def draw_curves(
     reason: str | None,
     check: Check | None = None,
     model: str = "body",
+    say: Callable[[str], None] = print,
 ) -> None:
     """Write the plots of a run of any model into pictures/; on rank 0.
 
@@ -84,16 +83,42 @@ def draw_curves(
         reason: why the run ended early, or None.
         check: other models and measured points that are drawn beside the curves.
         model: the run's own model.
+        say: takes a line for the user where nothing can be drawn.
     """
     from fiberbend.drawing.curves import draw_plots
 
-    draw_plots(
-        rows,
-        lambda name, fill: folder.write(f"pictures/{name}", fill),
-        [float(np.rad2deg(angle)) for angle in case.output.at_angles],
-        case.title,
-        reason,
-        None if check is None else check.angles,
-        None if check is None else check.forces,
-        f"{model} model",
-    )
+    with pictures(say):
+        draw_plots(
+            rows,
+            lambda name, fill: folder.write(f"pictures/{name}", fill),
+            [float(np.rad2deg(angle)) for angle in case.output.at_angles],
+            case.title,
+            reason,
+            None if check is None else check.angles,
+            None if check is None else check.forces,
+            f"{model} model",
+        )
+
+
+@contextlib.contextmanager
+def pictures(say: Callable[[str], None], lacking: str = "no pictures") -> Iterator[None]:
+    """Draw meanwhile; what cannot be drawn costs its pictures and a line, not the results.
+
+    Args:
+        say: takes the line.
+        lacking: its beginning.
+    """
+    from fiberbend.drawing.page import own_style
+    from fiberbend.drawing.renderer import PictureError
+
+    try:
+        with own_style():
+            yield
+    except PictureError as error:
+        say(f"{lacking}: {error}")
+    except OSError:
+        # a disk that is full lacks more than pictures
+        raise
+    except Exception as error:
+        what = (str(error).splitlines() or [""])[0]
+        say(f"{lacking}, drawing failed: {type(error).__name__}: {what}")

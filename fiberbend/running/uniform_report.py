@@ -70,12 +70,13 @@ def _draw(
     write: Write,
     say: Callable[[str], None],
 ) -> None:
-    from fiberbend.drawing.renderer import PictureError
     from fiberbend.drawing.section import draw_sections
+    from fiberbend.running.report import pictures
 
     name = "section" if _is_section(model_mesh) else "section where a fiber passes the crown"
-    draw_sections(model_mesh, snapshots, write, fields, name)
-    try:
+    with pictures(say):
+        draw_sections(model_mesh, snapshots, write, fields, name)
+    with pictures(say, "no pictures in space"):
         draw_bent(whole(), model_mesh, snapshots, write, fields)
         turns = case.turns
         if turns is not None and model_mesh.lines is not None:
@@ -83,8 +84,6 @@ def _draw(
 
             actuator = convert.dimensions(case.actuator)
             draw_cell(model_mesh, snapshots, write, actuator, turns.stiffness)
-    except PictureError as error:
-        say(f"no pictures in space: {error}")
 
 
 def draw_bent(

@@ -8,6 +8,11 @@ import json
 from collections.abc import Iterable
 from typing import Any
 
+LINES = 20
+"""Problems of which a message tells; the others it counts."""
+_LONGEST = 1000
+"""Characters of a line."""
+
 
 @dataclasses.dataclass(frozen=True)
 class Problem:
@@ -26,7 +31,9 @@ class Problem:
     def __str__(self) -> str:
         """The line that a user reads."""
         where = "" if self.line is None else f" (line {self.line})"
-        return f"{self.path}: {self.text}{where}"
+        text = f"{self.path}: {self.text}"
+        text = text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
+        return printable(text) + where
 
 
 class CaseError(Exception):
@@ -38,7 +45,9 @@ class CaseError(Exception):
 
     def __init__(self, problems: Iterable[Problem]) -> None:
         self.problems = tuple(problems)
-        super().__init__("\n".join(map(str, self.problems)))
+        lines = [str(problem) for problem in self.problems[:LINES]]
+        more = len(self.problems) - len(lines)
+        super().__init__("\n".join([*lines, *([f"… and {more} more"] if more else [])]))
 
     def __reduce__(self) -> Any:
         """Pickles by its problems, so that MPI can hand it to the other ranks."""
@@ -49,11 +58,24 @@ def found(value: Any) -> str:
     """A value as a message shows it: short, text in quotes."""
     if value is None:
         return "nothing"
-    text = json.dumps(value, default=str, ensure_ascii=False)
+    try:
+        text = json.dumps(value, default=str, ensure_ascii=False)
+    except (TypeError, ValueError, RecursionError):
+        # keys that are no text, a number of 5000 digits, a value within itself
+        text = f"something of type {type(value).__name__}"
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+def printable(text: str) -> str:
+    """Text in one line that any terminal shows as it is: other characters as their escapes."""
+    if text.isprintable():
+        return text
+    return "".join(
+        c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text
+    )
 
 
 def meant(word: object, known: Iterable[str]) -> str:
     """The end of a message that names the known word nearest to a wrong one; empty without one."""
-    close = difflib.get_close_matches(str(word).lower(), list(known), n=1)
+    close = difflib.get_close_matches(str(word)[:_LONGEST].lower(), list(known), n=1)
     return f"; did you mean {close[0]}?" if close else ""

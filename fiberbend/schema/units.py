@@ -14,9 +14,23 @@ from decimal import Decimal
 from typing import Any
 
 _NUMBER = re.compile(
-    r"\s*([+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|nan|inf(?:inity)?))\s*(.*?)\s*$",
+    r"([+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|nan|inf(?:inity)?))\s*(\S.*)",
     re.IGNORECASE,
 )
+_UNIT = re.compile(
+    r"""(?>
+        (?>[^\W\d¹²³⁰⁴-⁹]|[%°‰]) (?>[^\W¹²³⁰⁴-⁹]|[°])*                # a name, such as mm or H2O
+        (?>⁻?[¹²³⁴-⁹] | \s*(?>\*\*|\^)\s*[+-]?[0-9](?:\.[0-9]{1,3})?)?  # its exponent, of one digit
+        | [*/()\s·]
+    )+""",
+    re.VERBOSE,
+)
+"""A product of names with small exponents: pint, asked for more, computes m**9**9 and takes a
+comment or a semicolon for the end."""
+_LONGEST = 100
+"""Characters of a quantity."""
+_LEAST, _MOST = 1e-100, 1e100
+"""What a quantity other than zero lies between: with squares of it a computer still computes."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -46,7 +60,13 @@ KINDS = {
     ),
     "pressure": Kind("a pressure", "MPa", "kPa", "200 kPa", _STRESS),
     "modulus": Kind("a modulus", "MPa", "MPa", "0.11 MPa", _STRESS),
-    "angle": Kind("an angle", "rad", "deg", "90 deg", {"rad": "1", "deg": repr(math.pi / 180)}),
+    "angle": Kind(
+        "an angle",
+        "rad",
+        "deg",
+        "90 deg",
+        {"rad": "1"} | dict.fromkeys(("deg", "degree", "degrees", "°"), repr(math.pi / 180)),
+    ),
     "volume": Kind(
         "a volume", "mm^3", "mL", "45 mL", {"mm^3": "1", "mL": "1e3", "cm^3": "1e3", "L": "1e6"}
     ),
@@ -100,27 +120,41 @@ def parse(text: Any, kind: str) -> float:
     """
     what = KINDS[kind]
     wanted = f'{what.name} with its unit such as "{what.example}"'
-    match = _NUMBER.match(text) if isinstance(text, str) else None
-    if match is None or not match[2]:
+    if not isinstance(text, str) or len(text) > _LONGEST:
+        raise ValueError(f"expected {wanted}")
+    match = _NUMBER.fullmatch(text.strip())
+    if match is None:
         raise ValueError(f"expected {wanted}")
     number, unit = match.groups()
-    if not math.isfinite(float(number)):
+    size = abs(float(number))
+    if not math.isfinite(size):
         raise ValueError(f"expected {what.name} that is finite")
+    if size == 0:
+        if re.search("[1-9]", re.split("[eE]", number)[0]):
+            raise ValueError(_beyond(what))
+        number = "0"
     if unit in what.factors:
         value = float(Decimal(number) * Decimal(what.factors[unit]))
     else:
         value = _convert(float(number), unit, what, wanted)
-    if not math.isfinite(value):
-        raise ValueError(f"expected {what.name} that is finite")
+    if value != 0 and not _LEAST <= abs(value) <= _MOST:
+        raise ValueError(_beyond(what))
     return value
 
 
 def show(value: float, kind: str) -> str:
     """Write a value so that `parse` returns exactly it, in the usual unit if that is possible."""
     what = KINDS[kind]
-    scaled = float(Decimal(repr(value)) / Decimal(what.factors[what.shown]))
-    text = f"{_plain(scaled)} {what.shown}"
-    return text if parse(text, kind) == value else f"{_plain(value)} {what.unit}"
+    scaled = Decimal(repr(value)) / Decimal(what.factors[what.shown])
+    for digits in (15, 16, 17):
+        text = f"{_plain(float(f'{scaled:.{digits}g}'))} {what.shown}"
+        if parse(text, kind) == value:
+            return text
+    return f"{_plain(value)} {what.unit}"
+
+
+def _beyond(what: Kind) -> str:
+    return f"expected {what.name} from {_LEAST:g} to {_MOST:g} {what.unit}, or zero"
 
 
 def _plain(value: float) -> str:
@@ -131,17 +165,21 @@ def _plain(value: float) -> str:
 def _convert(number: float, unit: str, what: Kind, wanted: str) -> float:
     if any(unit in kind.factors for kind in KINDS.values()):
         raise ValueError(f"expected {wanted}")
+    unknown = f"expected {wanted}; there is no unit {unit[:40]!r}"
+    if not _UNIT.fullmatch(unit):
+        raise ValueError(unknown)
     registry = _registry()
     try:
-        quantity = registry.Quantity(number, registry.parse_units(unit))
+        units, target = registry.parse_units(unit), registry.parse_units(what.unit)
+        # To pint an angle is a pure number, and so is a percentage.
+        angular = [registry.get_root_units(u)[1] == registry.radian for u in (units, target)]
+        if units.dimensionality != target.dimensionality or angular[0] != angular[1]:
+            raise ValueError(f"expected {wanted}")
+        return float(registry.Quantity(number, units).to(target).magnitude)
+    except ValueError:
+        raise
     except Exception:
-        raise ValueError(f"expected {wanted}; there is no unit {unit!r}") from None
-    target = registry.parse_units(what.unit)
-    # To pint an angle is a pure number, and so is a percentage.
-    angular = [registry.get_root_units(u)[1] == registry.radian for u in (quantity.units, target)]
-    if quantity.dimensionality != target.dimensionality or angular[0] != angular[1]:
-        raise ValueError(f"expected {wanted}")
-    return float(quantity.to(target).magnitude)
+        raise ValueError(unknown) from None
 
 
 @functools.cache

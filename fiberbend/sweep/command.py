@@ -149,15 +149,17 @@ def _write(sweep: Sweep, store: Store, say: Say, pictures: bool) -> None:
             say(f"report.history.{index}: no point has a column {name}")
     say(f"table in {store.path / 'sweep.csv'}")
     if pictures:
+        from fiberbend.drawing.page import own_style
         from fiberbend.sweep.plots import draw
 
         drawn = [quantity for quantity in reported if quantity.kind in sweep.report.maps]
-        names = draw(
-            sweep.title,
-            sweep.columns,
-            rows,
-            drawn,
-            lambda name, fill: folder.write(f"maps/{name}", fill),
-        )
+        with own_style():
+            names = draw(
+                sweep.title,
+                sweep.columns,
+                rows,
+                drawn,
+                lambda name, fill: folder.write(f"maps/{name}", fill),
+            )
         if names:
             say(f"maps in {store.path / 'maps'}")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.page import colormap, figure, save
+from fiberbend.drawing.page import colormap, figure, literal, save
 from fiberbend.states.snapshot import Target
 from fiberbend.sweep.fields import VariedField
 from fiberbend.sweep.table import TableRow
@@ -49,7 +49,7 @@ def map_page(
     width = max(sum(_MARGIN) + across, 720)
     height = _TOP + len(lines) * (_PANEL[1] + _HEAD + _FOOT) + _BOTTOM
     page = figure((width, height))
-    page.text(0.5, 1 - 34 / height, title, ha="center", va="center", fontsize=17)
+    page.text(0.5, 1 - 34 / height, literal(title), ha="center", va="center", fontsize=17)
     left = (width - across + _MARGIN[0] - _MARGIN[1]) / 2
     for i, (caption, name) in enumerate(lines.items()):
         top = height - _TOP - i * (_PANEL[1] + _HEAD + _FOOT)
@@ -60,7 +60,7 @@ def map_page(
             corner = (left + j * _PANEL[0], top - _HEAD - _PANEL[1])
             axis = page.add_axes(_box(corner, (_PANEL[0] - 22, _PANEL[1]), (width, height)))
             _map(axis, axes, rows, name, limits)
-            axis.set_title(panel, fontsize=12.5)
+            axis.set_title(literal(panel), fontsize=12.5)
             if i == len(lines) - 1:
                 axis.set_xlabel(axis_label(axes[0]), fontsize=13)
             if j == 0:
@@ -80,7 +80,7 @@ def limits_of(rows: Sequence[TableRow], names: Sequence[str]) -> tuple[float, fl
 
 def axis_label(column: VariedField) -> str:
     """A field as the label of an axis."""
-    return in_words(column) + (f" ({column.unit})" if column.unit else "")
+    return literal(in_words(column) + (f" ({column.unit})" if column.unit else ""))
 
 
 def _box(

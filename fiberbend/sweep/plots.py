@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.page import figure, save
+from fiberbend.drawing.page import figure, literal, save
 from fiberbend.states.snapshot import Target, Write
 from fiberbend.sweep.fields import VariedField
 from fiberbend.sweep.maps import (
@@ -112,7 +112,7 @@ def _curves(
         shown = [(varied[0], [Group("", *_sorted(rows, varied[0]))])]
     width, height = max(520 * len(shown) + 60, 860), 640
     page = figure((width, height))
-    page.text(0.5, 1 - 30 / height, title, ha="center", va="center", fontsize=17)
+    page.text(0.5, 1 - 30 / height, literal(title), ha="center", va="center", fontsize=17)
     every = [row[name] for row in rows for name in quantity.lines.values()]
     known = np.array([value for value in every if value is not None], dtype=float)
     step = (width - 60) / len(shown)
@@ -176,7 +176,7 @@ def _panel(axis: Any, found: Sequence[Group], quantity: ReportedQuantity, severa
                 marker=_MARKS[g % len(_MARKS)],
                 linestyle="",
                 markersize=7,
-                label=group.shared,
+                label=literal(group.shared),
             )
             for g, group in enumerate(found[:_NAMED])
         ]

@@ -31,6 +31,8 @@ _PAUSE = 0.25
 _DEATHS = 2
 """A point at which so many workers have died is not tried again."""
 _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
+_SAFE = "PYTHONSAFEPATH"
+"""With it a worker imports nothing from the working folder while it starts."""
 
 
 def work(points: Sequence[Point], store: Store, on_event: OnEvent) -> None:
@@ -159,7 +161,7 @@ def _pool(count: int) -> Iterator[ProcessPool]:
     """A pool of worker processes that are ended, with all that they have started, at its end."""
     from pebble import ProcessPool
 
-    new = {name: "1" for name in _THREADS if name not in os.environ}
+    new = {name: "1" for name in (*_THREADS, _SAFE) if name not in os.environ}
     os.environ.update(new)
     # a fork would take over what this process has of MPI
     pool = ProcessPool(count, initializer=_prepare, context=multiprocessing.get_context("spawn"))

@@ -61,7 +61,9 @@ def build_body(
             "msh_path": str(Path(msh_path).resolve()) if msh_path else None,
         }
         spec.write_text(json.dumps(description))
-        _run([sys.executable, "-m", "geometry.bodies.gmsh_worker", str(spec), str(out)], time_limit)
+        # -P: a file gmsh.py in the working folder is not gmsh
+        worker = [sys.executable, "-P", "-m", "geometry.bodies.gmsh_worker"]
+        _run([*worker, str(spec), str(out)], time_limit)
         mesh = MeshData.load(out)
         return dataclasses.replace(mesh, nodes=unit * mesh.nodes)
 
@@ -72,7 +74,9 @@ def _run(command: list[str], time_limit: float) -> None:
     root = str(Path(__file__).resolve().parents[2])
     # more threads, and the same body gives another mesh now and then, with a flat tetrahedron in it
     env["OMP_NUM_THREADS"] = "1"
-    env["PYTHONPATH"] = os.pathsep.join(p for p in (root, env.get("PYTHONPATH")) if p)
+    # an empty entry stands for the working folder
+    given = env.get("PYTHONPATH", "").split(os.pathsep)
+    env["PYTHONPATH"] = os.pathsep.join([root, *(path for path in given if path)])
     try:
         done = subprocess.run(
             command,

@@ -75,6 +75,15 @@ BAD_SETTINGS = [
     ),
     ("mesh.axial=161 mm", 'mesh.axial: "161 mm", expected elements not longer'),
     ("effects.2.blocked-tip.roof_width=30 mm", "effects.2.blocked-tip: roof half width 15 mm"),
+    # steps without an end
+    (
+        "solver.max_step=1e-9 kPa",
+        'solver.max_step: "1e-09 kPa", expected at least a 100000th of "200 kPa"',
+    ),
+    (
+        "solver.max_turn=1e-9 deg",
+        'solver.max_turn: "1e-09 deg", expected at least a 100000th of "360 deg"',
+    ),
     # unknown names
     ("materials.wall=chewing-gum", 'materials.wall: "chewing-gum", expected '),
     (

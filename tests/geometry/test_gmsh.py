@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -91,3 +92,14 @@ def test_the_same_body_gives_the_same_tetrahedra() -> None:
     one, other = build_body(SHORT, size), build_body(SHORT, size)
     assert np.array_equal(one.cells, other.cells)
     assert np.array_equal(one.nodes, other.nodes)
+
+
+@pytest.mark.parametrize("path", ["", os.pathsep])
+def test_what_lies_in_the_working_folder_is_not_imported(
+    path: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("gmsh", "numpy", "json", "geometry"):
+        (tmp_path / f"{name}.py").write_text("raise SystemExit('imported from beside the case')")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PYTHONPATH", path)
+    assert len(build_body(SHORT, MeshSize(axial=8)).cells)

@@ -1,0 +1,1 @@
+"""The computer that a run finds: which of its folders can be used and trusted."""
