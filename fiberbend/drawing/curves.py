@@ -208,9 +208,10 @@ def _path_in_space(
     """Draw a path (n, 3) in mm, z away to the right, y up, one scale, shadows on three walls."""
     page = figure(SIZE)
     axes = page.add_axes((0.04, 0.02, 0.92, 0.9), projection="3d")
-    page.text(0.5, 0.95, title, ha="center", fontsize=15)
+    page.text(0.5, 0.95, literal(title), ha="center", fontsize=15)
     if reason:
-        page.text(0.5, 0.91, _note(reason), ha="center", color=_RED, fontsize=10)
+        text = literal(_note(reason))
+        page.text(0.5, 0.91, text, ha="center", color=_RED, fontsize=10)
     # as seen: z to the right, x toward the viewer, y up
     order = [2, 0, 1]
     points, curve = path[:, order], _smooth(path)[:, order]

@@ -14,7 +14,6 @@ from fiberbend.process import ranks
 from fiberbend.process.ranks import rank as rank
 from fiberbend.process.ranks import size as size
 from fiberbend.process.signals import Interrupted
-
 from machine.folders import settle
 
 FAILED = 2
