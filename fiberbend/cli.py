@@ -5,7 +5,6 @@ Exit codes: 0 done, 1 wrong input, 2 a solution that failed, 128 and its number 
 
 from __future__ import annotations
 
-import io
 import json
 import sys
 from collections.abc import Sequence
@@ -78,10 +77,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         SystemExit: with code 1 for a command line that cannot be read.
     """
     launch.set_threads()
-    for stream in (sys.stdout, sys.stderr):
-        # a terminal that knows no θ, and a file name that is no text, cost no line
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
     tokens = list(sys.argv[1:] if arguments is None else arguments)
     if tokens == ["--version"]:
         # without the 25 ms of what prints help
