@@ -25,7 +25,10 @@ SEED, NUMBER = 10, 100
 AREAS = {
     "newton": (["fem/solver/newton.py"], ["newton", "limit", "patch", "march", "contact"]),
     "march": (["fem/march/march.py"], ["increments", "limit", "march", "diagnosis"]),
-    "measures": (["fem/results/measures.py"], ["turns", "frames", "contact", "newton", "march"]),
+    "measures": (
+        ["fem/results/measures.py"],
+        ["turns", "resultants", "frames", "contact", "newton", "march"],
+    ),
     "embedded": (["fem/effects/embedded_fibers.py"], ["uniform", "screw", "newton", "effects"]),
     "kinematics": (
         [

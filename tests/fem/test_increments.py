@@ -61,7 +61,7 @@ def _march(ramp: Ramp, told: Sequence[int], rules: Rules | None = None) -> tuple
 def test_easy_ones_grow_and_slow_ones_shrink() -> None:
     rules = Rules()
     pressures, _ = _march(
-        Ramp("pressure", 8 * FIRST, first=FIRST),
+        Ramp("pressure", 6 * FIRST, first=FIRST),
         [rules.easy + 1, rules.easy, rules.slow, rules.slow - 1, 6],
     )
     size = FIRST * np.array([1, 1, rules.grow, rules.grow * rules.shrink])
@@ -79,7 +79,8 @@ def test_after_a_failure_a_part_of_what_was_tried() -> None:
     # the stop had clipped the second increment: cut from its full size, the next were the same
     rules = Rules()
     stop = 1.5 * FIRST
-    _, tried = _march(Ramp("pressure", 3 * FIRST, first=FIRST, stops=(stop,)), [6, FAILS])
+    ramp = Ramp("pressure", 1.6 * FIRST, first=FIRST, stops=(stop,))
+    _, tried = _march(ramp, [6, FAILS, *[1] * 9])
     assert tried[:3] == pytest.approx([FIRST, stop, FIRST + rules.cut * (stop - FIRST)], rel=1e-12)
 
 
