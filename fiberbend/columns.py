@@ -149,10 +149,10 @@ COLUMNS = (
     Column(WORK, "mJ", "work of the loads since rest, Σ ∫ q dQ", ELEMENTS),
     Column(STORED, "mJ", "stored energy", ELEMENTS),
     Column("energy {effect} mJ", "mJ", "potential of an effect", ELEMENTS),
-    Column("load pressure", "MPa", "pressure as the load that does work", ELEMENTS),
-    Column("conjugate pressure", "mm³", "what it does work on: the chamber's volume", ELEMENTS),
-    Column("load {load}", "", "any other load; of gravity the share that acts", ELEMENTS),
-    Column("conjugate {load}", "", "what it does work on: work (mJ) over the load", ELEMENTS),
+    Column(
+        "load {load}", "", "a load: the pressure in MPa, of gravity the share that acts", ELEMENTS
+    ),
+    Column("conjugate {load}", "", "what it does work on: of the pressure mm³, of gravity mJ", ELEMENTS),
     Column(MODES, "", "unstable modes with every load kept at its value", ELEMENTS),
     Column(ROOF_FORCE, "N", "force of the roof on the body", BODY),
     Column("clamp_force_y_N", "N", "force of the clamp on the body along y", BODY),
