@@ -137,7 +137,7 @@ def in_unit(lengths: Lengths, unit: float) -> Lengths:
         for name, value in given.items()
         if isinstance(value, float)
     }
-    return dataclasses.replace(lengths, **scaled)
+    return dataclasses.replace(lengths, **scaled)  # type: ignore[arg-type]
 
 
 def divisions(length: float, target: float) -> int:
