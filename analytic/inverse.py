@@ -14,6 +14,8 @@ BACKWARD = -math.pi / 2
 FORWARD = 4 * math.pi
 """Greatest angles in each direction for which θ(P) is looked for, rad."""
 
+ROUND_OFF = 1e-9
+"""Part of a range by which a value at its end may miss it."""
 _INTERVALS = 400
 _GRID = 181
 
@@ -113,7 +115,8 @@ class MonotoneInverse:
             ValueError: a pressure that is not finite, or outside `pressures`.
         """
         low, high = self.pressures
-        outside = ~((pressure >= low) & (pressure <= high))
+        slack = ROUND_OFF * (high - low)
+        outside = ~((pressure >= low - slack) & (pressure <= high + slack))
         if outside.any():
             wrong = float(pressure[outside].flat[0])
             first, last = np.degrees(self.angles)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fem.march.equilibrium import Equilibrium
+from fem.march.equilibrium import STILL, Equilibrium
 from fem.march.frames import Frames
 from fem.march.guide import Guide
 from fem.march.hooks import Hook
@@ -391,7 +391,7 @@ class March:
         volume = measure("conjugate", ramp.scalar)
         if driven < 1e-300:
             return span / 20
-        size = span / 20 if turned < 1e-14 else driven / turned * self.rules.first_turn
+        size = span / 20 if turned < STILL else driven / turned * self.rules.first_turn
         if not self._guided and base[volume] and change[volume]:
             size = min(size, driven * self.rules.swell * abs(base[volume]) / change[volume])
         return float(size)

@@ -104,9 +104,9 @@ def amplification(t: Floats, weights: Floats) -> float:
 def distinct(states: Sequence[State], key: str) -> list[State]:
     """Of states with the same value of a measure the last one; oldest first."""
     chosen: list[State] = []
+    scale = 1e-9 * max(abs(state.measures[key]) for state in states)
     for state in reversed(states):
         value = state.measures[key]
-        scale = 1e-9 * max(abs(value), 1e-30)
         if all(abs(value - other.measures[key]) > scale for other in chosen):
             chosen.insert(0, state)
     return chosen

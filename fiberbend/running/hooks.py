@@ -125,7 +125,7 @@ class Recording(Hook):
                 return f"{np.rad2deg(goal):03.0f}deg"
         pressure = state.scalars.get("pressure", 0.0)
         for goal in self._case.output.at_pressures:
-            if abs(pressure - goal) < 1e-9 * max(1.0, abs(goal)):
+            if abs(pressure - goal) < 1e-9 * abs(goal):
                 return f"{1e3 * goal:g}kPa"
         return ""
 
