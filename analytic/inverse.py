@@ -18,6 +18,8 @@ WITHIN = 0.97
 """A table of θ(P) ends so near the angle at which some rubber meets its limiting stretch: P grows
 there without bound."""
 
+ROUND_OFF = 1e-9
+"""Part of a range by which a value at its end may miss it."""
 _INTERVALS = 400
 _GRID = 181
 _HALVINGS = 60
@@ -158,7 +160,8 @@ class MonotoneInverse:
             ValueError: a pressure that is not finite, or outside `pressures`.
         """
         low, high = self.pressures
-        outside = ~((pressure >= low) & (pressure <= high))
+        slack = ROUND_OFF * (high - low)
+        outside = ~((pressure >= low - slack) & (pressure <= high + slack))
         if outside.any():
             wrong = float(pressure[outside].flat[0])
             first, last = np.degrees(self.angles)

@@ -23,8 +23,7 @@ from fem.ranks import total
 Floats = npt.NDArray[np.float64]
 
 PROBE = 1e-6
-"""Part of an element by which nodes are moved to see what moving them in the last digit does: the
-forces are linear in it to as many digits, and far above round-off."""
+"""Part of an element by which nodes are moved to see what a move in their last digit does."""
 
 
 def _differentiate(form: Any, variable: Any) -> Any:
@@ -339,9 +338,7 @@ class Scene:
         moved = rest.copy()
         moved[body.node_dofs[body.owned_nodes]] += PROBE * body.astray()
         self.set(moved)
-        forces, _ = self._sum(self._forms["residual"], ())
-        for key in self.outside:
-            forces += self.force(key)
+        forces = self._sum(self._forms["residual"], ())[0] + sum(map(self.force, self.outside))
         self.set(rest)
         inside = self.free[: body.owned] & ~self.volumetric
         return float(np.finfo(float).eps / PROBE * self.norm(forces[inside]))

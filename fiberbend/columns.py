@@ -152,7 +152,9 @@ COLUMNS = (
     Column(
         "load {load}", "", "a load: the pressure in MPa, of gravity the share that acts", ELEMENTS
     ),
-    Column("conjugate {load}", "", "what it does work on: of the pressure mm³, of gravity mJ", ELEMENTS),
+    Column(
+        "conjugate {load}", "", "what it does work on: of the pressure mm³, of gravity mJ", ELEMENTS
+    ),
     Column(MODES, "", "unstable modes with every load kept at its value", ELEMENTS),
     Column(ROOF_FORCE, "N", "force of the roof on the body", BODY),
     Column("clamp_force_y_N", "N", "force of the clamp on the body along y", BODY),

@@ -15,6 +15,7 @@ import numpy as np
 
 from analytic.bending import Hemicircle
 from analytic.control.cubic_table import CubicTable
+from analytic.inverse import ROUND_OFF
 from analytic.stress import Floats
 
 _INTERVALS = 400
@@ -124,7 +125,8 @@ class AngleFilter:
         Raises:
             ValueError: the filter never gives this angle.
         """
-        if not self._back.low <= angle <= self._back.high:
+        slack = ROUND_OFF * (self._back.high - self._back.low)
+        if not self._back.low - slack <= angle <= self._back.high + slack:
             low, high = math.degrees(self._back.low), math.degrees(self._back.high)
             raise ValueError(
                 f"filter: it gives angles from {low:.4g} to {high:.4g}°, "

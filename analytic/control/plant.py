@@ -25,6 +25,7 @@ import numpy as np
 from analytic.bending import Hemicircle
 from analytic.control.controller import Valves
 from analytic.control.cubic_table import CubicTable
+from analytic.inverse import ROUND_OFF
 from analytic.stress import Floats
 
 REFERENCE_PRESSURE = 0.1
@@ -212,7 +213,8 @@ class Plant:
         Raises:
             ValueError: the curve does not reach the pressure.
         """
-        if not self._angle.low <= pressure <= self.highest:
+        slack = ROUND_OFF * (self.highest - self._angle.low)
+        if not self._angle.low - slack <= pressure <= self.highest + slack:
             raise ValueError(
                 f"curve: it goes from {1e3 * self._angle.low:.4g} to {1e3 * self.highest:.4g} kPa, "
                 f"{1e3 * pressure:.4g} kPa needed"
@@ -236,7 +238,7 @@ class Plant:
             self._substep_once(rates, valves, duration / count)
         if not self.parameters.lag:
             self.angle = self._angle(self.pressure)
-        if self.pressure > self.highest:
+        if self.pressure > self.highest + ROUND_OFF * (self.highest - self._angle.low):
             raise ValueError(
                 f"curve: it ends at {1e3 * self.highest:.4g} kPa, and the pressure went beyond"
             )

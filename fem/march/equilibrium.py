@@ -14,6 +14,9 @@ from fem.solver.side_conditions import Functional, GivenConjugate, GivenFunction
 
 TINY = 1e-5
 """Strain of a perturbed state that shows a slope: its square is lost, round-off is not seen."""
+STILL = 1e-6 * TINY
+"""Angle of a perturbed state, rad, that is none: a thousand times round-off of fitted angles, and a
+millionth of what the strain would turn."""
 NOWHERE = 1e-30
 """Part of a response that shows its direction, and adds nothing to a tangent."""
 

@@ -16,7 +16,7 @@ from fem.march.position import Position
 from fem.march.predictor import Predictor, distinct, lagrange
 from fem.march.records import Causes, Critical, Ramp, Report, Rules, State, measure
 from fem.march.selfcontact import Rod, first_contact
-from fem.march.turning import STILL, first_size, leads_nowhere, search_end, slackens, toward
+from fem.march.turning import UNBENT, first_size, leads_nowhere, search_end, slackens, toward
 from fem.march.ways import MISSED, Requests, Way
 from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome
@@ -193,7 +193,7 @@ class March:
                 position.toward, position.increment = found
                 position.path_following = True
                 if not position.toward:
-                    return self._end(STILL)
+                    return self._end(UNBENT)
         # a load that hardly bends begins with tiny increments of the angle
         first = position.first = position.first or position.increment
         slow: Outcome | None = None

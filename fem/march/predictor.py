@@ -15,8 +15,9 @@ from fem.scene import Scene
 Floats = npt.NDArray[np.float64]
 
 AMPLIFIED = 35.0
-"""Sum of the sizes of weights up to which what a guide leaves over is a parabola. From rest, 15° and
-60° to 160° it is 48, and the parabola points nowhere; a first growth by three makes 31, and helps."""
+"""Sum of the sizes of weights up to which what a guide leaves over is a parabola. From rest, 15°
+and 60° to 160° it is 48: the parabola points nowhere. A first growth by three makes 31, and
+helps."""
 TOGETHER = 1e-3
 """States this part of their range apart are a state and a slope: their weights count as one."""
 
@@ -103,9 +104,9 @@ def amplification(t: Floats, weights: Floats) -> float:
 def distinct(states: Sequence[State], key: str) -> list[State]:
     """Of states with the same value of a measure the last one; oldest first."""
     chosen: list[State] = []
+    scale = 1e-9 * max(abs(state.measures[key]) for state in states)
     for state in reversed(states):
         value = state.measures[key]
-        scale = 1e-9 * max(abs(value), 1e-30)
         if all(abs(value - other.measures[key]) > scale for other in chosen):
             chosen.insert(0, state)
     return chosen

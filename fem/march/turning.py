@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fem.march.equilibrium import Equilibrium
+from fem.march.equilibrium import STILL, Equilibrium
 from fem.march.limit_points import softens
 from fem.march.position import Position
 from fem.march.records import Ramp, Rules, State, measure
@@ -32,7 +32,7 @@ NEARER = 4.0
 lies within as many times its own way."""
 UNMOVED = 1e-7
 """Change of the control quantity (rad) by round-off: asymmetric sections have 1e-4 and more."""
-STILL = (
+UNBENT = (
     "the load does not bend it, neither way: a tenth of the chamber's volume more or less leaves "
     "the angle as it is"
 )
@@ -172,7 +172,7 @@ def first_size(
     volume = measure("conjugate", ramp.scalar)
     if driven < 1e-300:
         return span / 20
-    size = span / 20 if turned < 1e-14 else driven / turned * rules.first_turn
+    size = span / 20 if turned < STILL else driven / turned * rules.first_turn
     if not guided and now[volume] and change[volume]:
         size = min(size, driven * rules.swell * abs(now[volume]) / change[volume])
     return float(size)

@@ -16,8 +16,8 @@ Floats = npt.NDArray[np.float64]
 
 
 ROUND_OFF = 1e-9
-"""Part of the body's length by which a gap that is zero at rest may miss it: gmsh's nodes lie within
-3e-10 of their places."""
+"""Part of the body's length by which a gap that is zero at rest may miss it: gmsh's nodes lie
+within 3e-10 of their places."""
 
 
 @dataclasses.dataclass(frozen=True)

@@ -46,7 +46,8 @@ def boundary_facets(mesh: MeshData, cells: NDArray[np.bool_]) -> Ints:
 def on_mirror(mesh: MeshData, pairs: Ints) -> NDArray[np.bool_]:
     """True for the facets that lie in the plane x = 0, (k,)."""
     nodes = mesh.cells[pairs[:, :1], facet_positions(mesh.cell_type)[pairs[:, 1]]]
-    flat: NDArray[np.bool_] = (np.abs(mesh.nodes[nodes, 0]) < 1e-9).all(axis=1)
+    width = np.ptp(mesh.nodes[:, 0])
+    flat: NDArray[np.bool_] = (np.abs(mesh.nodes[nodes, 0]) < 1e-9 * width).all(axis=1)
     return flat
 
 

@@ -128,9 +128,9 @@ class ContactEffect(Effect):
         if bar is not None and bar.radius < least * (1 - _ROUNDING):
             yield (
                 "cylinder.radius",
-                f'"{show(bar.radius, "length")}", expected at least "{show(least, "length")}", half '
-                f"an element: elements {show(length, 'length')} long do not feel a thinner bar "
-                "(mesh.axial)",
+                f'"{show(bar.radius, "length")}", expected at least "{show(least, "length")}", '
+                f"half an element: elements {show(length, 'length')} long do not feel a thinner "
+                "bar (mesh.axial)",
             )
 
     def keeps_straight(self) -> bool:
@@ -234,7 +234,7 @@ class ContactEffect(Effect):
                 yield (
                     f"contact: the body sinks {depth:.3g} mm into the {name}, "
                     f"{100 * depth / thickness:.0f} % of the {thickness:g} mm that touch it, as "
-                    f"obstacles yield with {self.yields(site):.3g} MPa/mm: expected something rigid "
+                    f"obstacles yield with {self.yields(site):.3g} MPa/mm: too soft to be rigid "
                     "(contact.stiffness, by default a hundred times that of what touches)"
                 )
 

@@ -31,6 +31,9 @@ from fiberbend.schema.problems import Problem, found, meant
 from fiberbend.schema.units import show
 from materials.laws.table import LAWS
 
+_END = 1 + 1e-9
+"""A value at the end of a load is within it: units are factors, and a quotient rounds."""
+
 if TYPE_CHECKING:
     from geometry.sections.size import MeshSize
 
@@ -350,7 +353,7 @@ def _output(parts: ValidParts) -> Iterator[Problem]:
             yield Problem(path, "no effect without pressure, expected no value")
         elif pressure.to is None:
             yield Problem(path, "no effect where the pressure is found, expected no value")
-        elif not 0 < value / pressure.to <= 1:
+        elif not 0 < value / pressure.to <= _END:
             yield Problem(
                 path,
                 f'"{show(value, "pressure")}", expected a pressure between zero and '
@@ -384,7 +387,7 @@ def _up_to(end: float, output: Output) -> Iterator[Problem]:
             "output.stop_at_angle", "no effect where the pressure has an angle, expected no value"
         )
     for index, angle in enumerate(output.at_angles):
-        if not 0 < angle / end <= 1:
+        if not 0 < angle / end <= _END:
             yield Problem(
                 f"output.at_angles.{index}",
                 f'"{show(angle, "angle")}", expected an angle between zero and '

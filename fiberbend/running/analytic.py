@@ -31,6 +31,8 @@ from fiberbend.running.progress import Progress
 from fiberbend.running.record import beside, entries, peak_memory_mb
 
 _STEPS = 40
+_END = 1 + 1e-9
+"""An angle at the end of a run is within it, whatever a quotient rounds to."""
 
 
 def run_analytic(
@@ -169,13 +171,13 @@ def _free_rows(case: Case, model: Hemicircle) -> tuple[list[dict[str, Any]], str
     if reason:
         status = "stopped"
     stop = output.stop_at_angle
-    if stop is not None and stop * end > 0 and abs(stop) <= abs(end):
+    if stop is not None and stop * end > 0 and abs(stop) <= _END * abs(end):
         status, reason, end = "converged", "", stop
-    wanted = [angle for angle in output.at_angles if 0 < angle / end <= 1]
+    wanted = [angle for angle in output.at_angles if 0 < angle / end <= _END]
     pressures = {}
     for pressure in (*output.at_pressures, *([load.to] if load.to is not None else [])):
         angle, beyond = _angle_at(model, pressure)
-        if 0 < angle / end <= 1 and not beyond:
+        if 0 < angle / end <= _END and not beyond:
             pressures[angle] = pressure
     angles = _merged(np.linspace(0.0, end, _STEPS + 1), [*wanted, *pressures])
     rows = []
@@ -183,7 +185,7 @@ def _free_rows(case: Case, model: Hemicircle) -> tuple[list[dict[str, Any]], str
         pressure = pressures.get(float(angle), float(model.pressure(angle)))
         rows.append(_row(step, pressure, float(angle), case, model))
     asked = dict.fromkeys(a for a in (*output.at_angles, stop) if a is not None)
-    missed = [f"{math.degrees(a):g}°" for a in asked if not 0 < a / end <= 1 + 1e-9]
+    missed = [f"{math.degrees(a):g}°" for a in asked if not 0 < a / end <= _END]
     missed += [
         f"{1e3 * pressure:.6g} kPa"
         for pressure in dict.fromkeys(output.at_pressures)

@@ -151,7 +151,7 @@ class Recording(Hook):
                 return unused(self._angles[angle], taken)
         pressure = state.scalars.get("pressure", 0.0)
         for goal, label in self._pressures.items():
-            if abs(pressure - goal) < SAME * max(1.0, abs(goal)):
+            if abs(pressure - goal) <= SAME * abs(goal):
                 return unused(label, taken)
         return ""
 
@@ -216,7 +216,7 @@ def not_reached(case: Case, report: Report, rows: Sequence[dict[str, Any]]) -> l
     found = [f"{np.rad2deg(angle):.6g}°" for angle in angles if angle not in hits]
     for pressure in dict.fromkeys(output.at_pressures):
         gaps = [abs(row[col.PRESSURE] / 1e3 - pressure) for row in rows]
-        if min(gaps) >= SAME * max(1.0, abs(pressure)):
+        if min(gaps) > SAME * abs(pressure):
             found.append(f"{1e3 * pressure:.6g} kPa")
     return found
 

@@ -13,8 +13,8 @@ from geometry.mesh.data import Floats, MeshData
 from geometry.mesh.reference import gauss, shape_functions
 from geometry.winding.segments import EmbeddedFibers
 
-_JOINT = 1e-6
-"""Distance in mm within which segments of a curve touch."""
+_JOINT = 1e-7
+"""Distance within which segments of a curve touch, as a part of the mesh's greatest extent."""
 
 
 def fiber_lines(
@@ -39,8 +39,9 @@ def fiber_lines(
     import pyvista as pv
 
     points = _segment_points(mesh, fibers, mesh.nodes)
+    joint = _JOINT * np.ptp(mesh.nodes, axis=0).max()
     gap = np.linalg.norm(points[1:, 0] - points[:-1, 2], axis=1)
-    fresh = np.r_[True, (fibers.curve[1:] != fibers.curve[:-1]) | (gap > _JOINT)]
+    fresh = np.r_[True, (fibers.curve[1:] != fibers.curve[:-1]) | (gap > joint)]
     if displacement is not None:
         points = _segment_points(mesh, fibers, mesh.nodes + displacement)
     last = np.r_[fresh[1:], True]

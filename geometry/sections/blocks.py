@@ -139,13 +139,14 @@ class Layout:
         scaled = Layout(self.half)
         scaled.points = [(unit * x, unit * y) for x, y in self.points]
         scaled.named = self.named
-        scaled.blocks = [
-            dataclasses.replace(
-                block,
-                centers=tuple(c and (unit * c[0], unit * c[1]) for c in block.centers),
-            )
-            for block in self.blocks
-        ]
+
+        def in_mm(center: Point | None) -> Point | None:
+            return None if center is None else (unit * center[0], unit * center[1])
+
+        for block in self.blocks:
+            a, b, c, d = block.centers
+            centers = in_mm(a), in_mm(b), in_mm(c), in_mm(d)
+            scaled.blocks.append(dataclasses.replace(block, centers=centers))
         return scaled
 
     def without_fill(self) -> Layout:

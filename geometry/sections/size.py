@@ -10,6 +10,8 @@ from typing import TypeVar
 from geometry.actuator import Actuator
 
 MAX_ASPECT = 25.0
+ROUND_OFF = 1e-9
+"""Part of a length by which a quotient or a product of lengths may miss it."""
 _DIGITS = 14
 """Digits of a length in an actuator's own unit: one fewer than a quotient keeps."""
 
@@ -75,13 +77,13 @@ def too_thin(actuator: Actuator, size: MeshSize) -> Iterator[tuple[str, str]]:
     for name in actuator.region_areas():
         thickness = getattr(actuator, name)
         least = size.axial * elements_through(name, size) / MAX_ASPECT
-        if thickness < least:
+        if thickness < least * (1 - ROUND_OFF):
             yield (
                 name,
                 f"{thickness:g} mm is too thin for elements {size.axial:g} mm long: "
                 f"expected at least {least:g} mm",
             )
-        elif name == "floor" and 0 < above < least:
+        elif name == "floor" and 0 < above < least * (1 - ROUND_OFF):
             most = f"{actuator.wall - least:g} mm or all of the wall, {actuator.wall:g} mm"
             yield (
                 name,
@@ -137,9 +139,9 @@ def in_unit(lengths: Lengths, unit: float) -> Lengths:
         for name, value in given.items()
         if isinstance(value, float)
     }
-    return dataclasses.replace(lengths, **scaled)
+    return dataclasses.replace(lengths, **scaled)  # type: ignore[arg-type]
 
 
 def divisions(length: float, target: float) -> int:
     """Number of elements not longer than `target` that fill a length."""
-    return max(1, math.ceil(length / target - 1e-9))
+    return max(1, math.ceil(length / target - ROUND_OFF))

@@ -11,6 +11,8 @@ from geometry.winding.helix import Winding
 from geometry.winding.segments import EmbeddedFibers, Facets, develop, push
 
 _SHORTEST = 1e-9
+"""Part of the perimeter under which a piece of fiber is none, and a line on a border lies on it:
+gmsh's nodes lie within 3e-10 of the body's length of their places."""
 
 
 def _candidates(facets: Facets, slope: float, pitch: float, rise: float) -> tuple[Ints, Floats]:
@@ -28,7 +30,9 @@ def _candidates(facets: Facets, slope: float, pitch: float, rise: float) -> tupl
     return facet, turn * pitch + rise
 
 
-def _clip(facets: Facets, facet: Ints, slope: float, c: Floats) -> tuple[Floats, Floats]:
+def _clip(
+    facets: Facets, facet: Ints, slope: float, c: Floats, shortest: float
+) -> tuple[Floats, Floats]:
     """Ends in s of the part of each line z = slope s + c in its facet; empty when reversed.
 
     With ξ(s) = A⁻¹ ((s, slope s + c) − X0) the facet is where g_k(s) = v_k + r_k s ≥ 0 for each
@@ -41,6 +45,7 @@ def _clip(facets: Facets, facet: Ints, slope: float, c: Floats) -> tuple[Floats,
         facet: their numbers, (n,).
         slope: dz/ds of the lines.
         c: z in mm at s = 0, (n,).
+        shortest: distance in mm within which a line is on a border.
 
     Returns:
         First and last s in mm, (n,) each.
@@ -64,7 +69,7 @@ def _clip(facets: Facets, facet: Ints, slope: float, c: Floats) -> tuple[Floats,
     low = np.where(along, -np.inf, np.where(rates > 0, root, -np.inf)).max(axis=1)
     high = np.where(along, np.inf, np.where(rates > 0, np.inf, root)).min(axis=1)
     # of two facets that share a border along the line, the one on its growing-s side takes it
-    on_border = np.abs(values) < _SHORTEST * size
+    on_border = np.abs(values) < shortest * size
     refused = along & np.where(on_border, inward[..., 0] < 0, values < 0)
     return low, np.where(refused.any(axis=1), -np.inf, high)
 
@@ -88,13 +93,14 @@ def embed(mesh: MeshData, actuator: Actuator, winding: Winding, q: int = 3) -> E
         raise ValueError("a section can have smeared windings only")
     facets = develop(mesh, actuator)
     n = winding.lines_per_fiber
+    shortest = _SHORTEST * actuator.winding_perimeter
     rows = []
     for helix, hand in enumerate(winding.hands):
         slope = -hand * winding.pitch / actuator.winding_perimeter
         for line, rise in enumerate(winding.rises(actuator, helix)):
             facet, c = _candidates(facets, slope, winding.pitch, rise)
-            low, high = _clip(facets, facet, slope, c)
-            kept = high - low > _SHORTEST
+            low, high = _clip(facets, facet, slope, c, shortest)
+            kept = high - low > shortest
             facet, c, low, high = facet[kept], c[kept], low[kept], high[kept]
             start, end = (low, high) if slope > 0 else (high, low)
             curve = np.full(len(facet), helix * n + line)
