@@ -24,6 +24,9 @@ class Equilibrium:
         newton: its solver.
         predictor: what a solve starts from.
         control: the quantity that requests refer to (the bending angle), or None.
+
+    Attributes:
+        displacements: owned dofs of the displacement, (owned,).
     """
 
     def __init__(
@@ -33,6 +36,10 @@ class Equilibrium:
         self._predictor, self._control = predictor, control
         comm, volumetric = scene.domain.comm, int(np.count_nonzero(scene.volumetric))
         self._volumetric = int(total(comm, volumetric))
+        body = scene.body
+        dofs = body.node_dofs[body.owned_nodes].ravel()
+        self.displacements = np.zeros(body.owned, dtype=bool)
+        self.displacements[dofs[dofs < body.owned]] = True
 
     def capture(self) -> State:
         """The present state of the scene."""
@@ -58,7 +65,7 @@ class Equilibrium:
             self.scene.set_scalar(name, value)
         self.scene.set(state.w)
 
-    def _natural(self) -> list[Stationary]:
+    def natural_conditions(self) -> list[Stationary]:
         """One equation for each natural scalar."""
         return [Stationary(self.scene, name) for name in self.scene.natural]
 
@@ -67,7 +74,7 @@ class Equilibrium:
         scene, body = self.scene, self.scene.body
         self.restore(base)
         scene.predict(None)
-        rate, natural = self.newton.response(scalar, scene.natural, self._natural())
+        rate, natural = self.newton.response(scalar, scene.natural, self.natural_conditions())
         nodal = body.with_ghosts(rate)[body.node_dofs[body.owned_nodes]]
         top = float(np.max(np.abs(nodal), initial=0.0))
         largest = max(scene.domain.comm.allgather(top)) / body.span
@@ -95,7 +102,7 @@ class Equilibrium:
         """
         start = self._predictor.start(*along)
         unknown: list[str] = list(self.scene.natural)
-        conditions: list[SideCondition] = list(self._natural())
+        conditions: list[SideCondition] = list(self.natural_conditions())
         if kind == "value":
             self.scene.set_scalar(scalar, target)
             return self.newton.solve(start, unknown, conditions)
@@ -106,7 +113,9 @@ class Equilibrium:
             conditions.append(GivenFunctional(self._control, target))
         return self.newton.solve(start, [*unknown, scalar], conditions)
 
-    def assess_stability(self, state: State, before: State, scalar: str) -> None:
+    def assess_stability(
+        self, state: State, before: State, scalar: str, exactly: bool = False
+    ) -> None:
         """Write the stability of the state just found into its measures.
 
         Unstable modes are the negative eigenvalues of the Hessian of the potential in all fields
@@ -118,11 +127,13 @@ class Equilibrium:
             state: the present state, found by the last solve.
             before: the state before it.
             scalar: the load that is driven.
+            exactly: by the tangent at the state; else by the last one of Newton's method, unless
+                that tells a change.
         """
         rate = measure("rate", scalar)
         state.measures[rate] = before.measures.get(rate, 1.0)
         modes = self._modes()
-        if modes != before.measures.get(MODES, 0):
+        if exactly or modes != before.measures.get(MODES, 0):
             # not by an old factor, nor with forces that were predicted
             near = self.perturbed(state, scalar)
             modes = self._modes()

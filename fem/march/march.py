@@ -7,22 +7,26 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from fem.march.branches import SHARP, Branches, excess
 from fem.march.equilibrium import Equilibrium
 from fem.march.frames import Frames
 from fem.march.guide import Guide
 from fem.march.hooks import Hook
+from fem.march.increments import first_size, guess, turn_limit
 from fem.march.limit_points import (
     critical,
     crossing,
+    last_limit,
     limit_ahead,
     limit_between,
+    passed,
     softens,
 )
 from fem.march.position import Position
-from fem.march.predictor import Predictor, distinct, lagrange
-from fem.march.records import Causes, Critical, Ramp, Report, Rules, State, measure
+from fem.march.predictor import Predictor, distinct
+from fem.march.records import MODES, Causes, Ramp, Report, Rules, State, measure
 from fem.march.selfcontact import Rod, first_contact
-from fem.march.ways import Requests, Way
+from fem.march.ways import Requests, Way, asked_between
 from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome
 from fem.solver.side_conditions import Functional
@@ -30,6 +34,9 @@ from fem.solver.side_conditions import Functional
 JUMPED = "Newton went to another branch"
 BEYOND = "the load falls from here on"
 CREEPS = "increments shrink to nothing, each of them converging slowly"
+LOST = "along the mode that is lost no state is found on which the body rests"
+LEAST_GAP = 1e-6
+"""Part of a ramp between a stable and an unstable state that are not brought nearer."""
 REACHED = 1e-12
 """Part of a target by which round-off may miss it."""
 
@@ -71,8 +78,8 @@ class March:
         self.hooks = self._called = tuple(hooks)
         self._predictor = Predictor(scene, frames, guide)
         self.equilibrium = Equilibrium(scene, newton, self._predictor, control)
-        self._controlled = control is not None
         self._guided = guide is not None
+        self._branches = Branches(self.equilibrium, self._count)
         self._rod, self._causes = rod, causes
         scene.set(scene.w.copy())
         self.rest = self.equilibrium.capture()
@@ -109,7 +116,7 @@ class March:
                 break
             position.ramp += 1
             position.increment = position.begin = position.first = None
-            position.path_following = False
+            position.path_following, position.lost = False, None
         return position.report
 
     # --- what hooks may change -----------------------------------------------------------------
@@ -148,34 +155,29 @@ class March:
             largest = abs(ramp.largest) if ramp.largest else np.inf
             return Way(ramp.drive, ramp.key, sign, ramp.target, abs(span), stops, largest)
         key = measure("conjugate", ramp.scalar)
-        volume = now[key]
+        volume = abs(now[key])
         sign = np.sign(span)
         end = sign * np.inf
-        limit = self._limit(ramp)
+        limit = last_limit(self.report, ramp.scalar)
         if limit is not None and now.get(measure("rate", ramp.scalar), 1.0) < 0:
             end = limit.conjugate * self.rules.beyond**sign
         return Way("conjugate", key, sign, end, volume, (), self.rules.swell * volume)
-
-    def _limit(self, ramp: Ramp) -> Critical | None:
-        """The last limit point beyond which the ramp's load falls."""
-        found = (
-            c
-            for c in reversed(self.report.critical)
-            if c.kind == "limit" and c.scalar == ramp.scalar and c.after > c.before
-        )
-        return next(found, None)
 
     def _ramp(self, ramp: Ramp) -> bool:
         position = self.position
         if position.begin is None:
             position.begin = self.states[-1].measures[ramp.key]
         span = ramp.target - position.begin
-        if self._done(ramp, span):
+        if self._done(ramp, span, self.states[-1]):
             return True
         if position.increment is None:
             base = self.states[-1]
             seed = self.equilibrium.perturbed(base, ramp.scalar)
-            size = abs(ramp.first) if ramp.first else self._first_size(seed, ramp, abs(span))
+            size = (
+                abs(ramp.first)
+                if ramp.first
+                else first_size(base, seed, ramp, abs(span), self.rules, self._guided)
+            )
             position.states = [seed, base]
             position.increment = min(size, abs(ramp.largest or np.inf), abs(span))
         requests = Requests(ramp)
@@ -185,7 +187,7 @@ class March:
         slow: Outcome | None = None
         while True:
             state = self.states[-1]
-            if self._done(ramp, span):
+            if self._done(ramp, span, state):
                 return True
             way = self._way(ramp, span)
             now = state.measures[way.key]
@@ -193,14 +195,21 @@ class March:
                 return self._end("")
             if slow and position.increment < self.rules.least * min(way.span, first):
                 return self._give_up(dataclasses.replace(slow, reason=CREEPS), "")
-            size = min(position.increment, self._turn_limit(way.key), way.largest)
+            size = min(
+                position.increment, turn_limit(self.states, way.key, self.rules), way.largest
+            )
+            if position.lost is not None:
+                gap = abs(position.lost - now)
+                size = min(size, gap if self._near(way.key, now, position.lost) else gap / 2)
             target = way.next(now, size)
             if way.kind == "value" and limit_ahead(self.states, ramp.scalar, target):
                 self._follow_path(ramp)
                 continue
             kind, aim = way.kind, target
             goal = requests.due(state)
-            if goal is not None and requests.hits(goal, self._guess(way.key, target, "control")):
+            if goal is not None and requests.hits(
+                goal, guess(self.states, way.key, target, "control")
+            ):
                 kind, aim = "control", goal
             new, outcome, kind = self._attempt(ramp, span, kind, aim)
             self._predictor.heed(failed=new is None)
@@ -227,28 +236,37 @@ class March:
             if goal is not None and not requests.met(new, goal, kind, way):
                 self.equilibrium.restore(state)
                 continue
+            if position.lost is not None or self._done(ramp, span, new):
+                # near a bifurcation, and where a ramp ends, no old factor may tell
+                self.equilibrium.assess_stability(new, state, ramp.scalar, exactly=True)
+            if excess(new, ramp.scalar) > max(0, excess(state, ramp.scalar)):
+                if not self._lost(ramp, span, way, new):
+                    return False
+                continue
+            if (
+                position.lost is not None
+                and way.sign * (new.measures[way.key] - position.lost) >= 0
+            ):
+                position.lost = None
             if not (position.path_following and np.isfinite(way.end)):
                 failures = 0
-            position.states = [*self.states[1 - self.rules.memory :], new]
-            self.report.steps += 1
-            self.report.per_step.append(outcome.iterations)
-            self._note(ramp.scalar)
+            self._keep([*self.states[1 - self.rules.memory :], new], state, outcome)
+            self.report.critical += critical(self.states, ramp.scalar)
             slow = outcome if outcome.iterations >= self.rules.slow else None
             if outcome.iterations <= self.rules.easy:
                 size = min(size * self.rules.grow, way.largest)
             elif slow:
                 size *= self.rules.shrink
             position.increment = size
-            for hook in self._called:
-                hook.after_step(self, new, outcome)
+            self._tell(outcome)
 
-    def _done(self, ramp: Ramp, span: float) -> bool:
+    def _done(self, ramp: Ramp, span: float, state: State) -> bool:
         """Whether a ramp has reached its end, or the value at which it ends early.
 
         Driven by its conjugate or by the control quantity, Newton's method hits the end within its
         tolerance, not exactly; a run that is resumed at the end has nothing to do.
         """
-        now = self.states[-1].measures
+        now = state.measures
         missed = abs(ramp.target - now[ramp.key])
         if missed <= 1e-9 * abs(span) or missed <= REACHED * abs(ramp.target):
             return True
@@ -273,7 +291,9 @@ class March:
         if new is None:
             return new, outcome, kind
         states, key = [*self.states[-2:], new], measure("conjugate", scalar)
-        goal = self._passed(ramp, span, new)
+        goal = None
+        if self.position.path_following:
+            goal = passed(ramp, span, self.states[-1], new, last_limit(self.report, scalar))
         if goal is not None:
             start = (distinct(states, key), key, crossing(states, scalar, goal))
             outcome = self._find(scalar, "value", goal, start)
@@ -288,16 +308,21 @@ class March:
         self, scalar: str, kind: str, aim: float, start: tuple[list[State], str, float]
     ) -> Outcome:
         outcome = self.equilibrium.find(scalar, kind, aim, start)
+        self._count(outcome)
+        return outcome
+
+    def _count(self, outcome: Outcome) -> None:
         self.report.iterations += outcome.iterations
         self.report.factorisations += outcome.factorisations
-        return outcome
 
     def _found(self, scalar: str, outcome: Outcome) -> State | None:
         """The state that was found, its stability assessed."""
         if not outcome.converged:
             return None
         new = self.equilibrium.capture()
-        self.equilibrium.assess_stability(new, self.states[-1], scalar)
+        # a factor of an earlier step knows nothing of this one
+        stale = outcome.factorisations == 0
+        self.equilibrium.assess_stability(new, self.states[-1], scalar, exactly=stale)
         return new
 
     def _jumped(self, scalar: str, aim: float, new: State) -> bool:
@@ -305,11 +330,107 @@ class March:
         name = measure("conjugate", scalar)
         now = self.states[-1].measures[name]
         key = measure("value", scalar)
-        expected = self._guess(key, aim, name)
+        expected = guess(self.states, key, aim, name)
         # a curve through states around a kink may be flat here: the chord tells the size of a step
         (p, v), (q, w) = ((state.measures[key], state.measures[name]) for state in self.states[-2:])
         step = max(abs(expected - now), abs((w - v) / (q - p) * (aim - q)) if q != p else 0.0)
         return bool(abs(new.measures[name] - expected) > self.rules.jump * step + 1e-6 * abs(now))
+
+    # --- bifurcations --------------------------------------------------------------------------
+
+    def _lost(self, ramp: Ramp, span: float, way: Way, new: State) -> bool:
+        """A new state has one more unstable mode: come nearer to where it is lost, or leave there.
+
+        The new state is not kept. Driven by its value, a load may have jumped over a limit point
+        too: its conjugate, which grows there, tells the two apart.
+
+        Returns:
+            Whether the march goes on.
+        """
+        position, state, scalar = self.position, self.states[-1], ramp.scalar
+        position.lost = new.measures[way.key]
+        gap = abs(position.lost - state.measures[way.key])
+        value = measure("value", scalar)
+        sharp = all(self._near(k, state.measures[k], new.measures[k]) for k in (way.key, value))
+        if not sharp and gap > LEAST_GAP * way.span:
+            self.equilibrium.restore(state)
+            position.increment = gap / 2
+            return True
+        if way.kind == "value":
+            self.equilibrium.restore(state)
+            self._follow_path(ramp)
+            return True
+        crossing = self._branches.crossing(scalar, state, new)
+        found, outcome = self._branches.leave(
+            scalar, crossing, lambda new: asked_between(ramp, state, new) is not None
+        )
+        self.report.critical.append(crossing.critical(scalar, left=bool(found)))
+        if not found:
+            self.equilibrium.restore(state)
+            return self._give_up(dataclasses.replace(outcome, reason=LOST), "")
+        # another branch may be flat: its load hardly grows, or falls
+        position.path_following, position.lost = ramp.drive == "value", None
+        entered: list[State] = []
+        for one, how in found:
+            last = self._enter(ramp, entered, one, how)
+            if last:
+                break
+        return True
+
+    def _enter(self, ramp: Ramp, entered: list[State], new: State, outcome: Outcome) -> bool:
+        """Keep a state on another branch, or what was asked for before it.
+
+        Args:
+            ramp: the load.
+            entered: states of the branch that are kept already; the new one joins them.
+            new: the state.
+            outcome: how it was found.
+
+        Returns:
+            Whether the march goes on from there in its ordinary way.
+        """
+        position, old, scalar = self.position, self.states[-1], ramp.scalar
+        seed = self.equilibrium.perturbed(new, scalar)
+        goal = asked_between(ramp, old, new)
+        if goal is not None:
+            key = measure(goal[0], scalar)
+            again = self._find(scalar, *goal, ([*(entered[-2:] or [seed]), new], key, goal[1]))
+            landed = self._found(scalar, again)
+            if landed is not None and excess(landed, scalar) <= 0:
+                new, outcome = landed, again
+                seed = self.equilibrium.perturbed(new, scalar)
+        self.equilibrium.restore(new)
+        entered.append(new)
+        key = measure("conjugate", scalar) if position.path_following else ramp.key
+        position.increment = abs(new.measures[key] - old.measures[key])
+        self._keep(entered[-3:] if len(entered) > 1 else [seed, new], old, outcome)
+        self._tell(outcome)
+        return goal is not None
+
+    def _keep(self, states: list[State], old: State, outcome: Outcome) -> None:
+        """Go on from these states; the last one is new and follows the old one."""
+        self.position.states = states
+        self.report.steps += 1
+        self.report.per_step.append(outcome.iterations)
+        if self._rod is None or self.report.self_contact is not None:
+            return
+        new = states[-1]
+        share = first_contact(self._rod, old, new)
+        if share is not None:
+            self.report.self_contact = {
+                name: (1 - share) * value + share * new.measures[name]
+                for name, value in old.measures.items()
+            }
+
+    def _tell(self, outcome: Outcome) -> None:
+        """Tell the hooks of the last state."""
+        for hook in self._called:
+            hook.after_step(self, self.states[-1], outcome)
+
+    def _near(self, key: str, a: float, b: float) -> bool:
+        """Whether two values of a measure are apart by no more than 1 % of the way from rest."""
+        base = self.rest.measures[key]
+        return abs(b - a) <= SHARP * max(abs(a - base), abs(b - base))
 
     # --- limit points --------------------------------------------------------------------------
 
@@ -318,34 +439,7 @@ class March:
         key = measure("conjugate", ramp.scalar)
         a, b = (state.measures[key] for state in self.states[-2:])
         self.position.increment = abs(b - a)
-        self.position.path_following = True
-
-    def _passed(self, ramp: Ramp, span: float, new: State) -> float | None:
-        """Value asked for that following the path has passed and never reached before."""
-        if not self.position.path_following:
-            return None
-        sign, key = np.sign(span), measure("value", ramp.scalar)
-        limit = self._limit(ramp)
-        reached = [self.states[-1].measures[key], *([limit.value] if limit else [])]
-        peak = max(sign * value for value in reached)
-        top = sign * new.measures[key]
-        goals = [sign * goal for goal in (*ramp.stops, ramp.target)]
-        margin = 1e-9 * abs(span)
-        passed = [goal for goal in goals if peak + margin < goal < top - margin]
-        return float(sign * min(passed)) if passed else None
-
-    def _note(self, scalar: str) -> None:
-        """Report what happened in the last increment to stability and to the body's clearance."""
-        self.report.critical += critical(self.states, scalar)
-        if self._rod is None or self.report.self_contact is not None:
-            return
-        old, new = self.states[-2:]
-        share = first_contact(self._rod, old, new)
-        if share is not None:
-            self.report.self_contact = {
-                name: (1 - share) * value + share * new.measures[name]
-                for name, value in old.measures.items()
-            }
+        self.position.path_following, self.position.lost = True, None
 
     def _give_up(self, outcome: Outcome, inverted: str) -> bool:
         """No increment leads on from the last state."""
@@ -356,42 +450,8 @@ class March:
 
     def _end(self, reason: str) -> bool:
         """The load cannot be reached."""
-        beyond = self.position.path_following and any(
-            c.kind == "limit" for c in self.report.critical
-        )
+        beyond = self.position.path_following and bool(self.report.critical)
+        beyond = beyond and self.position.lost is None
         self.report.status = "stopped" if beyond else "failed"
         self.report.reason = reason
         return False
-
-    # --- increments ----------------------------------------------------------------------------
-
-    def _guess(self, key: str, target: float, name: str) -> float:
-        """Extrapolated value of a measure where the increment of another would end."""
-        history = distinct(self.states, key)
-        weights = lagrange(np.array([state.measures[key] for state in history]), target)
-        return float(weights @ [state.measures[name] for state in history])
-
-    def _turn_limit(self, drive: str) -> float:
-        """Increment that changes the control quantity by `turn`, from the last two states."""
-        if not self._controlled or len(self.states) < min(self.rules.memory, 3):
-            return np.inf
-        a, b = (state.measures for state in self.states[-2:])
-        turned = abs(b["control"] - a["control"])
-        return float(abs(b[drive] - a[drive]) * self.rules.turn / max(turned, 1e-12))
-
-    def _first_size(self, seed: State, ramp: Ramp, span: float) -> float:
-        """First increment, by the linear response.
-
-        It changes the control quantity by `first_turn`, a twentieth of the load where nothing
-        turns, and changes the conjugate by no more than `swell`, unless a guide knows the way.
-        """
-        base = self.states[-1].measures
-        change = {name: abs(value - base[name]) for name, value in seed.measures.items()}
-        driven, turned = change[ramp.key], change.get("control", 0.0)
-        volume = measure("conjugate", ramp.scalar)
-        if driven < 1e-300:
-            return span / 20
-        size = span / 20 if turned < 1e-14 else driven / turned * self.rules.first_turn
-        if not self._guided and base[volume] and change[volume]:
-            size = min(size, driven * self.rules.swell * abs(base[volume]) / change[volume])
-        return float(size)

@@ -19,6 +19,8 @@ class Position:
         ramp: number of the ramp under way.
         path_following: the ramp under way has turned from the value of its scalar to the
             conjugate (volume control), which grows also where the value falls.
+        lost: what is driven, where a mode was found unstable that is not at the last state; the
+            bifurcation lies before it. None: none was found.
         report: what happened so far.
     """
 
@@ -28,4 +30,5 @@ class Position:
     first: float | None = None
     ramp: int = 0
     path_following: bool = False
+    lost: float | None = None
     report: Report = dataclasses.field(default_factory=Report)

@@ -131,11 +131,13 @@ class Critical:
             gone where its conjugate is given instead; 'bifurcation': another branch starts here,
             and the mode is there however the load is driven.
         scalar: the load that is driven.
-        value: its value, interpolated at a limit; that of the first state beyond a bifurcation.
+        value: its value there, interpolated.
         conjugate: its conjugate there, such as the chamber volume.
         control: the control quantity there, if there is one.
         before: unstable modes before it.
         after: unstable modes beyond it.
+        side: of a bifurcation whose other branch was taken, what chose its side: 'by the loads',
+            or 'chosen' where both are alike; empty where the path was not left.
     """
 
     kind: str
@@ -145,6 +147,7 @@ class Critical:
     control: float | None
     before: int
     after: int
+    side: str = ""
 
 
 @dataclasses.dataclass

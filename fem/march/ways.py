@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy as np
 
-from fem.march.records import Ramp, State
+from fem.march.records import Ramp, State, measure
 
 NEAR = 0.02
 """An increment that would end so near before a value that is asked for hits it (rad, an angle)."""
@@ -77,3 +77,15 @@ class Requests:
             self._pending = [a for a in self._pending if a < goal - 1e-12]
             return False
         return True
+
+
+def asked_between(ramp: Ramp, old: State, new: State) -> tuple[str, float] | None:
+    """What a ramp asks for first between two states: what is given there, and its value."""
+    asked = [(ramp.drive, value) for value in (*ramp.stops, ramp.target)]
+    asked += [("control", value) for value in (*ramp.at, ramp.until) if value is not None]
+    shares = []
+    for kind, value in asked:
+        a, b = (state.measures[measure(kind, ramp.scalar)] for state in (old, new))
+        if min(a, b) < value < max(a, b):
+            shares.append(((value - a) / (b - a), kind, value))
+    return min(shares)[1:] if shares else None
