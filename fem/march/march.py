@@ -24,7 +24,7 @@ from fem.march.limit_points import (
 )
 from fem.march.position import Position
 from fem.march.predictor import Predictor, distinct
-from fem.march.records import MODES, Causes, Ramp, Report, Rules, State, measure
+from fem.march.records import Causes, Ramp, Report, Rules, State, measure
 from fem.march.selfcontact import Rod, first_contact
 from fem.march.ways import Requests, Way, asked_between
 from fem.scene import Scene
@@ -183,7 +183,7 @@ class March:
         requests = Requests(ramp)
         # a load that hardly bends begins with tiny increments of the angle
         first = position.first = position.first or position.increment
-        failures = 0
+        failures = missed = 0
         slow: Outcome | None = None
         while True:
             state = self.states[-1]
@@ -212,7 +212,8 @@ class March:
             ):
                 kind, aim = "control", goal
             new, outcome, kind = self._attempt(ramp, span, kind, aim)
-            self._predictor.heed(failed=new is None)
+            missed = missed + 1 if new is None else 0
+            self._predictor.heed(missed, position.path_following or bool(self.report.critical))
             if new is None:
                 failures += 1
                 self.report.cutbacks += 1
@@ -239,15 +240,13 @@ class March:
             if position.lost is not None or self._done(ramp, span, new):
                 # near a bifurcation, and where a ramp ends, no old factor may tell
                 self.equilibrium.assess_stability(new, state, ramp.scalar, exactly=True)
-            if excess(new, ramp.scalar) > max(0, excess(state, ramp.scalar)):
+            if self._unstable(new, ramp.scalar):
                 if not self._lost(ramp, span, way, new):
                     return False
                 continue
-            if (
-                position.lost is not None
-                and way.sign * (new.measures[way.key] - position.lost) >= 0
-            ):
-                position.lost = None
+            if position.lost is not None:
+                left = way.sign * (position.lost - new.measures[way.key])
+                position.lost = position.lost if left > LEAST_GAP * way.span else None
             if not (position.path_following and np.isfinite(way.end)):
                 failures = 0
             self._keep([*self.states[1 - self.rules.memory :], new], state, outcome)
@@ -288,7 +287,7 @@ class March:
             outcome, new = dataclasses.replace(outcome, reason=JUMPED), None
         if new is not None and kind == "value" and new.measures[measure("rate", scalar)] < 0:
             outcome, new = dataclasses.replace(outcome, reason=BEYOND), None
-        if new is None:
+        if new is None or self._unstable(new, scalar):
             return new, outcome, kind
         states, key = [*self.states[-2:], new], measure("conjugate", scalar)
         goal = None
@@ -426,6 +425,10 @@ class March:
         """Tell the hooks of the last state."""
         for hook in self._called:
             hook.after_step(self, self.states[-1], outcome)
+
+    def _unstable(self, new: State, scalar: str) -> bool:
+        """Whether a mode that is stable at the last state is not at a new one."""
+        return excess(new, scalar) > max(0, excess(self.states[-1], scalar))
 
     def _near(self, key: str, a: float, b: float) -> bool:
         """Whether two values of a measure are apart by no more than 1 % of the way from rest."""

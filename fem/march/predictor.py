@@ -26,7 +26,8 @@ class Predictor:
 
     def __init__(self, scene: Scene, frames: Frames | None, guide: Guide | None = None) -> None:
         self._scene, self._frames, self._guide = scene, frames, guide
-        self._turning, self._astray = True, False
+        self._turning, self._astray, self._plain = True, False, False
+        self._unguided = False
 
     def describe(self) -> Shape | None:
         """The scene's present displacement as a rod; None without frames."""
@@ -36,9 +37,19 @@ class Predictor:
         """Extrapolate displacements in the frames that turn with the body, or as they are."""
         self._turning = turning
 
-    def heed(self, failed: bool) -> None:
-        """After a failed increment do without the guide, straight on from the last two states."""
-        self._astray = failed
+    def heed(self, failures: int, critical: bool) -> None:
+        """Learn from how the last increment ended.
+
+        After a failed one do without the guide, straight on from the last two states. Beyond a
+        critical point a guide is on another branch, or beyond one of its own; and of a section that
+        folds the frames may turn by leaps: after a failed one do without them too.
+
+        Args:
+            failures: increments that failed since the last one that did not.
+            critical: stability was lost, or the path is followed round a limit point.
+        """
+        self._unguided = self._unguided or critical
+        self._astray, self._plain = failures > 0, failures > (0 if self._unguided else 1)
 
     def start(self, states: Sequence[State], key: str, target: float) -> Floats:
         """Set the scene to the state extrapolated to the value of a measure; its coefficients.
@@ -56,7 +67,7 @@ class Predictor:
             values = [state.scalars[name] for state in states]
             scene.set_scalar(name, float(weights @ values))
         scene.set(np.tensordot(weights, [state.w for state in states], axes=1))
-        if self._frames is not None and self._turning:
+        if self._frames is not None and self._turning and not self._plain:
             shapes = [state.shape for state in states if state.shape is not None]
             guides = self._guides(key, [*t, target])
             shape = self._frames.extrapolate(shapes, weights, guides)
@@ -70,6 +81,7 @@ class Predictor:
         if (
             self._guide is None
             or self._astray
+            or self._unguided
             or not all(self._guide.covers(key, value) for value in values)
         ):
             return None
