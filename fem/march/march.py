@@ -453,8 +453,8 @@ class March:
 
     def _end(self, reason: str) -> bool:
         """The load cannot be reached."""
-        beyond = self.position.path_following and bool(self.report.critical)
-        beyond = beyond and self.position.lost is None
+        lost = any(point.after > point.before for point in self.report.critical)
+        beyond = lost and self.position.path_following and self.position.lost is None
         self.report.status = "stopped" if beyond else "failed"
         self.report.reason = reason
         return False
