@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fem.march.equilibrium import Equilibrium
-from fem.march.predictor import lagrange
+from fem.march.predictor import extrapolated, lagrange
 from fem.march.records import MODES, Critical, State, measure
 from fem.ranks import total
 from fem.solver.modes import Mode, softest_mode
@@ -39,8 +39,8 @@ CUT = 0.3
 """Factor of an amplitude that fails."""
 LEAST = 1e-3
 """Amplitude, in parts of the first, below which there is no branch to be found."""
-TILTED = 1e-4
-"""Cosine between path and mode from which the loads themselves choose the side, not round-off."""
+TILTED = 1e-6
+"""Part of the load that works on a mode from which the loads choose its side, not round-off."""
 CLEAR = 0.3
 """A measure of the mode's direction is taken if it is so large beside the greatest of them."""
 
@@ -76,7 +76,7 @@ class Crossing:
 
     def between(self, a: Floats | float, b: Floats | float) -> Floats:
         """Interpolated at the crossing between values of the two states."""
-        return np.asarray((1 - self.share) * a + self.share * b)
+        return np.asarray(a + self.share * (b - a))
 
     def measure(self, name: str) -> float:
         """Interpolated measure of the two states."""
@@ -149,33 +149,39 @@ class Branches:
 
         It lies where the stiffness of the mode, by linear interpolation, is zero.
         """
-        after, _ = self._softest(unstable)
-        before, tangent = self._softest(stable, scalar)
+        (before, push), (after, pull) = (self._softest(s, scalar) for s in (stable, unstable))
         share, mode = 1.0, after
         if before.stiffness > 0 > after.stiffness:
             share = before.stiffness / (before.stiffness - after.stiffness)
             mode = before if before.stiffness < -after.stiffness else after
+        same = np.sign(self._dot(before.w, after.w))
+        push, pull = (push, same * pull) if mode is before else (same * push, pull)
         value = measure("value", scalar)
-        onward = unstable.measures[value] - stable.measures[value]
-        tilt = np.sign(onward) * self._cosine(mode.w, tangent)
+        onward = np.sign(unstable.measures[value] - stable.measures[value])
+        tilt = -onward * ((1 - share) * push + share * pull)
         chosen = bool(abs(tilt) < TILTED)
         side = self._direction(mode.w) if chosen else np.sign(tilt)
         scalars = {name: float(side * q) for name, q in mode.scalars.items()}
         turned = dataclasses.replace(mode, w=side * mode.w, scalars=scalars)
         return Crossing(stable, unstable, share, turned, chosen)
 
-    def _softest(self, state: State, scalar: str | None = None) -> tuple[Mode, Floats]:
-        """The softest mode of a state, and the path's tangent in the fields if a load is named."""
+    def _softest(self, state: State, scalar: str) -> tuple[Mode, float]:
+        """The softest mode of a state, and the part of a load's growth that works on it.
+
+        That part is the cosine φ · ∂R/∂λ / (|φ| |∂R/∂λ|), λ the load; it is zero where another
+        branch crosses the path, and small where an imperfection rounds the crossing.
+        """
         equilibrium = self._equilibrium
         scene, newton = equilibrium.scene, equilibrium.newton
-        tangent = np.zeros(0)
-        if scalar is not None:
-            tangent = equilibrium.perturbed(state, scalar).w - state.w
         equilibrium.restore(state)
         natural = equilibrium.natural_conditions()
         start = self._start()
         mode = softest_mode(newton, scene.natural, natural, equilibrium.displacements, start)
-        return mode, tangent
+        load = scene.load(scalar)
+        work = self._dot(mode.w, load)
+        for name, value in mode.scalars.items():
+            work -= value * scene.second_derivative(name, scalar)
+        return mode, work / max(scene.norm(load), 1e-300)
 
     def _start(self) -> Floats:
         """A displacement without any symmetry, the same on any number of ranks, (owned,)."""
@@ -186,13 +192,10 @@ class Branches:
         start[body.node_dofs[nodes]] = values[nodes]
         return start
 
-    def _cosine(self, a: Floats, b: Floats) -> float:
-        """Between two displacements."""
-        mass, comm = self._equilibrium.displacements, self._equilibrium.scene.domain.comm
-        aa, bb, ab = (
-            float(total(comm, float(p[mass] @ q[mass]))) for p, q in ((a, a), (b, b), (a, b))
-        )
-        return ab / max(np.sqrt(aa * bb), 1e-300)
+    def _dot(self, a: Floats, b: Floats) -> float:
+        """Inner product of displacements over all ranks."""
+        mass = self._equilibrium.displacements
+        return float(total(self._equilibrium.scene.domain.comm, float(a[mass] @ b[mass])))
 
     def _direction(self, w: Floats) -> float:
         """1 or −1: a side of a mode by its moments, which round-off does not change.
@@ -294,7 +297,7 @@ class Branches:
             ahead = lagrange(np.array([point.amplitude for point in known]), reach)
             moved = np.tensordot(ahead, [point.w for point in known], axes=1)
             turned = {
-                name: float(ahead @ [point.scalars[name] for point in known])
+                name: extrapolated(ahead, np.array([point.scalars[name] for point in known]))
                 for name in last.scalars
             }
         for name, value in turned.items():

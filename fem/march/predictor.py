@@ -64,8 +64,8 @@ class Predictor:
         weights = lagrange(t, target)
         scene, body = self._scene, self._scene.body
         for name in body.scalars:
-            values = [state.scalars[name] for state in states]
-            scene.set_scalar(name, float(weights @ values))
+            values = np.array([state.scalars[name] for state in states])
+            scene.set_scalar(name, extrapolated(weights, values))
         scene.set(np.tensordot(weights, [state.w for state in states], axes=1))
         if self._frames is not None and self._turning and not self._plain:
             shapes = [state.shape for state in states if state.shape is not None]
@@ -93,6 +93,14 @@ def lagrange(t: Floats, target: float) -> Floats:
     return np.array(
         [np.prod([(target - b) / (a - b) for b in np.delete(t, i)]) for i, a in enumerate(t)]
     )
+
+
+def extrapolated(weights: Floats, values: Floats) -> float:
+    """Weighted sum, the weights adding to 1: of equal values that value, to the last digit.
+
+    A scalar that is kept, such as an earlier load, would else drift from step to step.
+    """
+    return float(values[-1] + weights @ (values - values[-1]))
 
 
 def distinct(states: Sequence[State], key: str) -> list[State]:
