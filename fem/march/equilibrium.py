@@ -35,6 +35,7 @@ class Equilibrium:
         self.scene, self.newton = scene, newton
         self._predictor, self._control = predictor, control
         comm, volumetric = scene.domain.comm, int(np.count_nonzero(scene.volumetric))
+        self._start = scene.w.copy()
         self._volumetric = int(total(comm, volumetric))
         body = scene.body
         dofs = body.node_dofs[body.owned_nodes].ravel()
@@ -100,7 +101,7 @@ class Equilibrium:
             target: what that is to be.
             along: states from which the start is extrapolated, a measure and its value there.
         """
-        start = self._predictor.start(*along)
+        start = self._start = self._predictor.start(*along)
         unknown: list[str] = list(self.scene.natural)
         conditions: list[SideCondition] = list(self.natural_conditions())
         if kind == "value":
@@ -112,6 +113,17 @@ class Equilibrium:
             assert self._control is not None
             conditions.append(GivenFunctional(self._control, target))
         return self.newton.solve(start, [*unknown, scalar], conditions)
+
+    def strayed(self, state: State, before: State) -> float:
+        """How far Newton's method went from the start of the last solve, in steps to that start.
+
+        Args:
+            state: what was found.
+            before: the state before it.
+        """
+        mass, norm = self.displacements, self.scene.norm
+        step = norm((self._start - before.w)[mass])
+        return norm((state.w - self._start)[mass]) / max(step, 1e-300)
 
     def assess_stability(
         self, state: State, before: State, scalar: str, exactly: bool = False

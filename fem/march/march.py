@@ -31,6 +31,8 @@ from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome
 from fem.solver.side_conditions import Functional
 
+STRAY = 0.35
+"""Part of a step round a limit point or along another branch that Newton may go beside it."""
 JUMPED = "Newton went to another branch"
 BEYOND = "the load falls from here on"
 CREEPS = "increments shrink to nothing, each of them converging slowly"
@@ -285,6 +287,9 @@ class March:
         new = self._found(scalar, outcome)
         if new is not None and kind == "value" and self._jumped(scalar, aim, new):
             outcome, new = dataclasses.replace(outcome, reason=JUMPED), None
+        if new is not None and kind == "conjugate" and self.position.path_following:
+            if self.equilibrium.strayed(new, self.states[-1]) > STRAY:
+                outcome, new = dataclasses.replace(outcome, reason=JUMPED), None
         if new is not None and kind == "value" and new.measures[measure("rate", scalar)] < 0:
             outcome, new = dataclasses.replace(outcome, reason=BEYOND), None
         if new is None or self._unstable(new, scalar):
