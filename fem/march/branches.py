@@ -134,11 +134,10 @@ class Branches:
 
     Args:
         equilibrium: the scene and what finds its equilibria.
-        count: is told of every Newton solve.
     """
 
-    def __init__(self, equilibrium: Equilibrium, count: Callable[[Outcome], None]) -> None:
-        self._equilibrium, self._count = equilibrium, count
+    def __init__(self, equilibrium: Equilibrium) -> None:
+        self._equilibrium = equilibrium
         data = equilibrium.scene.domain.data
         self._extent = float(np.ptp(data.nodes, axis=0).min())
 
@@ -222,7 +221,11 @@ class Branches:
     # --- onto the other branch -------------------------------------------------------------------
 
     def leave(
-        self, scalar: str, crossing: Crossing, enough: Callable[[State], bool]
+        self,
+        scalar: str,
+        crossing: Crossing,
+        count: Callable[[Outcome], None],
+        enough: Callable[[State], bool],
     ) -> tuple[list[tuple[State, Outcome]], Outcome]:
         """States on the branch along the mode that are stable at given conjugate.
 
@@ -233,6 +236,7 @@ class Branches:
         Args:
             scalar: the load that is found.
             crossing: where the branches cross.
+            count: is told of every solve.
             enough: whether to go no further than a state.
 
         Returns:
@@ -241,9 +245,11 @@ class Branches:
         """
         points = [self._start_point(crossing)]
         unit = self._unit(crossing.mode)
-        reach, found = 1.0, []
+        reach = 1.0
+        found: list[tuple[State, Outcome]] = []
         for _ in range(TRIES):
             outcome, new = self._beside(scalar, crossing, points, reach, unit)
+            count(outcome)
             if new is None:
                 reach = points[-1].amplitude + CUT * (reach - points[-1].amplitude)
                 if found or reach < LEAST:
@@ -311,7 +317,6 @@ class Branches:
             [*scene.natural, scalar],
             [*equilibrium.natural_conditions(), GivenFunctional(amplitude, reach)],
         )
-        self._count(outcome)
         if not outcome.converged:
             return outcome, None
         new = equilibrium.capture()

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from fem.march.attempts import BEYOND, Attempts, unstable
 from fem.march.branches import SHARP, Branches, excess
 from fem.march.equilibrium import Equilibrium
 from fem.march.frames import Frames
@@ -15,15 +16,12 @@ from fem.march.hooks import Hook
 from fem.march.increments import first_size, guess, turn_limit
 from fem.march.limit_points import (
     critical,
-    crossing,
     last_limit,
     limit_ahead,
-    limit_between,
-    passed,
     softens,
 )
 from fem.march.position import Position
-from fem.march.predictor import Predictor, distinct
+from fem.march.predictor import Predictor
 from fem.march.records import Causes, Ramp, Report, Rules, State, measure
 from fem.march.selfcontact import Rod, first_contact
 from fem.march.ways import Requests, Way, asked_between
@@ -31,10 +29,6 @@ from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome
 from fem.solver.side_conditions import Functional
 
-STRAY = 0.35
-"""Part of a step round a limit point or along another branch that Newton may go beside it."""
-JUMPED = "Newton went to another branch"
-BEYOND = "the load falls from here on"
 CREEPS = "increments shrink to nothing, each of them converging slowly"
 LOST = "along the mode that is lost no state is found on which the body rests"
 LEAST_GAP = 1e-6
@@ -81,7 +75,8 @@ class March:
         self._predictor = Predictor(scene, frames, guide)
         self.equilibrium = Equilibrium(scene, newton, self._predictor, control)
         self._guided = guide is not None
-        self._branches = Branches(self.equilibrium, self._count)
+        self._branches = Branches(self.equilibrium)
+        self._attempts = Attempts(self.equilibrium, rules)
         self._rod, self._causes = rod, causes
         scene.set(scene.w.copy())
         self.rest = self.equilibrium.capture()
@@ -213,7 +208,7 @@ class March:
                 goal, guess(self.states, way.key, target, "control")
             ):
                 kind, aim = "control", goal
-            new, outcome, kind = self._attempt(ramp, span, kind, aim)
+            new, outcome, kind = self._attempts.increment(position, ramp, span, kind, aim)
             missed = missed + 1 if new is None else 0
             self._predictor.heed(missed, position.path_following or bool(self.report.critical))
             if new is None:
@@ -242,7 +237,7 @@ class March:
             if position.lost is not None or self._done(ramp, span, new):
                 # near a bifurcation, and where a ramp ends, no old factor may tell
                 self.equilibrium.assess_stability(new, state, ramp.scalar, exactly=True)
-            if self._unstable(new, ramp.scalar):
+            if unstable(new, state, ramp.scalar):
                 if not self._lost(ramp, span, way, new):
                     return False
                 continue
@@ -273,73 +268,6 @@ class March:
             return True
         return ramp.until is not None and now["control"] >= ramp.until - 1e-9
 
-    def _attempt(
-        self, ramp: Ramp, span: float, kind: str, aim: float
-    ) -> tuple[State | None, Outcome, str]:
-        """Try an increment; land where it passes a value that was asked for, or a limit point.
-
-        Returns:
-            The state, if one was found that is to be kept; how Newton ended; what was given.
-        """
-        scalar, key = ramp.scalar, measure(kind, ramp.scalar)
-        start = (distinct(self.states, key), key, aim)
-        outcome = self._find(scalar, kind, aim, start)
-        new = self._found(scalar, outcome)
-        if new is not None and kind == "value" and self._jumped(scalar, aim, new):
-            outcome, new = dataclasses.replace(outcome, reason=JUMPED), None
-        if new is not None and kind == "conjugate" and self.position.path_following:
-            if self.equilibrium.strayed(new, self.states[-1]) > STRAY:
-                outcome, new = dataclasses.replace(outcome, reason=JUMPED), None
-        if new is not None and kind == "value" and new.measures[measure("rate", scalar)] < 0:
-            outcome, new = dataclasses.replace(outcome, reason=BEYOND), None
-        if new is None or self._unstable(new, scalar):
-            return new, outcome, kind
-        states, key = [*self.states[-2:], new], measure("conjugate", scalar)
-        goal = None
-        if self.position.path_following:
-            goal = passed(ramp, span, self.states[-1], new, last_limit(self.report, scalar))
-        if goal is not None:
-            start = (distinct(states, key), key, crossing(states, scalar, goal))
-            outcome = self._find(scalar, "value", goal, start)
-            return self._found(scalar, outcome), outcome, "landing"
-        limit = limit_between(states, scalar) if kind == "conjugate" else None
-        if limit is not None:
-            outcome = self._find(scalar, kind, limit, (distinct(states, key), key, limit))
-            return self._found(scalar, outcome), outcome, kind
-        return new, outcome, kind
-
-    def _find(
-        self, scalar: str, kind: str, aim: float, start: tuple[list[State], str, float]
-    ) -> Outcome:
-        outcome = self.equilibrium.find(scalar, kind, aim, start)
-        self._count(outcome)
-        return outcome
-
-    def _count(self, outcome: Outcome) -> None:
-        self.report.iterations += outcome.iterations
-        self.report.factorisations += outcome.factorisations
-
-    def _found(self, scalar: str, outcome: Outcome) -> State | None:
-        """The state that was found, its stability assessed."""
-        if not outcome.converged:
-            return None
-        new = self.equilibrium.capture()
-        # a factor of an earlier step knows nothing of this one
-        stale = outcome.factorisations == 0
-        self.equilibrium.assess_stability(new, self.states[-1], scalar, exactly=stale)
-        return new
-
-    def _jumped(self, scalar: str, aim: float, new: State) -> bool:
-        """Whether the conjugate is far from where the last states point to."""
-        name = measure("conjugate", scalar)
-        now = self.states[-1].measures[name]
-        key = measure("value", scalar)
-        expected = guess(self.states, key, aim, name)
-        # a curve through states around a kink may be flat here: the chord tells the size of a step
-        (p, v), (q, w) = ((state.measures[key], state.measures[name]) for state in self.states[-2:])
-        step = max(abs(expected - now), abs((w - v) / (q - p) * (aim - q)) if q != p else 0.0)
-        return bool(abs(new.measures[name] - expected) > self.rules.jump * step + 1e-6 * abs(now))
-
     # --- bifurcations --------------------------------------------------------------------------
 
     def _lost(self, ramp: Ramp, span: float, way: Way, new: State) -> bool:
@@ -366,7 +294,10 @@ class March:
             return True
         crossing = self._branches.crossing(scalar, state, new)
         found, outcome = self._branches.leave(
-            scalar, crossing, lambda new: asked_between(ramp, state, new) is not None
+            scalar,
+            crossing,
+            self.report.count,
+            lambda new: asked_between(ramp, state, new) is not None,
         )
         self.report.critical.append(crossing.critical(scalar, left=bool(found)))
         if not found:
@@ -398,8 +329,10 @@ class March:
         goal = asked_between(ramp, old, new)
         if goal is not None:
             key = measure(goal[0], scalar)
-            again = self._find(scalar, *goal, ([*(entered[-2:] or [seed]), new], key, goal[1]))
-            landed = self._found(scalar, again)
+            again = self._attempts.find(
+                position, scalar, *goal, ([*(entered[-2:] or [seed]), new], key, goal[1])
+            )
+            landed = self._attempts.found(position, scalar, again)
             if landed is not None and excess(landed, scalar) <= 0:
                 new, outcome = landed, again
                 seed = self.equilibrium.perturbed(new, scalar)
@@ -430,10 +363,6 @@ class March:
         """Tell the hooks of the last state."""
         for hook in self._called:
             hook.after_step(self, self.states[-1], outcome)
-
-    def _unstable(self, new: State, scalar: str) -> bool:
-        """Whether a mode that is stable at the last state is not at a new one."""
-        return excess(new, scalar) > max(0, excess(self.states[-1], scalar))
 
     def _near(self, key: str, a: float, b: float) -> bool:
         """Whether two values of a measure are apart by no more than 1 % of the way from rest."""

@@ -180,6 +180,11 @@ class Report:
         # a checkpoint gives back mappings
         self.critical = [c if isinstance(c, Critical) else Critical(**c) for c in self.critical]
 
+    def count(self, outcome: Outcome) -> None:
+        """Add what a solve has cost."""
+        self.iterations += outcome.iterations
+        self.factorisations += outcome.factorisations
+
 
 class Causes(Protocol):
     """Tells what fails physically; it knows the effects, the march does not."""

@@ -147,7 +147,7 @@ def test_a_march_goes_on_from_a_branch_after_a_restart() -> None:
 
 
 def test_a_branch_that_is_not_found_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
-    def nothing(self: Branches, scalar: str, crossing: object, enough: object) -> object:
+    def nothing(_self: Branches, *_: object) -> object:
         return [], Outcome(False, 0, 0, "", [], 1.0)
 
     monkeypatch.setattr(Branches, "leave", nothing)
