@@ -52,6 +52,8 @@ class Scene:
         force_scale: scale of the forces in the last residual, N.
         force_noise: norm of the forces that round-off in stiff discrete potentials makes, N.
         free: local dofs (owned and ghosts) that no constraint fixes, (local,).
+        free_opposite: the same for modes of the symmetry opposite to that of half a body; None of
+            a whole one, and where they cannot be told.
         discrete: by key, the potentials with own code.
 
     Raises:
@@ -96,6 +98,7 @@ class Scene:
         self.natural = tuple(name for name in self.body.natural if name not in fixed)
         self._compile(potentials)
         self._constrain(constraints)
+        self._oppose(ordered)
         self.force_noise = self._noise()
 
     def __del__(self) -> None:
@@ -165,6 +168,27 @@ class Scene:
             p = body.dofs(body.pressure_field)
             self.volumetric[p[p < body.owned]] = True
         """Owned dofs of the pressure field."""
+
+    def _oppose(self, effects: list[Effect]) -> None:
+        """Find what is free in modes of the symmetry opposite to that of half a body."""
+        body = self.body
+        self.free_opposite: npt.NDArray[np.bool_] | None = None
+        # a continuous pressure would have to vanish on the plane; that of tetrahedra is continuous
+        bricks = self.domain.data.cell_type != "tetrahedron"
+        if not bricks or all(effect.opposite() is None for effect in effects):
+            return
+        free = np.ones(body.local, dtype=bool)
+        for effect in effects:
+            other = effect.opposite()
+            for constraint in effect.constraints() if other is None else other:
+                if constraint.component < body.components:
+                    nodes = self.domain.surface_nodes(constraint.surface)
+                    dofs = body.node_dofs[nodes, constraint.component]
+                    free[dofs[dofs >= 0]] = False
+        for pin in (*body.pins, *body.opposite_pins):
+            free[body.node_dofs[pin]] = False
+        self.free_opposite = free
+        self._dirichlet_opposite = compat.dirichlet(body.space, np.flatnonzero(~free))
 
     def fix(self, dofs: npt.NDArray[np.int32], values: Floats) -> None:
         """Fix further local dofs at given values, in mm (prescribed boundary displacement)."""
@@ -340,15 +364,23 @@ class Scene:
         vector = self._loads[name]
         return vector.copy() if constrained else np.where(self.free[: len(vector)], vector, 0.0)
 
-    def assemble_tangent(self) -> PETSc.Mat:
-        """K = ∂R/∂w at the present state; unit diagonal on constrained dofs."""
+    def assemble_tangent(self, opposite: bool = False) -> PETSc.Mat:
+        """K = ∂R/∂w at the present state; unit diagonal on constrained dofs.
+
+        Args:
+            opposite: for displacements of the symmetry opposite to that of half a body.
+        """
+        free, dirichlet = self.free, self._dirichlet
+        if opposite:
+            assert self.free_opposite is not None, "no symmetry halves the body"
+            free, dirichlet = self.free_opposite, self._dirichlet_opposite
         self._second.clear()  # fibers may predict other forces now
         self._loads.clear()
         self.matrix.zeroEntries()
-        compat.assemble_matrix(self.matrix, self._forms["tangent"], self._dirichlet)
+        compat.assemble_matrix(self.matrix, self._forms["tangent"], dirichlet)
         self.matrix.assemble(PETSc.Mat.AssemblyType.FLUSH)
         for discrete in self.discrete.values():
-            discrete.add_tangent(self.matrix, self.free)
+            discrete.add_tangent(self.matrix, free)
         for dof in self.body.ties[0]:
             self.matrix.setValue(dof, dof, 1.0, PETSc.InsertMode.ADD_VALUES)
         self.matrix.assemble()

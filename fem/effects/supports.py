@@ -46,6 +46,12 @@ class Symmetry(Effect):
         """No displacement across the plane."""
         return (Constraint("symmetry", self.surface, self.component),)
 
+    def opposite(self) -> tuple[Constraint, ...] | None:
+        """On the plane x = 0, which halves the body, displacements in it are fixed instead."""
+        if self.component != 0:
+            return None
+        return tuple(Constraint("symmetry", self.surface, i) for i in (1, 2))
+
 
 class TwofoldAxis(Effect):
     """Half a turn about the y axis maps the body onto itself: u = w = 0 on the plane x = 0.
@@ -63,6 +69,10 @@ class TwofoldAxis(Effect):
     def constraints(self) -> tuple[Constraint, ...]:
         """No displacement across the plane, and none along z in it."""
         return tuple(Constraint("symmetry", self.surface, i) for i in (0, 2))
+
+    def opposite(self) -> tuple[Constraint, ...] | None:
+        """The displacement along y, about which half a turn is made, is fixed instead."""
+        return (Constraint("symmetry", self.surface, 1),)
 
 
 class StraightAxis(Effect):

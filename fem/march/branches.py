@@ -174,22 +174,13 @@ class Branches:
         scene, newton = equilibrium.scene, equilibrium.newton
         equilibrium.restore(state)
         natural = equilibrium.natural_conditions()
-        start = self._start()
+        start = equilibrium.anyhow()
         mode = softest_mode(newton, scene.natural, natural, equilibrium.displacements, start)
         load = scene.load(scalar)
         work = self._dot(mode.w, load)
         for name, value in mode.scalars.items():
             work -= value * scene.second_derivative(name, scalar)
         return mode, work / max(scene.norm(load), 1e-300)
-
-    def _start(self) -> Floats:
-        """A displacement without any symmetry, the same on any number of ranks, (owned,)."""
-        body = self._equilibrium.scene.body
-        nodes = body.owned_nodes
-        values = np.random.default_rng(1).standard_normal(body.node_dofs.shape)
-        start = np.zeros(body.owned)
-        start[body.node_dofs[nodes]] = values[nodes]
-        return start
 
     def _dot(self, a: Floats, b: Floats) -> float:
         """Inner product of displacements over all ranks."""

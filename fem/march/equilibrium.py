@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from fem.march.predictor import Predictor
 from fem.march.records import MODES, State, measure
 from fem.ranks import total
 from fem.scene import Scene
 from fem.solver.bordered import SideCondition
+from fem.solver.modes import opposite_modes, softest_opposite
 from fem.solver.newton import Newton, Outcome
 from fem.solver.side_conditions import Functional, GivenConjugate, GivenFunctional, Stationary
 
 TINY = 1e-5
 """Strain of a perturbed state that shows a slope: its square is lost, round-off is not seen."""
+
+
+NEUTRAL = 1e-3
+"""Stiffness of a mode over that at rest, or the negative of it, that is none on any mesh."""
+Floats = npt.NDArray[np.float64]
 
 
 class Equilibrium:
@@ -36,6 +43,7 @@ class Equilibrium:
         self._predictor, self._control = predictor, control
         comm, volumetric = scene.domain.comm, int(np.count_nonzero(scene.volumetric))
         self._start = scene.w.copy()
+        self._opposite_at_rest: float | None = None
         self._volumetric = int(total(comm, volumetric))
         body = scene.body
         dofs = body.node_dofs[body.owned_nodes].ravel()
@@ -155,6 +163,37 @@ class Equilibrium:
             ]
             state.measures[rate] = change[0] / change[1]
         state.measures[MODES] = modes
+
+    def opposite_modes(self, state: State, rest: State) -> int:
+        """Unstable modes that half a body does not know; of a whole one none. Collective.
+
+        Those of the opposite symmetry, with the loads at given values. A round body may turn its
+        buckles about its axis at no cost: what costs less than the mesh knows is no instability.
+        """
+        if self.scene.free_opposite is None:
+            return 0
+        self.restore(state)
+        modes = opposite_modes(self.newton) - self._volumetric
+        if modes > 0 and self._opposite_at_rest is None:
+            self.restore(rest)
+            self._opposite_at_rest = softest_opposite(
+                self.newton, self.displacements, self.anyhow()
+            )
+            self.restore(state)
+        if modes > 0:
+            softest = softest_opposite(self.newton, self.displacements, self.anyhow())
+            if abs(softest) < NEUTRAL * abs(self._opposite_at_rest or 0.0):
+                modes -= 1
+        return modes
+
+    def anyhow(self) -> Floats:
+        """A displacement without any symmetry, the same on any number of ranks, (owned,)."""
+        body = self.scene.body
+        nodes = body.owned_nodes
+        values = np.random.default_rng(1).standard_normal(body.node_dofs.shape)
+        start = np.zeros(body.owned)
+        start[body.node_dofs[nodes]] = values[nodes]
+        return start
 
     def _modes(self) -> int:
         return self.newton.negative_pivots(self.scene.natural) - self._volumetric

@@ -31,6 +31,7 @@ from fem.solver.side_conditions import Functional
 
 CREEPS = "increments shrink to nothing, each of them converging slowly"
 LOST = "along the mode that is lost no state is found on which the body rests"
+ACROSS = "the body would leave its symmetry, and half of it does not know how"
 LEAST_GAP = 1e-6
 """Part of a ramp between a stable and an unstable state that are not brought nearer."""
 REACHED = 1e-12
@@ -241,6 +242,9 @@ class March:
                 if not self._lost(ramp, span, way, new):
                     return False
                 continue
+            if self._done(ramp, span, new) and self.equilibrium.opposite_modes(new, self.rest):
+                self.equilibrium.restore(state)
+                return self._end(ACROSS, failed=True)
             if position.lost is not None:
                 left = way.sign * (position.lost - new.measures[way.key])
                 position.lost = position.lost if left > LEAST_GAP * way.span else None
@@ -385,10 +389,10 @@ class March:
         critical = self.report.critical
         return self._end(self._causes.explain(self.states, self.rest, critical, outcome, inverted))
 
-    def _end(self, reason: str) -> bool:
+    def _end(self, reason: str, failed: bool = False) -> bool:
         """The load cannot be reached."""
         lost = any(point.after > point.before for point in self.report.critical)
         beyond = lost and self.position.path_following and self.position.lost is None
-        self.report.status = "stopped" if beyond else "failed"
+        self.report.status = "stopped" if beyond and not failed else "failed"
         self.report.reason = reason
         return False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -61,19 +61,56 @@ def softest_mode(
     newton.problem.predict(None)
     newton.problem.assemble_tangent()
     system = newton.factorise(natural, conditions)
-    mass = displacements & newton.problem.free[: newton.owned]
     none = np.zeros(len(natural))
+
+    def solve(w: Floats) -> tuple[Floats, Floats]:
+        return system.eliminate(newton.solve_linear(w), none)
+
+    mass = displacements & newton.problem.free[: newton.owned]
+    stiffness, w, scalars = _iterate(newton, mass, start, solve)
+    return Mode(stiffness, w, dict(zip(natural, scalars.tolist(), strict=True)))
+
+
+def opposite_modes(newton: Newton) -> int:
+    """Negative eigenvalues of the tangent for displacements of the opposite symmetry; collective.
+
+    Half a body does not know them. The factor of its own tangent is lost.
+    """
+    newton.problem.predict(None)
+    newton.problem.assemble_tangent(opposite=True)
+    newton.factor.renew()
+    return newton.factor.negative_pivots
+
+
+def softest_opposite(newton: Newton, displacements: npt.NDArray[np.bool_], start: Floats) -> float:
+    """Stiffness of the softest mode of the opposite symmetry, as `softest_mode` has it, N/mm."""
+    opposite_modes(newton)
+    free = newton.problem.free_opposite
+    assert free is not None, "no symmetry halves the body"
+    none = np.zeros(0)
+    mass = displacements & free[: newton.owned]
+    return _iterate(newton, mass, start, lambda w: (newton.solve_linear(w), none))[0]
+
+
+def _iterate(
+    newton: Newton,
+    mass: npt.NDArray[np.bool_],
+    start: Floats,
+    solve: Callable[[Floats], tuple[Floats, Floats]],
+) -> tuple[float, Floats, Floats]:
+    """Inverse iteration: stiffness, fields and scalars of the softest mode."""
 
     def dot(a: Floats, b: Floats) -> float:
         return float(total(newton.comm, float(a[mass] @ b[mass])))
 
-    w = start / np.sqrt(dot(start, start))
-    stiffness, scalars = np.inf, none
+    w = np.where(mass, start, 0.0)
+    w, scalars = w / np.sqrt(dot(w, w)), np.zeros(0)
+    stiffness = np.inf
     for _ in range(ITERATIONS):
-        a, scalars = system.eliminate(newton.solve_linear(np.where(mass, w, 0.0)), none)
+        a, scalars = solve(np.where(mass, w, 0.0))
         before, stiffness = stiffness, 1 / dot(w, a)
         size = np.sqrt(dot(a, a))
         w, scalars = a / size, scalars / size
         if abs(stiffness - before) < SETTLED * abs(stiffness):
             break
-    return Mode(stiffness, w, dict(zip(natural, scalars.tolist(), strict=True)))
+    return stiffness, w, scalars

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from fem.march.hooks import Hook, Marching
+from fem.march.march import ACROSS
 from fem.march.records import Ramp, State
 from fem.results.checkpoint import Archive
 from fem.solver.newton import Outcome
@@ -146,8 +147,12 @@ def ended(case: Case, assembly: Assembly, rows: Sequence[dict[str, Any]]) -> tup
         return "stopped", messages.stopped(report, target, march.rules.beyond)
     if report.status == "failed":
         row = rows[-1]
+        instead = ""
+        if report.reason == ACROSS:
+            whole = "" if assembly.scene.body.components == 3 else "model: body and "
+            instead = f": expected {whole}mesh.symmetry: full;"
         return "failed", (
-            f"{report.reason} after {report.cutbacks} cut-backs; last converged state: "
+            f"{report.reason}{instead} after {report.cutbacks} cut-backs; last converged state: "
             f"{row[col.PRESSURE]:.4g} kPa, {row[col.ANGLE]:.4g}°"
         )
     output = case.output
