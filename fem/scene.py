@@ -13,6 +13,7 @@ from petsc4py import PETSc
 
 from fem import compat
 from fem.effects.effect import Constraint, Discrete, Effect
+from fem.effects.supports import opposite_free
 from fem.kernels import compiling
 from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
@@ -98,7 +99,7 @@ class Scene:
         self.natural = tuple(name for name in self.body.natural if name not in fixed)
         self._compile(potentials)
         self._constrain(constraints)
-        self._oppose(ordered)
+        self.free_opposite = opposite_free(ordered, self.body)
         self.force_noise = self._noise()
 
     def __del__(self) -> None:
@@ -168,27 +169,6 @@ class Scene:
             p = body.dofs(body.pressure_field)
             self.volumetric[p[p < body.owned]] = True
         """Owned dofs of the pressure field."""
-
-    def _oppose(self, effects: list[Effect]) -> None:
-        """Find what is free in modes of the symmetry opposite to that of half a body."""
-        body = self.body
-        self.free_opposite: npt.NDArray[np.bool_] | None = None
-        # a continuous pressure would have to vanish on the plane; that of tetrahedra is continuous
-        bricks = self.domain.data.cell_type != "tetrahedron"
-        if not bricks or all(effect.opposite() is None for effect in effects):
-            return
-        free = np.ones(body.local, dtype=bool)
-        for effect in effects:
-            other = effect.opposite()
-            for constraint in effect.constraints() if other is None else other:
-                if constraint.component < body.components:
-                    nodes = self.domain.surface_nodes(constraint.surface)
-                    dofs = body.node_dofs[nodes, constraint.component]
-                    free[dofs[dofs >= 0]] = False
-        for pin in (*body.pins, *body.opposite_pins):
-            free[body.node_dofs[pin]] = False
-        self.free_opposite = free
-        self._dirichlet_opposite = compat.dirichlet(body.space, np.flatnonzero(~free))
 
     def fix(self, dofs: npt.NDArray[np.int32], values: Floats) -> None:
         """Fix further local dofs at given values, in mm (prescribed boundary displacement)."""
@@ -373,7 +353,8 @@ class Scene:
         free, dirichlet = self.free, self._dirichlet
         if opposite:
             assert self.free_opposite is not None, "no symmetry halves the body"
-            free, dirichlet = self.free_opposite, self._dirichlet_opposite
+            free = self.free_opposite
+            dirichlet = compat.dirichlet(self.body.space, np.flatnonzero(~free))
         self._second.clear()  # fibers may predict other forces now
         self._loads.clear()
         self.matrix.zeroEntries()

@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+import numpy as np
+import numpy.typing as npt
+
 from fem.effects.effect import Constraint, Effect
+from fem.kinematics.kinematics import Kinematics
 
 
 class Clamp(Effect):
@@ -108,3 +114,31 @@ class BlockedTip(Effect):
     def constraints(self) -> tuple[Constraint, ...]:
         """v = 0 on both strips."""
         return (Constraint("roof", self.roof, 1), Constraint("post", self.post, 1))
+
+
+def opposite_free(effects: Iterable[Effect], body: Kinematics) -> npt.NDArray[np.bool_] | None:
+    """Local dofs that modes of the symmetry opposite to that of half a body may move, (local,).
+
+    None of a whole body; and with tetrahedra, whose pressure is continuous and would have to vanish
+    on the plane.
+
+    Args:
+        effects: of the scene.
+        body: its kinematics.
+    """
+    effects = list(effects)
+    domain = body.domain
+    tetrahedra = domain.data.cell_type == "tetrahedron"
+    if tetrahedra or all(effect.opposite() is None for effect in effects):
+        return None
+    free = np.ones(body.local, dtype=bool)
+    for effect in effects:
+        other = effect.opposite()
+        for constraint in effect.constraints() if other is None else other:
+            if constraint.component < body.components:
+                nodes = domain.surface_nodes(constraint.surface)
+                dofs = body.node_dofs[nodes, constraint.component]
+                free[dofs[dofs >= 0]] = False
+    for pin in (*body.pins, *body.opposite_pins):
+        free[body.node_dofs[pin]] = False
+    return free

@@ -100,7 +100,7 @@ class Attempts:
         if kind == "value" and self._jumped(position.states, scalar, aim, new):
             return JUMPED
         if kind == "conjugate" and position.path_following:
-            strayed = self._equilibrium.strayed(new, position.states[-1])
+            strayed = self._equilibrium.strayed(new, position.states)
             return JUMPED if strayed > STRAY else ""
         falls = new.measures[measure("rate", scalar)] < 0
         return BEYOND if kind == "value" and falls else ""

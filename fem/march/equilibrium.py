@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
@@ -122,16 +125,20 @@ class Equilibrium:
             conditions.append(GivenFunctional(self._control, target))
         return self.newton.solve(start, [*unknown, scalar], conditions)
 
-    def strayed(self, state: State, before: State) -> float:
+    def strayed(self, state: State, before: Sequence[State]) -> float:
         """How far Newton's method went from the start of the last solve, in steps to that start.
+
+        A step that is shorter than the one before counts as long as that: the chord from which it
+        is extrapolated is no tangent.
 
         Args:
             state: what was found.
-            before: the state before it.
+            before: the states before it.
         """
         mass, norm = self.displacements, self.scene.norm
-        step = norm((self._start - before.w)[mass])
-        return norm((state.w - self._start)[mass]) / max(step, 1e-300)
+        steps = [norm((self._start - before[-1].w)[mass])]
+        steps += [norm((b.w - a.w)[mass]) for a, b in itertools.pairwise(before[-2:])]
+        return norm((state.w - self._start)[mass]) / max(*steps, 1e-300)
 
     def assess_stability(
         self, state: State, before: State, scalar: str, exactly: bool = False

@@ -49,7 +49,8 @@ class Predictor:
             critical: stability was lost, or the path is followed round a limit point.
         """
         self._unguided = self._unguided or critical
-        self._astray, self._plain = failures > 0, failures > (0 if self._unguided else 1)
+        self._astray = failures > 0
+        self._plain = self._astray and self._unguided
 
     def start(self, states: Sequence[State], key: str, target: float) -> Floats:
         """Set the scene to the state extrapolated to the value of a measure; its coefficients.
