@@ -31,6 +31,7 @@ from fem.solver.side_conditions import Functional
 
 CREEPS = "increments shrink to nothing, each of them converging slowly"
 LOST = "along the mode that is lost no state is found on which the body rests"
+NEARBY = "on the way to where a mode is lost"
 ACROSS = "the body would leave its symmetry, and half of it does not know how"
 LEAST_GAP = 1e-6
 """Part of a ramp between a stable and an unstable state that are not brought nearer."""
@@ -211,7 +212,7 @@ class March:
                 kind, aim = "control", goal
             new, outcome, kind = self._attempts.increment(position, ramp, span, kind, aim)
             missed = missed + 1 if new is None else 0
-            self._predictor.heed(missed, position.path_following or bool(self.report.critical))
+            self._predictor.heed(missed, bool(self.report.critical))
             if new is None:
                 failures += 1
                 self.report.cutbacks += 1
@@ -311,8 +312,7 @@ class March:
         position.path_following, position.lost = ramp.drive == "value", None
         entered: list[State] = []
         for one, how in found:
-            last = self._enter(ramp, entered, one, how)
-            if last:
+            if self._enter(ramp, entered, one, how):
                 break
         return True
 
@@ -384,6 +384,8 @@ class March:
 
     def _give_up(self, outcome: Outcome, inverted: str) -> bool:
         """No increment leads on from the last state."""
+        if self.position.lost is not None and outcome.reason != LOST:
+            outcome = dataclasses.replace(outcome, reason=f"{outcome.reason} {NEARBY}")
         if self._causes is None:
             return self._end(outcome.reason)
         critical = self.report.critical

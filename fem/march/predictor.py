@@ -46,7 +46,7 @@ class Predictor:
 
         Args:
             failures: increments that failed since the last one that did not.
-            critical: stability was lost, or the path is followed round a limit point.
+            critical: stability was lost before.
         """
         self._unguided = self._unguided or critical
         self._astray = failures > 0
