@@ -13,6 +13,7 @@ from petsc4py import PETSc
 
 from fem import compat
 from fem.effects.effect import Constraint, Discrete, Effect
+from fem.effects.supports import opposite_free
 from fem.kernels import compiling
 from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
@@ -56,6 +57,8 @@ class Scene:
         force_noise: norm of the forces that round-off in all potentials makes at rest, N.
         solid_noise: the part of it that is not of potentials with own code, N.
         free: local dofs (owned and ghosts) that no constraint fixes, (local,).
+        free_opposite: the same for modes of the symmetry opposite to that of half a body; None of
+            a whole one, and where they cannot be told.
         discrete: by key, the potentials with own code.
 
     Raises:
@@ -102,6 +105,7 @@ class Scene:
         self._constrain(constraints)
         self.solid_noise = self._solid_noise()
         self.force_noise = float(np.hypot(self._noise(), self.solid_noise))
+        self.free_opposite = opposite_free(ordered, self.body)
 
     def __del__(self) -> None:
         if hasattr(self, "matrix") and may_free(self.matrix):
@@ -367,15 +371,24 @@ class Scene:
         vector = self._loads[name]
         return vector.copy() if constrained else np.where(self.free[: len(vector)], vector, 0.0)
 
-    def assemble_tangent(self) -> PETSc.Mat:
-        """K = ∂R/∂w at the present state; unit diagonal on constrained dofs."""
+    def assemble_tangent(self, opposite: bool = False) -> PETSc.Mat:
+        """K = ∂R/∂w at the present state; unit diagonal on constrained dofs.
+
+        Args:
+            opposite: for displacements of the symmetry opposite to that of half a body.
+        """
+        free, dirichlet = self.free, self._dirichlet
+        if opposite:
+            assert self.free_opposite is not None, "no symmetry halves the body"
+            free = self.free_opposite
+            dirichlet = compat.dirichlet(self.body.space, np.flatnonzero(~free))
         self._second.clear()  # fibers may predict other forces now
         self._loads.clear()
         self.matrix.zeroEntries()
-        compat.assemble_matrix(self.matrix, self._forms["tangent"], self._dirichlet)
+        compat.assemble_matrix(self.matrix, self._forms["tangent"], dirichlet)
         self.matrix.assemble(PETSc.Mat.AssemblyType.FLUSH)
         for discrete in self.discrete.values():
-            discrete.add_tangent(self.matrix, self.free)
+            discrete.add_tangent(self.matrix, free)
         for dof in self.body.ties[0]:
             self.matrix.setValue(dof, dof, 1.0, PETSc.InsertMode.ADD_VALUES)
         self.matrix.assemble()

@@ -110,6 +110,13 @@ class Effect:
         """Displacement components that it fixes."""
         return ()
 
+    def opposite(self) -> tuple[Constraint, ...] | None:
+        """What it fixes of modes of the opposite symmetry, where it halves the body.
+
+        None where it does not: those modes obey its own constraints.
+        """
+        return None
+
     def fixed_scalars(self) -> dict[str, float]:
         """Natural unknowns of the kinematics, such as the curvature, that it fixes at a value."""
         return {}

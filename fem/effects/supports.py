@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+import numpy as np
+import numpy.typing as npt
+
 from fem.effects.effect import Constraint, Effect
+from fem.kinematics.kinematics import Kinematics
 
 
 class Clamp(Effect):
@@ -46,6 +52,12 @@ class Symmetry(Effect):
         """No displacement across the plane."""
         return (Constraint("symmetry", self.surface, self.component),)
 
+    def opposite(self) -> tuple[Constraint, ...] | None:
+        """On the plane x = 0, which halves the body, displacements in it are fixed instead."""
+        if self.component != 0:
+            return None
+        return tuple(Constraint("symmetry", self.surface, i) for i in (1, 2))
+
 
 class TwofoldAxis(Effect):
     """Half a turn about the y axis maps the body onto itself: u = w = 0 on the plane x = 0.
@@ -63,6 +75,10 @@ class TwofoldAxis(Effect):
     def constraints(self) -> tuple[Constraint, ...]:
         """No displacement across the plane, and none along z in it."""
         return tuple(Constraint("symmetry", self.surface, i) for i in (0, 2))
+
+    def opposite(self) -> tuple[Constraint, ...] | None:
+        """The displacement along y, about which half a turn is made, is fixed instead."""
+        return (Constraint("symmetry", self.surface, 1),)
 
 
 class StraightAxis(Effect):
@@ -98,3 +114,31 @@ class BlockedTip(Effect):
     def constraints(self) -> tuple[Constraint, ...]:
         """v = 0 on both strips."""
         return (Constraint("roof", self.roof, 1), Constraint("post", self.post, 1))
+
+
+def opposite_free(effects: Iterable[Effect], body: Kinematics) -> npt.NDArray[np.bool_] | None:
+    """Local dofs that modes of the symmetry opposite to that of half a body may move, (local,).
+
+    None of a whole body; and with tetrahedra, whose pressure is continuous and would have to vanish
+    on the plane.
+
+    Args:
+        effects: of the scene.
+        body: its kinematics.
+    """
+    effects = list(effects)
+    domain = body.domain
+    tetrahedra = domain.data.cell_type == "tetrahedron"
+    if tetrahedra or all(effect.opposite() is None for effect in effects):
+        return None
+    free = np.ones(body.local, dtype=bool)
+    for effect in effects:
+        other = effect.opposite()
+        for constraint in effect.constraints() if other is None else other:
+            if constraint.component < body.components:
+                nodes = domain.surface_nodes(constraint.surface)
+                dofs = body.node_dofs[nodes, constraint.component]
+                free[dofs[dofs >= 0]] = False
+    for pin in (*body.pins, *body.opposite_pins):
+        free[body.node_dofs[pin]] = False
+    return free

@@ -73,6 +73,7 @@ class Kinematics:
         natural: those of them that are unknowns of the kinematics: at an equilibrium the
             potential is stationary in them.
         pins: (node, component) fixed so that no rigid motion is left.
+        opposite_pins: the same for modes of the symmetry opposite to that of half the body.
         ties: local dofs that follow others, and these; on one rank only.
         symmetry_factor: how many of what is modelled make up the whole actuator: two halves, or a
             length over that of a slice.
@@ -85,6 +86,7 @@ class Kinematics:
         self.components = components
         self.natural: tuple[str, ...] = ()
         self.pins: tuple[tuple[int, int], ...] = ()
+        self.opposite_pins: tuple[tuple[int, int], ...] = ()
         self.ties: tuple[Dofs, Dofs] = (np.zeros(0, dtype=np.int32), np.zeros(0, dtype=np.int32))
         self.symmetry_factor = 2.0 if domain.data.half else 1.0
         cell = domain.data.cell_type

@@ -64,6 +64,9 @@ class Uniform(Kinematics):
         self.symmetry_factor *= length / extent
         self.natural = (CURVATURE, STRETCH, *((TWIST,) if twisted else ()))
         self.pins = ((domain.data.points["pin"], 1),)
+        # they may shift along x and z and turn about z
+        pin, crown = (domain.data.points[name] for name in ("pin", "crown"))
+        self.opposite_pins = ((pin, 0), (crown, 0), *(((pin, 2),) if components > 2 else ()))
         for name in self.natural:
             self.scalar(name)
         self.scalars[STRETCH].value = 1.0

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
+
 import numpy as np
+import numpy.typing as npt
 
 from fem.march.predictor import Predictor
 from fem.march.records import MODES, State, measure
 from fem.ranks import total
 from fem.scene import Scene
 from fem.solver.bordered import SideCondition
+from fem.solver.modes import opposite_modes, softest_opposite
 from fem.solver.newton import Newton, Outcome
 from fem.solver.side_conditions import Functional, GivenConjugate, GivenFunctional, Stationary
 
@@ -21,6 +26,11 @@ NOWHERE = 1e-30
 """Part of a response that shows its direction, and adds nothing to a tangent."""
 
 
+NEUTRAL = 1e-3
+"""Stiffness of a mode over that at rest, or the negative of it, that is none on any mesh."""
+Floats = npt.NDArray[np.float64]
+
+
 class Equilibrium:
     """A scene and what finds its equilibria.
 
@@ -29,6 +39,9 @@ class Equilibrium:
         newton: its solver.
         predictor: what a solve starts from.
         control: the quantity that requests refer to (the bending angle), or None.
+
+    Attributes:
+        displacements: owned dofs of the displacement, (owned,).
     """
 
     def __init__(
@@ -37,7 +50,13 @@ class Equilibrium:
         self.scene, self.newton = scene, newton
         self._predictor, self._control = predictor, control
         comm, volumetric = scene.domain.comm, int(np.count_nonzero(scene.volumetric))
+        self._start = scene.w.copy()
+        self._opposite_at_rest: float | None = None
         self._volumetric = int(total(comm, volumetric))
+        body = scene.body
+        dofs = body.node_dofs[body.owned_nodes].ravel()
+        self.displacements = np.zeros(body.owned, dtype=bool)
+        self.displacements[dofs[dofs < body.owned]] = True
 
     def capture(self) -> State:
         """The present state of the scene."""
@@ -74,7 +93,7 @@ class Equilibrium:
         self.scene.assemble_tangent()
         self.newton.factor.renew()
 
-    def _natural(self) -> list[Stationary]:
+    def natural_conditions(self) -> list[Stationary]:
         """One equation for each natural scalar."""
         return [Stationary(self.scene, name) for name in self.scene.natural]
 
@@ -89,12 +108,12 @@ class Equilibrium:
         scene, body = self.scene, self.scene.body
         self.restore(base)
         scene.predict(None)
-        rate, natural = self.newton.response(scalar, scene.natural, self._natural())
+        rate, natural = self.newton.response(scalar, scene.natural, self.natural_conditions())
         if scene.undecided:
             # forces without geometric stiffness: the motion may be as small as one likes
             way = {name: sign * NOWHERE * value for name, value in natural.items()}
             scene.predict(sign * NOWHERE * rate, way)
-            rate, natural = self.newton.response(scalar, scene.natural, self._natural())
+            rate, natural = self.newton.response(scalar, scene.natural, self.natural_conditions())
             scene.predict(None)
         nodal = body.with_ghosts(rate)[body.node_dofs[body.owned_nodes]]
         top = float(np.max(np.abs(nodal), initial=0.0))
@@ -121,9 +140,9 @@ class Equilibrium:
             target: what that is to be.
             along: states from which the start is extrapolated, a measure and its value there.
         """
-        start = self._predictor.start(*along)
+        start = self._start = self._predictor.start(*along)
         unknown: list[str] = list(self.scene.natural)
-        conditions: list[SideCondition] = list(self._natural())
+        conditions: list[SideCondition] = list(self.natural_conditions())
         if kind == "value":
             self.scene.set_scalar(scalar, target)
             return self.newton.solve(start, unknown, conditions)
@@ -134,7 +153,24 @@ class Equilibrium:
             conditions.append(GivenFunctional(self._control, target))
         return self.newton.solve(start, [*unknown, scalar], conditions)
 
-    def assess_stability(self, state: State, before: State, scalar: str) -> None:
+    def strayed(self, state: State, before: Sequence[State]) -> float:
+        """How far Newton's method went from the start of the last solve, in steps to that start.
+
+        A step that is shorter than the one before counts as long as that: the chord from which it
+        is extrapolated is no tangent.
+
+        Args:
+            state: what was found.
+            before: the states before it.
+        """
+        mass, norm = self.displacements, self.scene.norm
+        steps = [norm((self._start - before[-1].w)[mass])]
+        steps += [norm((b.w - a.w)[mass]) for a, b in itertools.pairwise(before[-2:])]
+        return norm((state.w - self._start)[mass]) / max(*steps, 1e-300)
+
+    def assess_stability(
+        self, state: State, before: State, scalar: str, exactly: bool = False
+    ) -> None:
         """Write the stability of the state just found into its measures.
 
         Unstable modes are the negative eigenvalues of the Hessian of the potential in all fields
@@ -146,11 +182,13 @@ class Equilibrium:
             state: the present state, found by the last solve.
             before: the state before it.
             scalar: the load that is driven.
+            exactly: by the tangent at the state; else by the last one of Newton's method, unless
+                that tells a change.
         """
         rate = measure("rate", scalar)
         state.measures[rate] = before.measures.get(rate, 1.0)
         modes = self._modes()
-        if modes != before.measures.get(MODES, 0):
+        if exactly or modes != before.measures.get(MODES, 0):
             # not by an old factor, nor with forces that were predicted
             near = self.perturbed(state, scalar)
             modes = self._modes()
@@ -160,6 +198,37 @@ class Equilibrium:
             ]
             state.measures[rate] = change[0] / change[1]
         state.measures[MODES] = modes
+
+    def opposite_modes(self, state: State, rest: State) -> int:
+        """Unstable modes that half a body does not know; of a whole one none. Collective.
+
+        Those of the opposite symmetry, with the loads at given values. A round body may turn its
+        buckles about its axis at no cost: what costs less than the mesh knows is no instability.
+        """
+        if self.scene.free_opposite is None:
+            return 0
+        self.restore(state)
+        modes = opposite_modes(self.newton) - self._volumetric
+        if modes > 0 and self._opposite_at_rest is None:
+            self.restore(rest)
+            self._opposite_at_rest = softest_opposite(
+                self.newton, self.displacements, self.anyhow()
+            )
+            self.restore(state)
+        if modes > 0:
+            softest = softest_opposite(self.newton, self.displacements, self.anyhow())
+            if abs(softest) < NEUTRAL * abs(self._opposite_at_rest or 0.0):
+                modes -= 1
+        return modes
+
+    def anyhow(self) -> Floats:
+        """A displacement without any symmetry, the same on any number of ranks, (owned,)."""
+        body = self.scene.body
+        nodes = body.owned_nodes
+        values = np.random.default_rng(1).standard_normal(body.node_dofs.shape)
+        start = np.zeros(body.owned)
+        start[body.node_dofs[nodes]] = values[nodes]
+        return start
 
     def _modes(self) -> int:
         return self.newton.negative_pivots(self.scene.natural) - self._volumetric

@@ -11,6 +11,8 @@ from fem.march.predictor import lagrange
 from fem.march.records import (
     MODES,
     Critical,
+    Ramp,
+    Report,
     State,
     measure,
 )
@@ -169,6 +171,32 @@ def critical(states: Sequence[State], scalar: str) -> list[Critical]:
         angle = new.get("control")
         found.append(Critical("bifurcation", scalar, value, conjugate, angle, before, after))
     return found
+
+
+def last_limit(report: Report, scalar: str) -> Critical | None:
+    """The last point at which stability was lost and beyond which a load may fall."""
+    found = (c for c in reversed(report.critical) if c.scalar == scalar and c.after > c.before)
+    return next(found, None)
+
+
+def passed(ramp: Ramp, span: float, old: State, new: State, limit: Critical | None) -> float | None:
+    """Value asked for that following the path has passed and never reached before.
+
+    Args:
+        ramp: the load.
+        span: its whole change.
+        old: the last state.
+        new: the state found.
+        limit: the last point where stability was lost.
+    """
+    sign, key = np.sign(span), measure("value", ramp.scalar)
+    reached = [old.measures[key], *([limit.value] if limit else [])]
+    peak = max(sign * value for value in reached)
+    top = sign * new.measures[key]
+    goals = [sign * goal for goal in (*ramp.stops, ramp.target)]
+    margin = 1e-9 * abs(span)
+    found = [goal for goal in goals if peak + margin < goal < top - margin]
+    return float(sign * min(found)) if found else None
 
 
 def _control(states: Sequence[State], scalar: str, at: float) -> float:

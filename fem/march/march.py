@@ -3,28 +3,39 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Sequence
 
 import numpy as np
 
+from fem.march.attempts import BEYOND, Attempts, unstable
+from fem.march.branches import SHARP, Branches, excess
 from fem.march.equilibrium import Equilibrium
 from fem.march.frames import Frames
 from fem.march.guide import Guide
 from fem.march.hooks import Hook
-from fem.march.limit_points import critical, crossing, limit_ahead, limit_between, softens
+from fem.march.increments import first_size, guess, turn_limit
+from fem.march.limit_points import (
+    critical,
+    limit_ahead,
+    softens,
+)
 from fem.march.position import Position
-from fem.march.predictor import Predictor, distinct, lagrange
-from fem.march.records import Causes, Critical, Ramp, Report, Rules, State, measure
-from fem.march.selfcontact import Rod, first_contact
-from fem.march.turning import UNBENT, first_size, leads_nowhere, search_end, slackens, toward
-from fem.march.ways import MISSED, Requests, Way
+from fem.march.predictor import Predictor
+from fem.march.records import Causes, Ramp, Report, Rules, State, measure
+from fem.march.selfcontact import Rod, touching
+from fem.march.turning import UNBENT, leads_nowhere, slackens, toward
+from fem.march.ways import MISSED, Requests, Way, asked_between, way_of
 from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome
 from fem.solver.side_conditions import Functional
 
-JUMPED = "Newton went to another branch"
-BEYOND = "the load falls from here on"
 CREEPS = "increments shrink to nothing, each of them converging slowly"
+LOST = "along the mode that is lost no state is found on which the body rests"
+NEARBY = "on the way to where a mode is lost"
+ACROSS = "the body would leave its symmetry, and half of it does not know how"
+LEAST_GAP = 1e-6
+"""Part of a ramp between a stable and an unstable state that are not brought nearer."""
 
 
 class March:
@@ -64,8 +75,9 @@ class March:
         self.hooks = self._called = tuple(hooks)
         self._predictor = Predictor(scene, frames, guide)
         self.equilibrium = Equilibrium(scene, newton, self._predictor, control)
-        self._controlled = control is not None
-        self._guided = guide is not None
+        self._controlled, self._guided = control is not None, guide is not None
+        self._branches = Branches(self.equilibrium)
+        self._attempts = Attempts(self.equilibrium, rules)
         self._rod, self._causes = rod, causes
         scene.set(scene.w.copy())
         self.rest = self.equilibrium.capture()
@@ -87,6 +99,7 @@ class March:
         self.equilibrium.order(self.rest)
         self.equilibrium.restore(position.states[-1])
         self.equilibrium.scene.raise_force_floor(position.force_floor)
+        self._predictor.heed(0, bool(position.report.critical))
         for hook, memory in zip(self.hooks, position.memory, strict=False):
             hook.recall(memory)
 
@@ -113,7 +126,7 @@ class March:
                 position.report.ended_at = ramp.until
                 break
             position.ramp += 1
-            position.increment = position.begin = position.first = None
+            position.increment = position.begin = position.first = position.lost = None
             position.path_following, position.toward, position.nearest = False, 0.0, None
             position.failures = 0
         return position.report
@@ -145,35 +158,6 @@ class March:
 
     # --- ramps ---------------------------------------------------------------------------------
 
-    def _way(self, ramp: Ramp, span: float) -> Way:
-        """How a ramp is driven from the last state on; `span` is all of it."""
-        now = self.states[-1].measures
-        if not self.position.path_following:
-            sign = np.sign(ramp.target - now[ramp.key])
-            stops = ramp.stops if ramp.drive != "control" else (*ramp.stops, *ramp.at)
-            largest = abs(ramp.largest) if ramp.largest else np.inf
-            return Way(ramp.drive, ramp.key, sign, ramp.target, abs(span), stops, largest)
-        key = measure("conjugate", ramp.scalar)
-        volume = now[key]
-        sign = self.position.toward or np.sign(span)
-        end = sign * np.inf
-        if self.position.toward:
-            end = search_end(ramp, span, self.position, self.rest, self.rules)
-            return Way("conjugate", key, sign, end, volume, (), self.rules.swell * volume)
-        limit = self._limit(ramp)
-        if limit is not None and now.get(measure("rate", ramp.scalar), 1.0) < 0:
-            end = limit.conjugate * self.rules.beyond**sign
-        return Way("conjugate", key, sign, end, volume, (), self.rules.swell * volume)
-
-    def _limit(self, ramp: Ramp) -> Critical | None:
-        """The last limit point beyond which the ramp's load falls."""
-        found = (
-            c
-            for c in reversed(self.report.critical)
-            if c.kind == "limit" and c.scalar == ramp.scalar and c.after > c.before
-        )
-        return next(found, None)
-
     def _ramp(self, ramp: Ramp) -> bool:
         position = self.position
         if position.begin is None:
@@ -189,25 +173,33 @@ class March:
             position.states = [seed, base]
             position.increment = min(size, abs(ramp.largest or np.inf), abs(span))
             if leads_nowhere(seed, base, ramp, self.rules):
-                found = toward(self._find, self.equilibrium, seed, base, ramp)
-                position.toward, position.increment = found
+                find = functools.partial(self._attempts.find, position)
+                position.toward, position.increment = toward(
+                    find, self.equilibrium, seed, base, ramp
+                )
                 position.path_following = True
                 if not position.toward:
                     return self._end(UNBENT)
         # a load that hardly bends begins with tiny increments of the angle
         first = position.first = position.first or position.increment
+        missed = 0
         slow: Outcome | None = None
         while True:
             state = self.states[-1]
             if requests.done(span, state):
                 return True
-            way = self._way(ramp, span)
+            way = way_of(ramp, span, position, self.rest, self.rules)
             now = state.measures[way.key]
             if position.path_following and way.sign * (way.end - now) <= 1e-9 * way.span:
                 return self._end("")
             if slow and position.increment < self.rules.least * min(way.span, first):
                 return self._give_up(dataclasses.replace(slow, reason=CREEPS), "")
-            size = min(position.increment, self._turn_limit(way.key), way.largest)
+            size = min(
+                position.increment, turn_limit(self.states, way.key, self.rules), way.largest
+            )
+            if position.lost is not None:
+                gap = abs(position.lost - now)
+                size = min(size, gap if self._near(way.key, now, position.lost) else gap / 2)
             target = way.next(now, size)
             if way.kind == "value" and limit_ahead(self.states, ramp.scalar, target):
                 self._follow_path(ramp)
@@ -215,11 +207,11 @@ class March:
             kind, aim = way.kind, target
             asked = bool(requests) and self._controlled and kind != "control"
             if asked:
-                expected = self._guess(way.key, target, "control")
+                expected = guess(self.states, way.key, target, "control")
                 goal = requests.due(state.measures["control"], expected)
                 if goal is not None:
                     kind, aim = "control", goal
-            new, outcome, kind = self._attempt(ramp, span, kind, aim)
+            new, outcome, kind = self._attempts.increment(position, ramp, span, kind, aim)
             if new is not None and asked:
                 verdict = requests.judge(state, new, kind, aim, way)
                 if verdict == "again":
@@ -227,7 +219,8 @@ class March:
                     continue
                 if verdict == "cut":
                     new, outcome = None, dataclasses.replace(outcome, reason=MISSED)
-            self._predictor.heed(failed=new is None)
+            missed = missed + 1 if new is None else 0
+            self._predictor.heed(missed, bool(self.report.critical))
             if new is None:
                 position.failures += 1
                 self.report.cutbacks += 1
@@ -251,82 +244,130 @@ class March:
                     self._follow_path(ramp)
                     position.failures = 0
                 continue
+            if position.lost is not None or requests.done(span, new):
+                # near a bifurcation, and where a ramp ends, no old factor may tell
+                self.equilibrium.assess_stability(new, state, ramp.scalar, exactly=True)
+            if unstable(new, state, ramp.scalar):
+                if not self._lost(ramp, span, way, new):
+                    return False
+                continue
+            if requests.done(span, new) and self.equilibrium.opposite_modes(new, self.rest):
+                self.equilibrium.restore(state)
+                return self._end(ACROSS, failed=True)
+            if position.lost is not None:
+                left = way.sign * (position.lost - new.measures[way.key])
+                position.lost = position.lost if left > LEAST_GAP * way.span else None
             if position.toward or not (position.path_following and np.isfinite(way.end)):
                 position.failures = 0
-            position.states = [*self.states[1 - self.rules.memory :], new]
-            self.report.steps += 1
-            self.report.per_step.append(outcome.iterations)
-            self.report.hits += [(self.report.steps, hit) for hit in requests.hits(new)]
-            self._note(ramp.scalar)
+            self._keep(ramp, [*self.states[1 - self.rules.memory :], new], state, outcome)
+            self.report.critical += critical(self.states, ramp.scalar)
             slow = outcome if outcome.iterations >= self.rules.slow else None
             if outcome.iterations <= self.rules.easy:
                 size = min(size * self.rules.grow, way.largest)
             elif slow:
                 size *= self.rules.shrink
             position.increment = size
-            for hook in self._called:
-                hook.after_step(self, new, outcome)
+            self._tell(outcome)
 
     def _requests(self, ramp: Ramp) -> Requests:
         """What a ramp is to hit."""
         return Requests(ramp, self.equilibrium.newton.settings.tolerance)
 
-    def _attempt(
-        self, ramp: Ramp, span: float, kind: str, aim: float
-    ) -> tuple[State | None, Outcome, str]:
-        """Try an increment; land where it passes a value that was asked for, or a limit point.
+    # --- bifurcations --------------------------------------------------------------------------
+
+    def _lost(self, ramp: Ramp, span: float, way: Way, new: State) -> bool:
+        """A new state has one more unstable mode: come nearer to where it is lost, or leave there.
+
+        The new state is not kept. Driven by its value, a load may have jumped over a limit point
+        too: its conjugate, which grows there, tells the two apart.
 
         Returns:
-            The state, if one was found that is to be kept; how Newton ended; what was given.
+            Whether the march goes on.
         """
-        scalar, key = ramp.scalar, measure(kind, ramp.scalar)
-        start = (distinct(self.states, key), key, aim)
-        outcome = self._find(scalar, kind, aim, start)
-        new = self._found(scalar, outcome)
-        if new is not None and kind == "value" and self._jumped(scalar, aim, new):
-            outcome, new = dataclasses.replace(outcome, reason=JUMPED), None
-        if new is not None and kind == "value" and new.measures[measure("rate", scalar)] < 0:
-            outcome, new = dataclasses.replace(outcome, reason=BEYOND), None
-        if new is None:
-            return new, outcome, kind
-        states, key = [*self.states[-2:], new], measure("conjugate", scalar)
-        goal = self._passed(ramp, span, new)
+        position, state, scalar = self.position, self.states[-1], ramp.scalar
+        position.lost = new.measures[way.key]
+        gap = abs(position.lost - state.measures[way.key])
+        value = measure("value", scalar)
+        sharp = all(self._near(k, state.measures[k], new.measures[k]) for k in (way.key, value))
+        if not sharp and gap > LEAST_GAP * way.span:
+            self.equilibrium.restore(state)
+            position.increment = gap / 2
+            return True
+        if way.kind == "value":
+            self.equilibrium.restore(state)
+            self._follow_path(ramp)
+            return True
+        crossing = self._branches.crossing(scalar, state, new)
+        found, outcome = self._branches.leave(
+            scalar,
+            crossing,
+            self.report.count,
+            lambda new: asked_between(ramp, state, new) is not None,
+        )
+        self.report.critical.append(crossing.critical(scalar, left=bool(found)))
+        if not found:
+            self.equilibrium.restore(state)
+            return self._give_up(dataclasses.replace(outcome, reason=LOST), "")
+        # another branch may be flat: its load hardly grows, or falls
+        position.path_following = ramp.drive == "value" or bool(position.toward)
+        position.lost = None
+        entered: list[State] = []
+        for one, how in found:
+            if self._enter(ramp, entered, one, how):
+                break
+        return True
+
+    def _enter(self, ramp: Ramp, entered: list[State], new: State, outcome: Outcome) -> bool:
+        """Keep a state on another branch, or what was asked for before it.
+
+        Args:
+            ramp: the load.
+            entered: states of the branch that are kept already; the new one joins them.
+            new: the state.
+            outcome: how it was found.
+
+        Returns:
+            Whether the march goes on from there in its ordinary way.
+        """
+        position, old, scalar = self.position, self.states[-1], ramp.scalar
+        seed = self.equilibrium.perturbed(new, scalar)
+        goal = asked_between(ramp, old, new)
         if goal is not None:
-            start = (distinct(states, key), key, crossing(states, scalar, goal))
-            outcome = self._find(scalar, "value", goal, start)
-            return self._found(scalar, outcome), outcome, "landing"
-        limit = limit_between(states, scalar) if kind == "conjugate" else None
-        if limit is not None:
-            outcome = self._find(scalar, kind, limit, (distinct(states, key), key, limit))
-            return self._found(scalar, outcome), outcome, kind
-        return new, outcome, kind
+            key = measure(goal[0], scalar)
+            again = self._attempts.find(
+                position, scalar, *goal, ([*(entered[-2:] or [seed]), new], key, goal[1])
+            )
+            landed = self._attempts.found(position, scalar, again)
+            if landed is not None and excess(landed, scalar) <= 0:
+                new, outcome = landed, again
+                seed = self.equilibrium.perturbed(new, scalar)
+        self.equilibrium.restore(new)
+        entered.append(new)
+        key = measure("conjugate", scalar) if position.path_following else ramp.key
+        position.increment = abs(new.measures[key] - old.measures[key])
+        self._keep(ramp, entered[-3:] if len(entered) > 1 else [seed, new], old, outcome)
+        self._tell(outcome)
+        return goal is not None
 
-    def _find(
-        self, scalar: str, kind: str, aim: float, start: tuple[list[State], str, float]
-    ) -> Outcome:
-        outcome = self.equilibrium.find(scalar, kind, aim, start)
-        self.report.iterations += outcome.iterations
-        self.report.factorisations += outcome.factorisations
-        return outcome
+    def _keep(self, ramp: Ramp, states: list[State], old: State, outcome: Outcome) -> None:
+        """Go on from these states; the last one is new and follows the old one."""
+        self.position.states = states
+        self.report.steps += 1
+        self.report.per_step.append(outcome.iterations)
+        hits = self._requests(ramp).hits(states[-1])
+        self.report.hits += [(self.report.steps, hit) for hit in hits]
+        if self._rod is not None and self.report.self_contact is None:
+            self.report.self_contact = touching(self._rod, old, states[-1])
 
-    def _found(self, scalar: str, outcome: Outcome) -> State | None:
-        """The state that was found, its stability assessed."""
-        if not outcome.converged:
-            return None
-        new = self.equilibrium.capture()
-        self.equilibrium.assess_stability(new, self.states[-1], scalar)
-        return new
+    def _tell(self, outcome: Outcome) -> None:
+        """Tell the hooks of the last state."""
+        for hook in self._called:
+            hook.after_step(self, self.states[-1], outcome)
 
-    def _jumped(self, scalar: str, aim: float, new: State) -> bool:
-        """Whether the conjugate is far from where the last states point to."""
-        name = measure("conjugate", scalar)
-        now = self.states[-1].measures[name]
-        key = measure("value", scalar)
-        expected = self._guess(key, aim, name)
-        # a curve through states around a kink may be flat here: the chord tells the size of a step
-        (p, v), (q, w) = ((state.measures[key], state.measures[name]) for state in self.states[-2:])
-        step = max(abs(expected - now), abs((w - v) / (q - p) * (aim - q)) if q != p else 0.0)
-        return bool(abs(new.measures[name] - expected) > self.rules.jump * step + 1e-6 * abs(now))
+    def _near(self, key: str, a: float, b: float) -> bool:
+        """Whether two values of a measure are apart by no more than 1 % of the way from rest."""
+        base = self.rest.measures[key]
+        return abs(b - a) <= SHARP * max(abs(a - base), abs(b - base))
 
     # --- limit points --------------------------------------------------------------------------
 
@@ -335,64 +376,25 @@ class March:
         key = measure("conjugate", ramp.scalar)
         a, b = (state.measures[key] for state in self.states[-2:])
         self.position.increment = abs(b - a)
-        self.position.path_following = True
+        self.position.path_following, self.position.lost = True, None
         if ramp.drive == "control":
             self.position.toward = float(np.sign(b - a))
 
-    def _passed(self, ramp: Ramp, span: float, new: State) -> float | None:
-        """Value asked for that following the path has passed and never reached before."""
-        if not self.position.path_following or self.position.toward:
-            return None
-        sign, key = np.sign(span), measure("value", ramp.scalar)
-        limit = self._limit(ramp)
-        reached = [self.states[-1].measures[key], *([limit.value] if limit else [])]
-        peak = max(sign * value for value in reached)
-        top = sign * new.measures[key]
-        goals = [sign * goal for goal in (*ramp.stops, ramp.target)]
-        margin = 1e-9 * abs(span)
-        passed = [goal for goal in goals if peak + margin < goal < top - margin]
-        return float(sign * min(passed)) if passed else None
-
-    def _note(self, scalar: str) -> None:
-        """Report what happened in the last increment to stability and to the body's clearance."""
-        self.report.critical += critical(self.states, scalar)
-        if self._rod is None or self.report.self_contact is not None:
-            return
-        old, new = self.states[-2:]
-        share = first_contact(self._rod, old, new)
-        if share is not None:
-            self.report.self_contact = {
-                name: (1 - share) * value + share * new.measures[name]
-                for name, value in old.measures.items()
-            }
-
     def _give_up(self, outcome: Outcome, inverted: str) -> bool:
         """No increment leads on from the last state."""
+        if self.position.lost is not None and outcome.reason != LOST:
+            outcome = dataclasses.replace(outcome, reason=f"{outcome.reason} {NEARBY}")
         if self._causes is None:
             return self._end(outcome.reason)
         critical = self.report.critical
         return self._end(self._causes.explain(self.states, self.rest, critical, outcome, inverted))
 
-    def _end(self, reason: str) -> bool:
+    def _end(self, reason: str, failed: bool = False) -> bool:
         """The load cannot be reached."""
-        limited = not self.position.toward and any(c.kind == "limit" for c in self.report.critical)
-        beyond = self.position.path_following and (limited or not reason)
-        self.report.status = "stopped" if beyond else "failed"
+        position = self.position
+        lost = any(point.after > point.before for point in self.report.critical)
+        limited = lost and not position.toward
+        beyond = position.path_following and position.lost is None and (limited or not reason)
+        self.report.status = "stopped" if beyond and not failed else "failed"
         self.report.reason = reason
         return False
-
-    # --- increments ----------------------------------------------------------------------------
-
-    def _guess(self, key: str, target: float, name: str) -> float:
-        """Extrapolated value of a measure where the increment of another would end."""
-        history = distinct(self.states, key)
-        weights = lagrange(np.array([state.measures[key] for state in history]), target)
-        return float(weights @ [state.measures[name] for state in history])
-
-    def _turn_limit(self, drive: str) -> float:
-        """Increment that changes the control quantity by `turn`, from the last two states."""
-        if not self._controlled or len(self.states) < min(self.rules.memory, 3):
-            return np.inf
-        a, b = (state.measures for state in self.states[-2:])
-        turned = abs(b["control"] - a["control"])
-        return float(abs(b[drive] - a[drive]) * self.rules.turn / max(turned, 1e-12))

@@ -26,6 +26,8 @@ class Position:
         failures: increments that have failed since the last one that counts.
         force_floor: least scale of forces that Newton's method has come to know, N.
         memory: what the march's own hooks remember, in their order.
+        lost: what is driven, where a mode was found unstable that is not at the last state; the
+            bifurcation lies before it. None: none was found.
         report: what happened so far.
     """
 
@@ -35,6 +37,7 @@ class Position:
     first: float | None = None
     ramp: int = 0
     path_following: bool = False
+    lost: float | None = None
     toward: float = 0.0
     nearest: float | None = None
     failures: int = 0

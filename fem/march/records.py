@@ -137,11 +137,13 @@ class Critical:
             gone where its conjugate is given instead; 'bifurcation': another branch starts here,
             and the mode is there however the load is driven.
         scalar: the load that is driven.
-        value: its value, interpolated at a limit; that of the first state beyond a bifurcation.
+        value: its value there, interpolated.
         conjugate: its conjugate there, such as the chamber volume.
         control: the control quantity there, if there is one.
         before: unstable modes before it.
         after: unstable modes beyond it.
+        side: of a bifurcation whose other branch was taken, what chose its side: 'by the loads',
+            or 'chosen' where both are alike; empty where the path was not left.
     """
 
     kind: str
@@ -151,6 +153,7 @@ class Critical:
     control: float | None
     before: int
     after: int
+    side: str = ""
 
 
 @dataclasses.dataclass
@@ -188,6 +191,11 @@ class Report:
         # a checkpoint gives back mappings
         self.critical = [c if isinstance(c, Critical) else Critical(**c) for c in self.critical]
         self.hits = [(int(step), float(value)) for step, value in self.hits]
+
+    def count(self, outcome: Outcome) -> None:
+        """Add what a solve has cost."""
+        self.iterations += outcome.iterations
+        self.factorisations += outcome.factorisations
 
 
 class Causes(Protocol):

@@ -215,3 +215,20 @@ def first_contact(rod: Rod, old: State, new: State) -> float | None:
         else:
             low = middle
     return high
+
+
+def touching(rod: Rod, old: State, new: State) -> dict[str, float] | None:
+    """Measures, between those of two states, where a body touches itself first; None: nowhere.
+
+    Args:
+        rod: the states as rods.
+        old: a state that does not touch itself.
+        new: the next one.
+    """
+    share = first_contact(rod, old, new)
+    if share is None:
+        return None
+    return {
+        name: (1 - share) * value + share * new.measures[name]
+        for name, value in old.measures.items()
+    }

@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fem.march.equilibrium import STILL, Equilibrium
+from fem.march.equilibrium import Equilibrium
 from fem.march.limit_points import softens
 from fem.march.position import Position
 from fem.march.records import Ramp, Rules, State, measure
@@ -146,33 +146,3 @@ def search_end(ramp: Ramp, span: float, position: Position, rest: State, rules: 
     if to_go > position.nearest + rules.astray:
         return now[key]
     return rest.measures[key] * (rules.search if position.toward > 0 else 1 / rules.beyond)
-
-
-def first_size(
-    seed: State, base: State, ramp: Ramp, span: float, rules: Rules, guided: bool
-) -> float:
-    """First increment of a ramp, as it is given or by the linear response.
-
-    It changes the control quantity by `first_turn`, a twentieth of the load where nothing turns,
-    and changes the conjugate by no more than `swell`, unless a guide knows the way.
-
-    Args:
-        seed: the base, perturbed by its linear response.
-        base: where the ramp begins.
-        ramp: the ramp.
-        span: all of what it drives.
-        rules: incrementation.
-        guided: a guide knows the way.
-    """
-    if ramp.first:
-        return abs(ramp.first)
-    now = base.measures
-    change = {name: abs(value - now[name]) for name, value in seed.measures.items()}
-    driven, turned = change[ramp.key], change.get("control", 0.0)
-    volume = measure("conjugate", ramp.scalar)
-    if driven < 1e-300:
-        return span / 20
-    size = span / 20 if turned < STILL else driven / turned * rules.first_turn
-    if not guided and now[volume] and change[volume]:
-        size = min(size, driven * rules.swell * abs(now[volume]) / change[volume])
-    return float(size)

@@ -6,7 +6,10 @@ import dataclasses
 
 import numpy as np
 
-from fem.march.records import Ramp, State
+from fem.march.limit_points import last_limit
+from fem.march.position import Position
+from fem.march.records import Ramp, Rules, State, measure
+from fem.march.turning import search_end
 
 NEAR = 0.02
 """An increment that would end so near before a value that is asked for hits it (rad, an angle)."""
@@ -47,6 +50,34 @@ class Way:
         stops = [s for s in (*self.stops, self.end) if self.sign * (s - now) > 1e-9 * self.span]
         nearest = min(stops, key=lambda s: abs(s - now))
         return nearest if self.sign * (target - nearest) > -0.2 * size else target
+
+
+def way_of(ramp: Ramp, span: float, position: Position, rest: State, rules: Rules) -> Way:
+    """How a ramp is driven from the last state on.
+
+    Args:
+        ramp: the ramp.
+        span: all of its way.
+        position: where the march stands.
+        rest: the state at rest.
+        rules: incrementation.
+    """
+    now = position.states[-1].measures
+    if not position.path_following:
+        sign = np.sign(ramp.target - now[ramp.key])
+        stops = ramp.stops if ramp.drive != "control" else (*ramp.stops, *ramp.at)
+        largest = abs(ramp.largest) if ramp.largest else np.inf
+        return Way(ramp.drive, ramp.key, sign, ramp.target, abs(span), stops, largest)
+    key = measure("conjugate", ramp.scalar)
+    volume = abs(now[key])
+    sign = position.toward or np.sign(span)
+    end = sign * np.inf
+    limit = last_limit(position.report, ramp.scalar)
+    if position.toward:
+        end = search_end(ramp, span, position, rest, rules)
+    elif limit is not None and now.get(measure("rate", ramp.scalar), 1.0) < 0:
+        end = limit.conjugate * rules.beyond**sign
+    return Way("conjugate", key, sign, end, volume, (), rules.swell * volume)
 
 
 class Requests:
@@ -147,3 +178,17 @@ class Requests:
             if side * (goal - here) > self._within and side * (there - goal) > self._within
         ]
         return sorted(ahead, key=lambda goal: abs(goal - here))
+
+
+def asked_between(ramp: Ramp, old: State, new: State) -> tuple[str, float] | None:
+    """What a ramp asks for first between two states: what is given there, and its value."""
+    asked = [(ramp.drive, value) for value in (*ramp.stops, ramp.target)]
+    asked += [("control", value) for value in (*ramp.at, ramp.until) if value is not None]
+    shares = []
+    for kind, value in asked:
+        a, b = (state.measures[measure(kind, ramp.scalar)] for state in (old, new))
+        # what the old state has hit already is not asked for again
+        slack = ROUND_OFF * (1.0 if kind == "control" else abs(value))
+        if min(abs(value - a), abs(value - b)) > slack and min(a, b) < value < max(a, b):
+            shares.append(((value - a) / (b - a), kind, value))
+    return min(shares)[1:] if shares else None

@@ -14,7 +14,6 @@ from fem.effects.elastic import Elastic
 from fem.effects.embedded_fibers import FiberPotential
 from fem.march.limit_points import softens
 from fem.march.records import (
-    MODES,
     Critical,
     State,
     measure,
@@ -90,7 +89,7 @@ class Diagnosis:
         """
         causes = [
             *self._chamber(states, rest),
-            *self._buckled(states[-1], critical),
+            *self._buckled(critical),
             *self._exhausted(),
             *self._squeezed(),
             *self._winding(),
@@ -152,12 +151,11 @@ class Diagnosis:
             return None
         return float(np.linalg.norm(moved[a] - moved[b], axis=1)[across].min())
 
-    def _buckled(self, state: State, critical: list[Critical]) -> list[str]:
-        """Stability lost before."""
-        kinds = {c.kind for c in critical if c.after > c.before}
-        if "bifurcation" not in kinds or not state.measures.get(MODES, 0):
+    def _buckled(self, critical: list[Critical]) -> list[str]:
+        """Stability lost at the last state, to a branch on which nothing rests nearby."""
+        if not critical or critical[-1].kind != "bifurcation" or critical[-1].side:
             return []
-        return ["buckling: the state before has lost its stability to another branch"]
+        return ["buckling: beyond the state before, stability is lost to another branch"]
 
     def _squeezed(self) -> list[str]:
         """Rubber that leaves its place."""

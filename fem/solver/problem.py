@@ -18,6 +18,8 @@ class Problem(Protocol):
     Attributes:
         matrix: storage of K.
         free: local dofs that no constraint fixes, (local,).
+        free_opposite: the same for displacements of the symmetry opposite to that of half a body;
+            None of a whole one.
         volumetric: owned dofs whose residual is a volume, not a force, (owned,).
         volume_scale: what those are measured by, mm³.
         force_noise: norm of the forces that round-off makes, N.
@@ -26,6 +28,7 @@ class Problem(Protocol):
 
     matrix: PETSc.Mat
     free: npt.NDArray[np.bool_]
+    free_opposite: npt.NDArray[np.bool_] | None
     volumetric: npt.NDArray[np.bool_]
     volume_scale: float
     force_noise: float
@@ -43,8 +46,8 @@ class Problem(Protocol):
     def residual(self) -> tuple[Floats, float]:
         """R, owned part, (owned,), and a scale of the forces in it, N."""
 
-    def assemble_tangent(self) -> PETSc.Mat:
-        """K at the present state."""
+    def assemble_tangent(self, opposite: bool = False) -> PETSc.Mat:
+        """K at the present state; on request for displacements of the opposite symmetry."""
 
     def load(self, name: str) -> Floats:
         """∂R/∂q of a scalar, owned part, (owned,)."""

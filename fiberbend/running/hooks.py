@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from fem.march.hooks import Hook, Marching
+from fem.march.march import ACROSS
 from fem.march.records import Ramp, Report, State
 from fem.results.checkpoint import Archive
 from fem.solver.newton import Outcome
@@ -175,8 +176,12 @@ def ended(case: Case, assembly: Assembly, rows: Sequence[dict[str, Any]]) -> tup
     text = f"; {', '.join(missed)} not reached" if missed else ""
     failure = report.reason
     if report.status == "failed":
+        instead = ""
+        if report.reason == ACROSS:
+            whole = "" if assembly.scene.body.components == 3 else "model: body and "
+            instead = f": expected {whole}mesh.symmetry: full;"
         failure = (
-            f"{report.reason} after {report.cutbacks} cut-backs; last converged state: "
+            f"{report.reason}{instead} after {report.cutbacks} cut-backs; last converged state: "
             f"{row[col.PRESSURE]:.4g} kPa, {row[col.ANGLE]:.4g}°"
         )
     if ramp.drive == "control":

@@ -16,6 +16,12 @@ UNSTABLE_END = (
 )
 TURNED = 0.1
 """An angle that has come back by so much, in degrees, has had its greatest value."""
+_LEFT = {
+    "by the loads": "the run goes on along it, to the side that the loads or the mesh favour",
+    "chosen": "the run goes on along it, to one of two sides that are alike",
+    "": "no state is found along it on which the body rests",
+}
+"""What a run does at a bifurcation, by the side that it takes."""
 _COUNT = ("no", "one", "two", "three")
 
 
@@ -33,6 +39,7 @@ def critical_points(report: Report, symmetry_factor: float) -> list[dict[str, An
             **_values(point, symmetry_factor),
             "unstable_modes_before": point.before,
             "unstable_modes_beyond": point.after,
+            **({"side": point.side} if point.side else {}),
         }
         for point in report.critical
     ]
@@ -75,8 +82,8 @@ def remark(point: Critical) -> str:
         count = _COUNT[point.after] if point.after < len(_COUNT) else str(point.after)
         plural = "" if point.after == 1 else "s"
         return (
-            f"{count} unstable mode{plural} from {where} on: the body can buckle, another branch "
-            "starts here; the run stays on its own"
+            f"{count} unstable mode{plural} from {where} on: the body buckles: another "
+            f"branch starts here; {_LEFT[point.side]}"
         )
     return f"stable again from {where} on"
 
@@ -89,7 +96,7 @@ def stopped(report: Report, ramp: Ramp, beyond: float) -> str:
         ramp: the load.
         beyond: multiple of the volume at the limit point to which the path is followed.
     """
-    limits = [p for p in report.critical if p.kind == "limit" and p.after > p.before]
+    limits = [p for p in report.critical if p.after > p.before]
     limit = max(limits, key=lambda p: abs(p.value))
     factor = f"1/{beyond:g} of" if _vacuum(limit) else f"{beyond:g} times"
     followed = f"followed to {factor} the volume there"

@@ -104,7 +104,7 @@ def test_slow_ones_that_shrink_to_nothing_end_with_that_reason() -> None:
 def test_where_a_body_meets_itself_lies_between_two_states(monkeypatch: pytest.MonkeyPatch) -> None:
     # a quarter of the way through the second increment; the first one is clear
     shares = iter([None, 0.25])
-    monkeypatch.setattr("fem.march.march.first_contact", lambda *_: next(shares))
+    monkeypatch.setattr("fem.march.selfcontact.first_contact", lambda *_: next(shares))
     body = bender()
     monkeypatch.setattr(body.march, "_rod", object())
     report = body.run([Ramp("pressure", 3 * FIRST, first=FIRST, largest=FIRST)])

@@ -15,11 +15,9 @@ import pytest
 from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.effect import Effect
 from fem.effects.elastic import Elastic
-from fem.effects.gravity import Gravity
 from fem.effects.incompressible import Incompressible
-from fem.effects.supports import Clamp, Symmetry
+from fem.effects.supports import Symmetry
 from fem.kinematics.domain import Domain
-from fem.march.frames import Frames
 from fem.march.hooks import AfterStep, Hook, Marching
 from fem.march.limit_points import crossing, extreme, limit_ahead
 from fem.march.march import March
@@ -33,7 +31,7 @@ from fem.results.checkpoint import Archive
 from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome, Settings
 from materials.material import Material
-from tests.exact.solids import box, sphere_octant
+from tests.exact.solids import sphere_octant
 from tests.exact.solutions import sphere_limit, sphere_pressure
 
 INNER, OUTER = 10.0, 11.0
@@ -238,59 +236,6 @@ def test_following_a_path_goes_on_after_a_restart(snapping: tuple[Sphere, Report
     end = again.march.states[-1].measures["conjugate pressure"]
     other = snapping[0].states[-1].measures["conjugate pressure"]
     assert end == pytest.approx(other, rel=1e-8)
-
-
-# --- bifurcation --------------------------------------------------------------------------------
-
-COLUMN = (2.0, 1.0, 20.0)
-"""Sides and height, mm."""
-SHEAR = 0.22
-
-
-@pytest.fixture(scope="module")
-def column() -> tuple[Report, list[State]]:
-    """A column that stands under a growing weight, in parts of Greenhill's."""
-    domain = Domain(box(COLUMN, (1, 1, 10)))
-    weight = Gravity({"solid": 1.0}, (0.0, 0.0, -GREENHILL))
-    effects: list[Effect] = [
-        Elastic("neo-hooke", {"solid": {"mu": SHEAR}}),
-        Incompressible(),
-        Clamp("bottom"),
-        weight,
-    ]
-    scene = Scene(domain, effects)
-    states: list[State] = []
-
-    def keep(state: State, _outcome: Outcome) -> None:
-        states.append(state)
-
-    newton = Newton(scene, domain.comm, Settings())
-    frames = Frames(scene.body)
-    march = March(scene, newton, Rules(), frames=frames, hooks=[AfterStep(keep)])
-    report = march.run([Ramp("gravity", 1.2, stops=(0.95, 1.05))])
-    assert not march.position.path_following
-    return report, states
-
-
-GREENHILL = 7.8373 * 3 * SHEAR / 12 / COLUMN[2] ** 3
-"""Weight per volume, N/mm³, at which a heavy column 1 mm thick buckles (Greenhill 1881)."""
-
-
-def test_a_heavy_column_buckles_at_greenhills_weight(column: tuple[Report, list[State]]) -> None:
-    # within 5 %: slenderness 20, ten elements, and the clamp holds the sides too
-    report, states = column
-    (point,) = report.critical
-    assert (point.kind, point.before, point.after) == ("bifurcation", 0, 1)
-    assert point.value == pytest.approx(1.05)
-    modes = {round(state.scalars["gravity"], 2): state.measures["modes"] for state in states}
-    assert (modes[0.95], modes[1.05]) == (0, 1)
-
-
-def test_a_bifurcation_is_no_limit_point(column: tuple[Report, list[State]]) -> None:
-    # the straight column bears more: the march goes on, and tells
-    report, states = column
-    assert report.status == "converged"
-    assert states[-1].measures["modes"] == 1
 
 
 # --- curves through states ----------------------------------------------------------------------

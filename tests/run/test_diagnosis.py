@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import pytest
@@ -76,6 +77,22 @@ def test_fibers_a_thousand_times_stiffer_are_solved() -> None:
 
 def _point(kind: str, value: float, before: int, after: int) -> Critical:
     return Critical(kind, "pressure", value, 1000.0, 0.5, before, after)
+
+
+@pytest.mark.parametrize(
+    ("side", "text"),
+    [
+        ("chosen", "to one of two sides that are alike"),
+        ("by the loads", "to the side that the loads or the mesh favour"),
+        ("", "no state is found along it"),
+    ],
+)
+def test_a_bifurcation_says_whereto_the_run_goes(side: str, text: str) -> None:
+    point = dataclasses.replace(_point("bifurcation", 0.1, 0, 1), side=side)
+    (line,) = messages.remarks(Report(critical=[point]))
+    assert text in line
+    (entry,) = messages.critical_points(Report(critical=[point]), symmetry_factor=1)
+    assert entry.get("side", "") == side
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,117 @@
+"""One increment tried: what is found there, and whether it may be kept."""
+
+from __future__ import annotations
+
+import dataclasses
+
+from fem.march.branches import excess
+from fem.march.equilibrium import Equilibrium
+from fem.march.increments import guess
+from fem.march.limit_points import crossing, last_limit, limit_between, passed
+from fem.march.position import Position
+from fem.march.predictor import distinct
+from fem.march.records import Ramp, Rules, State, measure
+from fem.solver.newton import Outcome
+
+STRAY = 0.35
+"""Part of a step round a limit point or along another branch that Newton may go beside it."""
+JUMPED = "Newton went to another branch"
+BEYOND = "the load falls from here on"
+
+
+def unstable(new: State, old: State, scalar: str) -> bool:
+    """Whether a mode that is stable at a state is not at the next, its conjugate given."""
+    return excess(new, scalar) > max(0, excess(old, scalar))
+
+
+class Attempts:
+    """Tries increments from where a march stands.
+
+    Args:
+        equilibrium: the scene and what finds its equilibria.
+        rules: incrementation.
+    """
+
+    def __init__(self, equilibrium: Equilibrium, rules: Rules) -> None:
+        self._equilibrium, self._rules = equilibrium, rules
+
+    def increment(
+        self, position: Position, ramp: Ramp, span: float, kind: str, aim: float
+    ) -> tuple[State | None, Outcome, str]:
+        """Try an increment; land where it passes a value that was asked for, or a limit point.
+
+        Args:
+            position: where the march stands.
+            ramp: the load.
+            span: its whole change.
+            kind: what is given: 'value', 'conjugate' or 'control'.
+            aim: its value.
+
+        Returns:
+            The state, if one was found that may be kept; how Newton ended; what was given.
+        """
+        scalar, key, last = ramp.scalar, measure(kind, ramp.scalar), position.states[-1]
+        outcome = self.find(position, scalar, kind, aim, (distinct(position.states, key), key, aim))
+        new = self.found(position, scalar, outcome)
+        why = "" if new is None else self._refused(position, scalar, kind, aim, new)
+        if why:
+            outcome, new = dataclasses.replace(outcome, reason=why), None
+        if new is None or unstable(new, last, scalar):
+            return new, outcome, kind
+        states, key = [*position.states[-2:], new], measure("conjugate", scalar)
+        goal = None
+        if position.path_following and not position.toward:
+            goal = passed(ramp, span, last, new, last_limit(position.report, scalar))
+        if goal is not None:
+            start = (distinct(states, key), key, crossing(states, scalar, goal))
+            outcome = self.find(position, scalar, "value", goal, start)
+            return self.found(position, scalar, outcome), outcome, "landing"
+        limit = limit_between(states, scalar) if kind == "conjugate" else None
+        if limit is not None:
+            outcome = self.find(position, scalar, kind, limit, (distinct(states, key), key, limit))
+            return self.found(position, scalar, outcome), outcome, kind
+        return new, outcome, kind
+
+    def find(
+        self,
+        position: Position,
+        scalar: str,
+        kind: str,
+        aim: float,
+        start: tuple[list[State], str, float],
+    ) -> Outcome:
+        """Solve for one equilibrium from an extrapolation, and count what that costs."""
+        outcome = self._equilibrium.find(scalar, kind, aim, start)
+        position.report.count(outcome)
+        return outcome
+
+    def found(self, position: Position, scalar: str, outcome: Outcome) -> State | None:
+        """The state that was found, its stability assessed."""
+        if not outcome.converged:
+            return None
+        new = self._equilibrium.capture()
+        # a factor of an earlier step knows nothing of this one
+        stale = outcome.factorisations == 0
+        self._equilibrium.assess_stability(new, position.states[-1], scalar, exactly=stale)
+        return new
+
+    def _refused(self, position: Position, scalar: str, kind: str, aim: float, new: State) -> str:
+        """Why a state is not kept though Newton's method has found it; empty where it is."""
+        if kind == "value" and self._jumped(position.states, scalar, aim, new):
+            return JUMPED
+        if kind == "conjugate" and position.path_following:
+            strayed = self._equilibrium.strayed(new, position.states)
+            return JUMPED if strayed > STRAY else ""
+        falls = new.measures[measure("rate", scalar)] < 0
+        return BEYOND if kind == "value" and falls else ""
+
+    def _jumped(self, states: list[State], scalar: str, aim: float, new: State) -> bool:
+        """Whether the conjugate is far from where the last states point to."""
+        name = measure("conjugate", scalar)
+        now = states[-1].measures[name]
+        key = measure("value", scalar)
+        expected = guess(states, key, aim, name)
+        # a curve through states around a kink may be flat here: the chord tells the size of a step
+        (p, v), (q, w) = ((state.measures[key], state.measures[name]) for state in states[-2:])
+        step = max(abs(expected - now), abs((w - v) / (q - p) * (aim - q)) if q != p else 0.0)
+        return bool(abs(new.measures[name] - expected) > self._rules.jump * step + 1e-6 * abs(now))

@@ -1,0 +1,57 @@
+"""Lengths of increments: the first one, and what the last states say of the next."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fem.march.equilibrium import STILL
+from fem.march.predictor import distinct, lagrange
+from fem.march.records import Ramp, Rules, State, measure
+
+
+def guess(states: Sequence[State], key: str, target: float, name: str) -> float:
+    """Extrapolated value of a measure where the increment of another would end."""
+    history = distinct(states, key)
+    weights = lagrange(np.array([state.measures[key] for state in history]), target)
+    return float(weights @ [state.measures[name] for state in history])
+
+
+def turn_limit(states: Sequence[State], drive: str, rules: Rules) -> float:
+    """Increment that changes the control quantity by `turn`, from the last two states."""
+    if "control" not in states[-1].measures or len(states) < min(rules.memory, 3):
+        return np.inf
+    a, b = (state.measures for state in states[-2:])
+    turned = abs(b["control"] - a["control"])
+    return float(abs(b[drive] - a[drive]) * rules.turn / max(turned, 1e-12))
+
+
+def first_size(
+    seed: State, base: State, ramp: Ramp, span: float, rules: Rules, guided: bool
+) -> float:
+    """First increment of a ramp, as it is given or by the linear response.
+
+    It changes the control quantity by `first_turn`, a twentieth of the load where nothing turns,
+    and changes the conjugate by no more than `swell`, unless a guide knows the way.
+
+    Args:
+        seed: the base, perturbed by its linear response.
+        base: where the ramp begins.
+        ramp: the ramp.
+        span: all of what it drives.
+        rules: incrementation.
+        guided: a guide knows the way.
+    """
+    if ramp.first:
+        return abs(ramp.first)
+    now = base.measures
+    change = {name: abs(value - now[name]) for name, value in seed.measures.items()}
+    driven, turned = change[ramp.key], change.get("control", 0.0)
+    volume = measure("conjugate", ramp.scalar)
+    if driven < 1e-300:
+        return span / 20
+    size = span / 20 if turned < STILL else driven / turned * rules.first_turn
+    if not guided and now[volume] and change[volume]:
+        size = min(size, driven * rules.swell * abs(now[volume]) / change[volume])
+    return float(size)
