@@ -12,8 +12,7 @@ import ufl
 from petsc4py import PETSc
 
 from fem import compat
-from fem.effects.effect import Constraint, Discrete, Effect
-from fem.effects.supports import opposite_free
+from fem.effects.effect import Constraint, Discrete, Effect, opposite_free
 from fem.kernels import compiling
 from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain

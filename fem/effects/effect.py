@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
@@ -120,3 +120,31 @@ class Effect:
     def fixed_scalars(self) -> dict[str, float]:
         """Natural unknowns of the kinematics, such as the curvature, that it fixes at a value."""
         return {}
+
+
+def opposite_free(effects: Iterable[Effect], body: Kinematics) -> npt.NDArray[np.bool_] | None:
+    """Local dofs that modes of the symmetry opposite to that of half a body may move, (local,).
+
+    None of a whole body; and with tetrahedra, whose pressure is continuous and would have to vanish
+    on the plane.
+
+    Args:
+        effects: of the scene.
+        body: its kinematics.
+    """
+    effects = list(effects)
+    domain = body.domain
+    tetrahedra = domain.data.cell_type == "tetrahedron"
+    if tetrahedra or all(effect.opposite() is None for effect in effects):
+        return None
+    free = np.ones(body.local, dtype=bool)
+    for effect in effects:
+        other = effect.opposite()
+        for constraint in effect.constraints() if other is None else other:
+            if constraint.component < body.components:
+                nodes = domain.surface_nodes(constraint.surface)
+                dofs = body.node_dofs[nodes, constraint.component]
+                free[dofs[dofs >= 0]] = False
+    for pin in (*body.pins, *body.opposite_pins):
+        free[body.node_dofs[pin]] = False
+    return free

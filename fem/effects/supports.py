@@ -2,13 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
-import numpy as np
-import numpy.typing as npt
-
 from fem.effects.effect import Constraint, Effect
-from fem.kinematics.kinematics import Kinematics
 
 
 class Clamp(Effect):
@@ -37,10 +31,12 @@ class Symmetry(Effect):
     Args:
         surface: named surface in the plane.
         component: axis normal to the plane.
+        halves: it cuts a body in half that is held otherwise too: modes of the opposite symmetry
+            are no rigid motions and are counted.
     """
 
-    def __init__(self, surface: str = "symmetry", component: int = 0) -> None:
-        self.surface = surface
+    def __init__(self, surface: str = "symmetry", component: int = 0, halves: bool = False) -> None:
+        self.surface, self.halves = surface, halves
         self.component = component
 
     @property
@@ -53,10 +49,11 @@ class Symmetry(Effect):
         return (Constraint("symmetry", self.surface, self.component),)
 
     def opposite(self) -> tuple[Constraint, ...] | None:
-        """On the plane x = 0, which halves the body, displacements in it are fixed instead."""
-        if self.component != 0:
+        """Displacements in the plane are fixed instead."""
+        if not self.halves:
             return None
-        return tuple(Constraint("symmetry", self.surface, i) for i in (1, 2))
+        others = (i for i in range(3) if i != self.component)
+        return tuple(Constraint("symmetry", self.surface, i) for i in others)
 
 
 class TwofoldAxis(Effect):
@@ -114,31 +111,3 @@ class BlockedTip(Effect):
     def constraints(self) -> tuple[Constraint, ...]:
         """v = 0 on both strips."""
         return (Constraint("roof", self.roof, 1), Constraint("post", self.post, 1))
-
-
-def opposite_free(effects: Iterable[Effect], body: Kinematics) -> npt.NDArray[np.bool_] | None:
-    """Local dofs that modes of the symmetry opposite to that of half a body may move, (local,).
-
-    None of a whole body; and with tetrahedra, whose pressure is continuous and would have to vanish
-    on the plane.
-
-    Args:
-        effects: of the scene.
-        body: its kinematics.
-    """
-    effects = list(effects)
-    domain = body.domain
-    tetrahedra = domain.data.cell_type == "tetrahedron"
-    if tetrahedra or all(effect.opposite() is None for effect in effects):
-        return None
-    free = np.ones(body.local, dtype=bool)
-    for effect in effects:
-        other = effect.opposite()
-        for constraint in effect.constraints() if other is None else other:
-            if constraint.component < body.components:
-                nodes = domain.surface_nodes(constraint.surface)
-                dofs = body.node_dofs[nodes, constraint.component]
-                free[dofs[dofs >= 0]] = False
-    for pin in (*body.pins, *body.opposite_pins):
-        free[body.node_dofs[pin]] = False
-    return free

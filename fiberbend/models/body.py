@@ -95,7 +95,7 @@ class Body(MeshedModel):
         from fem.effects.supports import Clamp, Symmetry
 
         named = {"clamped-root": Clamp}
-        return [named[case.support](), *([Symmetry()] if mesh.half else [])]
+        return [named[case.support](), *([Symmetry(halves=True)] if mesh.half else [])]
 
     def observables(self, case: Case, scene: Scene) -> Observables:
         """Angles by the line of the centroids."""

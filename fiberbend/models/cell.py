@@ -100,7 +100,7 @@ class Cell(UniformModel):
 
         if not mesh.half:
             return []
-        return [Symmetry(), Symmetry("section_root", 2), Symmetry("section_tip", 2)]
+        return [Symmetry(halves=True), Symmetry("section_root", 2), Symmetry("section_tip", 2)]
 
     def resolved_bulging(self, case: Case) -> float:
         """All of it, where every turn lies by itself."""

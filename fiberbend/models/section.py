@@ -85,7 +85,7 @@ class Section(UniformModel):
         """A mirror plane, or the axis of half a turn."""
         from fem.effects.supports import Symmetry, TwofoldAxis
 
-        return [TwofoldAxis() if twists(case) else Symmetry()]
+        return [TwofoldAxis() if twists(case) else Symmetry(halves=True)]
 
     def size(self, case: Case) -> ProblemSize:
         """Of its mesh."""

@@ -42,8 +42,9 @@ def test_collapse_under_vacuum_is_named(collapsed: RunResult) -> None:
 
 
 def test_a_falling_branch_is_not_pursued_at_any_price(collapsed: RunResult) -> None:
-    # the folded crown needs ever smaller steps; they only show why the load is not reached
-    assert collapsed.run["cutbacks"] <= 9
+    # the folded crown needs ever smaller steps; they only show why the load is not reached.
+    # One of them is taken back because Newton strayed from the path
+    assert collapsed.run["cutbacks"] <= 10
 
 
 def test_a_body_that_passes_through_itself_is_warned_about() -> None:
