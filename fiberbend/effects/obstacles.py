@@ -92,7 +92,7 @@ class CylinderSpec(ObstacleSpec):
     center: tuple[Coordinate, Coordinate] = Field(strict=False)
     """y and z of its axis."""
     radius: Length
-    """Radius of the bar."""
+    """Radius of the bar, at least half the length of an element."""
 
     def placed(self, actuator: Actuator) -> Obstacle:
         """The bar."""

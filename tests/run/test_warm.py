@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fem.march.guide import Guide
+from fem.march.predictor import amplification, lagrange
 from fiberbend import run
 from fiberbend.running import runner
 from tests.run.conftest import small
@@ -38,13 +39,12 @@ LONG: dict[str, Any] = {
 }
 
 
+@pytest.mark.parametrize("load", [{"to": "190 kPa"}, {"angle": "60 deg"}])
 def test_a_body_steered_by_its_section_needs_fewer_iterations(
-    monkeypatch: pytest.MonkeyPatch,
+    load: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # driven by pressure: 25 against 32 iterations. Driven by the angle the guide saves steps, not
-    # iterations: 30 against 19 here, one cut-back among them (docs/decisions.md)
-    winding = LONG["effects"][1]
-    case = small(**LONG | {"effects": [{"pressure": {"to": "190 kPa"}}, winding]})
+    # 21 against 32, and 8 against 12
+    case = small(**LONG | {"effects": [{"pressure": load}, LONG["effects"][1]]})
     steered = run(case)
     monkeypatch.setattr(runner, "section_guides", lambda _case: False)
     alone = run(case)
@@ -53,6 +53,20 @@ def test_a_body_steered_by_its_section_needs_fewer_iterations(
     assert steered.run["newton_iterations"] < alone.run["newton_iterations"]
     for column in ("angle_deg", "tip_y_mm", "tip_z_mm"):
         assert steered.last(column) == pytest.approx(alone.last(column), rel=1e-6)
+
+
+def test_a_long_step_behind_a_short_one_is_not_cut_back() -> None:
+    # from 60° a parabola through rest, 15° and 60° pointed nowhere: 11 iterations for nothing
+    result = run(small(**LONG))
+    assert result.status == "converged"
+    assert result.run["cutbacks"] == 0
+    assert result.run["newton_iterations"] <= 22
+
+
+def test_weights_of_a_state_and_a_slope_count_as_one() -> None:
+    spread, slope = np.array([0.0, 15.0, 60.0]), np.array([0.0, 1e-4, 15.0])
+    assert amplification(spread, lagrange(spread, 160.0)) == pytest.approx(48.4, abs=0.1)
+    assert amplification(slope, lagrange(slope, 60.0)) == pytest.approx(31.0, abs=0.1)
 
 
 def test_the_sign_of_round_off_at_rest_decides_nothing() -> None:
