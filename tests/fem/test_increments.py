@@ -116,10 +116,9 @@ def test_where_a_body_meets_itself_lies_between_two_states(monkeypatch: pytest.M
 
 
 def test_the_way_beyond_a_limit_point_ends_by_that_point_alone() -> None:
-    # not by a bifurcation, by another load's limit, or by where the load rises again
+    # not by another load's limit, or by where the load rises again
     volume = 1e-3
     others = [
-        Critical("bifurcation", "pressure", 0.01, volume, None, 0, 1),
         Critical("limit", "gravity", 0.01, volume, None, 0, 1),
         Critical("limit", "pressure", 0.01, volume, None, 1, 0),
     ]
