@@ -10,7 +10,7 @@ from fem.march.increments import guess
 from fem.march.limit_points import crossing, last_limit, limit_between, passed
 from fem.march.position import Position
 from fem.march.predictor import distinct
-from fem.march.records import Ramp, Rules, State, measure
+from fem.march.records import MODES, Ramp, Rules, State, measure
 from fem.solver.newton import Outcome
 
 STRAY = 0.35
@@ -99,7 +99,9 @@ class Attempts:
         """Why a state is not kept though Newton's method has found it; empty where it is."""
         if kind == "value" and self._jumped(position.states, scalar, aim, new):
             return JUMPED
-        if kind == "conjugate" and position.path_following:
+        # a path without a critical point may have kinks: threads that go slack
+        critical = bool(position.report.critical) or new.measures[MODES] > 0
+        if kind == "conjugate" and position.path_following and critical:
             strayed = self._equilibrium.strayed(new, position.states)
             return JUMPED if strayed > STRAY else ""
         falls = new.measures[measure("rate", scalar)] < 0
