@@ -1,4 +1,4 @@
-"""Compiled kernels: where they are kept, with which flags they are made, one compiler at a time."""
+"""Forms derived, and kernels compiled: where they are kept, with which flags, one compiler at a time."""
 
 from __future__ import annotations
 
@@ -191,3 +191,18 @@ def versions() -> dict[str, str]:
         "petsc": f"{major}.{minor}.{micro}",
         "numpy": np.__version__,
     }
+
+
+def differentiate(form: Any, variable: Any) -> Any:
+    """∂/∂q of a lowered form for a global scalar q, by integrals; None where q is absent.
+
+    Args:
+        form: with its algebra lowered.
+        variable: q, a UFL variable.
+    """
+    parts = [
+        integral.reconstruct(ufl.diff(integral.integrand(), variable))
+        for integral in form.integrals()
+    ]
+    result = ufl.algorithms.apply_derivatives.apply_derivatives(ufl.Form(parts))
+    return None if result.empty() else result

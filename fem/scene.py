@@ -13,27 +13,15 @@ from petsc4py import PETSc
 
 from fem import compat
 from fem.effects.effect import Constraint, Discrete, Effect, opposite_free
-from fem.kernels import compiling
+from fem.kernels import compiling, differentiate
 from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
 from fem.kinematics.kinematics import Kinematics
 from fem.matrix import may_free
 from fem.ranks import total
+from fem.round_off import solid_noise
 
 Floats = npt.NDArray[np.float64]
-
-PROBE = 1e-6
-"""Part of an element by which nodes are moved to see what a move in their last digit does."""
-
-
-def _differentiate(form: Any, variable: Any) -> Any:
-    """∂/∂q of a lowered form for a global scalar q, by integrals; None where q is absent."""
-    parts = [
-        integral.reconstruct(ufl.diff(integral.integrand(), variable))
-        for integral in form.integrals()
-    ]
-    result = ufl.algorithms.apply_derivatives.apply_derivatives(ufl.Form(parts))
-    return None if result.empty() else result
 
 
 class Scene:
@@ -102,7 +90,7 @@ class Scene:
         self.natural = tuple(name for name in self.body.natural if name not in fixed)
         self._compile(potentials)
         self._constrain(constraints)
-        self.solid_noise = self._solid_noise()
+        self.solid_noise = solid_noise(self)
         self.force_noise = float(np.hypot(self._noise(), self.solid_noise))
         self.free_opposite = opposite_free(ordered, self.body)
 
@@ -125,11 +113,11 @@ class Scene:
                 forms[f"force {key}"] = ufl.derivative(form, body.w, test)
         lowered = ufl.algorithms.apply_algebra_lowering.apply_algebra_lowering(whole)
         for i, name in enumerate(body.scalars):
-            conjugate = _differentiate(lowered, body.scalar(name))
+            conjugate = differentiate(lowered, body.scalar(name))
             forms[f"conjugate {name}"] = conjugate
             forms[f"load {name}"] = ufl.derivative(conjugate, body.w, test)
             for other in list(body.scalars)[i:] if body.natural else ():
-                second = _differentiate(conjugate, body.scalar(other))
+                second = differentiate(conjugate, body.scalar(other))
                 if second is not None:
                     forms[f"second {name} {other}"] = second
         if body.pressure_field is not None:
@@ -335,16 +323,10 @@ class Scene:
             discrete.add_noise(noise)
         return float(np.sqrt(total(self.domain.comm, float(noise @ noise))))
 
-    def _solid_noise(self) -> float:
-        """Forces inside the solid where nodes are moved in their last digit."""
-        rest, body = self.w.copy(), self.body
-        moved = rest.copy()
-        moved[body.node_dofs[body.owned_nodes]] += PROBE * body.astray()
-        self.set(moved)
-        forces = self._sum(self._forms["residual"], ())[0] + sum(map(self.force, self.outside))
-        self.set(rest)
-        inside = self.free[: body.owned] & ~self.volumetric
-        return float(np.finfo(float).eps / PROBE * self.norm(forces[inside]))
+    def solid_forces(self) -> Floats:
+        """The residual without the potentials that have code of their own, owned part, (owned,)."""
+        forces: Floats = self._sum(self._forms["residual"], ())[0]
+        return forces + sum(map(self.force, self.outside))
 
     def residual(self) -> tuple[Floats, float]:
         """R = ∂Π/∂w at the present state.

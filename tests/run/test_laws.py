@@ -53,21 +53,25 @@ def test_a_rubber_at_its_limiting_stretch_fails_honestly() -> None:
     # the roof would need I1 − 3 = 0.2 at some 145°, beyond which no state exists
     gent = {"law": "gent", "mu": "0.3 MPa", "jm": 0.2}
     result = run(baseline(gent, angle="360 deg"))
-    assert result.status == "failed"
+    assert result.status == "stopped"
     angles, pressures = column(result, "angle_deg"), column(result, "pressure_kPa")
-    assert angles == sorted(angles)
+    most = max(angles)
+    assert f"the angle is greatest at {most:.4g}°" in result.reason
     assert pressures == sorted(pressures), "the actuator locks"
-    assert 120 < angles[-1] < 180
+    assert 120 < most < 180
     # a pressure it can always bear: it bends less the more it is pressed
     held = run(baseline(gent, to="200 kPa"))
     assert held.status == "converged"
-    assert held.last("angle_deg") < angles[-1]
+    assert held.last("angle_deg") < most
 
 
 def test_closed_form_names_the_limiting_stretch() -> None:
     gent = {"law": "gent", "mu": "0.3 MPa", "jm": 0.2}
-    for pressure in ({"angle": "360 deg"}, {"to": "2 MPa"}):
-        result = run(baseline(gent, "analytic", **pressure))
-        assert result.status == "stopped"
-        assert result.reason.startswith("the rubber meets its limiting stretch beyond")
-        assert result.last("angle_deg") < 200
+    result = run(baseline(gent, "analytic", angle="360 deg"))
+    assert result.status == "stopped"
+    assert result.reason.startswith("the rubber meets its limiting stretch beyond")
+    assert result.last("angle_deg") < 200
+    # a pressure as great as one likes is met before
+    pressed = run(baseline(gent, "analytic", to="2 MPa"))
+    assert pressed.status == "converged"
+    assert pressed.last("angle_deg") < result.last("angle_deg")

@@ -56,8 +56,10 @@ def test_told_to_stop_on_two_ranks(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     """By mpirun, which has an exit code of its own; with time to end beside other tests."""
     monkeypatch.setenv("OMPI_MCA_odls_base_sigkill_timeout", "3")
     _, text, run = _stop(2, signal.SIGINT, tmp_path)
-    assert_said(text, run)
+    if run["status"] != "running":  # else killed by mpirun within a long call, its steps kept
+        assert_said(text, run)
     assert run["ranks"] == 2
+    assert run["load_steps"] >= 1
 
 
 def assert_said(text: str, run: dict[str, Any]) -> None:
