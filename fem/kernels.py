@@ -1,4 +1,4 @@
-"""Forms derived, and kernels compiled: where they are kept, with which flags, one compiler at a time."""
+"""Forms derived and kernels compiled: where they are kept, by which flags, one at a time."""
 
 from __future__ import annotations
 
