@@ -199,6 +199,17 @@ def self_contact(measures: dict[str, float]) -> str:
     )
 
 
+def walls_passed(measures: dict[str, float]) -> str:
+    """A line on a chamber whose walls have passed through each other."""
+    where = _degrees(measures["control"])
+    if "value pressure" in measures:
+        where = f"{1e3 * measures['value pressure']:.4g} kPa, {where}"
+    return (
+        f"at {where} opposite walls of the chamber have passed through each other: contact with "
+        "itself is not modelled, and from there on no actuator looks like this"
+    )
+
+
 def _vacuum(point: Critical) -> bool:
     return point.scalar == "pressure" and point.value < 0
 
