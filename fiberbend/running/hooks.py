@@ -83,7 +83,7 @@ class Recording(Hook):
         label = self._requested(march.position.report, state)
         if label:
             self.keep(label)
-        if self._folder is not None and self._resumes:
+        if self._folder is not None and self._resumes and not march.position.entering:
             self._recorder.integrate()
             self._save(self._folder, march, row[col.STEP])
         signals.check()
