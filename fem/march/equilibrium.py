@@ -185,17 +185,17 @@ class Equilibrium:
             exactly: by the tangent at the state; else by the last one of Newton's method, unless
                 that tells a change.
         """
-        rate = measure("rate", scalar)
+        rate, kinds = measure("rate", scalar), [measure(k, scalar) for k in ("conjugate", "value")]
         state.measures[rate] = before.measures.get(rate, 1.0)
         modes = self._modes()
-        if exactly or modes != before.measures.get(MODES, 0):
+        conjugate, value = (state.measures[name] - before.measures[name] for name in kinds)
+        # where the load has turned and another mode is lost, the count stays as it is
+        turned = conjugate * value * state.measures[rate] < 0
+        if exactly or turned or modes != before.measures.get(MODES, 0):
             # not by an old factor, nor with forces that were predicted
             near = self.perturbed(state, scalar)
             modes = self._modes()
-            change = [
-                near.measures[name] - state.measures[name]
-                for name in (measure("conjugate", scalar), measure("value", scalar))
-            ]
+            change = [near.measures[name] - state.measures[name] for name in kinds]
             state.measures[rate] = change[0] / change[1]
         state.measures[MODES] = modes
 

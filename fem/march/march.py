@@ -15,11 +15,7 @@ from fem.march.frames import Frames
 from fem.march.guide import Guide
 from fem.march.hooks import Hook
 from fem.march.increments import first_size, guess, turn_limit
-from fem.march.limit_points import (
-    critical,
-    limit_ahead,
-    softens,
-)
+from fem.march.limit_points import critical, limit_ahead, softens
 from fem.march.position import Position
 from fem.march.predictor import Predictor
 from fem.march.records import Causes, Ramp, Report, Rules, State, measure
@@ -312,9 +308,11 @@ class March:
         position.path_following = ramp.drive == "value" or bool(position.toward)
         position.lost = None
         entered: list[State] = []
-        for one, how in found:
+        for number, (one, how) in enumerate(found, start=1):
+            position.entering = number < len(found)
             if self._enter(ramp, entered, one, how):
                 break
+        position.entering = False
         return True
 
     def _enter(self, ramp: Ramp, entered: list[State], new: State, outcome: Outcome) -> bool:

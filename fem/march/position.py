@@ -28,6 +28,8 @@ class Position:
         memory: what the march's own hooks remember, in their order.
         lost: what is driven, where a mode was found unstable that is not at the last state; the
             bifurcation lies before it. None: none was found.
+        entering: the last state is one of several that lead onto another branch, the next ones
+            known already: none to go on from, for near a crossing the branches lie too close.
         report: what happened so far.
     """
 
@@ -43,4 +45,5 @@ class Position:
     failures: int = 0
     force_floor: float = 0.0
     memory: list[dict[str, Any]] = dataclasses.field(default_factory=list)
+    entering: bool = False
     report: Report = dataclasses.field(default_factory=Report)

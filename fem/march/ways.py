@@ -46,10 +46,13 @@ class Way:
 
     def next(self, now: float, size: float) -> float:
         """Where an increment of a size would end; at a stop that is near."""
-        target = now + self.sign * size
-        stops = [s for s in (*self.stops, self.end) if self.sign * (s - now) > 1e-9 * self.span]
-        nearest = min(stops, key=lambda s: abs(s - now))
+        target, nearest = now + self.sign * size, self.stop(now)
         return nearest if self.sign * (target - nearest) > -0.2 * size else target
+
+    def stop(self, now: float) -> float:
+        """The next value to be hit exactly, the end if there is none before it."""
+        ahead = (s for s in self.stops if self.sign * (s - now) > 1e-9 * self.span)
+        return min((self.end, *ahead), key=lambda s: abs(s - now))
 
 
 def way_of(ramp: Ramp, span: float, position: Position, rest: State, rules: Rules) -> Way:
@@ -131,15 +134,15 @@ class Requests:
 
         Returns:
             'keep'; 'again': from the old state to the value that was run past, or by the load to
-            its end; 'cut': nothing is ahead where it was thought to be.
+            its next stop or its end; 'cut': nothing is ahead where it was thought to be.
         """
         if kind != "control":
             passed = self._between(old.measures["control"], new.measures["control"])
             self._insist = passed[0] if passed else None
             return "again" if passed else "keep"
         load, before = new.measures[way.key], old.measures[way.key]
-        if way.sign * (load - way.end) > 1e-9 * way.span:
-            # it lies beyond the load's end: go there by the load instead
+        if way.sign * (load - way.stop(before)) > 1e-9 * way.span:
+            # it lies beyond the load's next stop or end: go there by the load instead
             self._beyond.add(aim)
             return "cut" if self._forced else "again"
         return "keep" if way.sign * (load - before) > 0 else "cut"

@@ -14,6 +14,7 @@ from fem.march.guide import Guide
 from fem.march.march import March
 from fem.march.records import Ramp, Rules
 from fem.results.diagnosis import Diagnosis
+from fem.results.walls import Walls
 from fem.scene import Scene
 from fem.solver.newton import Newton, Settings
 from fiberbend.case.case import Case
@@ -43,6 +44,7 @@ class Assembly:
         newton: the solver.
         march: the load stepping.
         ramps: the loads of what is modelled.
+        walls: sees whether walls of the chamber pass through each other; None: not looked.
     """
 
     parts: SceneParts
@@ -51,6 +53,7 @@ class Assembly:
     newton: Newton
     march: March
     ramps: list[Ramp]
+    walls: Walls | None = None
 
 
 def assemble(
@@ -67,7 +70,7 @@ def assemble(
         mesh: the mesh of its model.
         comm: communicator.
         make_guide: makes the guide of a body; None for no guide.
-        watch: look whether the body passes through itself.
+        watch: look whether the body, or its chamber's wall, passes through itself.
     """
     model = meshed(case)
     parts = build(case, mesh, model)
@@ -78,6 +81,8 @@ def assemble(
         settings = effect.settings(settings)
     newton = Newton(scene, comm, settings)
     frames = observables.frames
+    walls = Walls(scene) if watch else None
+    touching = [Approach(scene)] if any(effect.touches() for effect in case.effects) else []
     guide = None if make_guide is None or frames is None else make_guide(scene, frames)
     march = March(
         scene,
@@ -88,11 +93,10 @@ def assemble(
         guide=guide,
         rod=observables.rod() if watch else None,
         causes=Diagnosis(scene),
-        hooks=[Approach(scene)] if any(effect.touches() for effect in case.effects) else [],
+        hooks=[*touching, *([walls] if walls else [])],
     )
-    return Assembly(
-        parts, scene, observables, newton, march, parts.ramps(scene.body.symmetry_factor)
-    )
+    ramps = parts.ramps(scene.body.symmetry_factor)
+    return Assembly(parts, scene, observables, newton, march, ramps, walls)
 
 
 def rules(case: Case, model: MeshedModel, guided: bool) -> Rules:

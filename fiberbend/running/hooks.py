@@ -72,7 +72,7 @@ class Recording(Hook):
     def after_step(self, march: Marching, state: State, outcome: Outcome) -> None:
         """Record the step, and where the march stands."""
         row = self._recorder.add(state, outcome)
-        self.warn(messages.remarks(march.position.report))
+        self.remark(march.position.report)
         self._progress.step(
             row[col.STEP],
             self._fraction(march.position.ramp, state),
@@ -83,7 +83,7 @@ class Recording(Hook):
         label = self._requested(march.position.report, state)
         if label:
             self.keep(label)
-        if self._folder is not None and self._resumes:
+        if self._folder is not None and self._resumes and not march.position.entering:
             self._recorder.integrate()
             self._save(self._folder, march, row[col.STEP])
         signals.check()
@@ -103,6 +103,13 @@ class Recording(Hook):
     def after_cutback(self, march: Marching, reason: str) -> None:
         """Report it."""
         self._progress.message(f"increment cut back: {reason}")
+
+    def remark(self, report: Report) -> None:
+        """Warn of what has happened to the body so far."""
+        walls = self._assembly.walls
+        self.warn(messages.remarks(report))
+        if walls is not None and walls.passed is not None:
+            self.warn([messages.walls_passed(walls.passed)])
 
     def warn(self, lines: Sequence[str], silent: bool = False) -> None:
         """Report each line once; `silent`: with the others at the end only."""

@@ -16,6 +16,8 @@ UNSTABLE_END = (
 )
 TURNED = 0.1
 """An angle that has come back by so much, in degrees, has had its greatest value."""
+_SAME = 1e-9
+"""Degrees up to which an angle is that where a load began."""
 _LEFT = {
     "by the loads": "the run goes on along it, to the side that the loads or the mesh favour",
     "chosen": "the run goes on along it, to one of two sides that are alike",
@@ -151,13 +153,17 @@ def angle_missed(
         failure: why the march went no further; empty where it was no failure.
     """
     side = 1.0 if target >= begin else -1.0
+    # what other loads have done before is not this one's
+    first = next((n for n, row in enumerate(rows) if abs(row[col.ANGLE] - begin) <= _SAME), 0)
+    rows = rows[first:]
     best = max(rows, key=lambda row: side * float(row[col.ANGLE]))
     last = rows[-1]
     turned = bool(side * (best[col.ANGLE] - last[col.ANGLE]) > TURNED)
     here = f"{last[col.ANGLE]:.4g}° at {last[col.PRESSURE]:.4g} kPa"
     text = f"{target:.6g}° is not reached: "
     if side * (best[col.ANGLE] - begin) > TURNED:
-        text += f"the angle is greatest at {best[col.ANGLE]:.4g}°, {best[col.PRESSURE]:.4g} kPa"
+        most = "greatest" if side * best[col.ANGLE] > 0 else "least"
+        text += f"the angle is {most} at {best[col.ANGLE]:.4g}°, {best[col.PRESSURE]:.4g} kPa"
         text += f", and goes back to {here}" if turned else ""
     elif turned:
         text += f"the pressure bends it the other way, from {begin + 0.0:.4g}° to {here}"
@@ -196,6 +202,17 @@ def self_contact(measures: dict[str, float]) -> str:
     return (
         f"from {_degrees(measures['control'])}{at} on the body passes through itself: contact "
         "with itself is not modelled"
+    )
+
+
+def walls_passed(measures: dict[str, float]) -> str:
+    """A line on a chamber whose walls have passed through each other."""
+    where = _degrees(measures["control"])
+    if "value pressure" in measures:
+        where = f"{1e3 * measures['value pressure']:.4g} kPa, {where}"
+    return (
+        f"at {where} opposite walls of the chamber have passed through each other: contact with "
+        "itself is not modelled, and from there on no actuator looks like this"
     )
 
 

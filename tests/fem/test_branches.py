@@ -15,7 +15,7 @@ from fem.effects.supports import Clamp
 from fem.kinematics.domain import Domain
 from fem.march.branches import Branches
 from fem.march.frames import Frames
-from fem.march.hooks import AfterStep
+from fem.march.hooks import AfterStep, Hook, Marching
 from fem.march.march import LOST, March
 from fem.march.records import Ramp, Report, Rules, State
 from fem.results.checkpoint import Archive
@@ -156,3 +156,26 @@ def test_a_branch_that_is_not_found_is_a_failure(monkeypatch: pytest.MonkeyPatch
     assert (report.status, report.reason) == ("failed", LOST)
     assert column.states[-1].measures["modes"] == 0
     assert [point.side for point in report.critical] == [""]
+
+
+class _Entering(Hook):
+    """Keeps whether a march was still entering a branch at each state, and its way off the path."""
+
+    def __init__(self, column: Column) -> None:
+        self._column = column
+        self.seen: list[tuple[bool, float]] = []
+
+    def after_step(self, march: Marching, state: State, outcome: Outcome) -> None:
+        self.seen.append((march.position.entering, abs(self._column.lean(state))))
+
+
+def test_states_near_a_crossing_are_none_to_go_on_from() -> None:
+    # a march that is saved there goes on by its load, which tells no side, and may come back
+    column = standing()
+    hook = _Entering(column)
+    column.march.run([Ramp("gravity", TOP, first=0.3)], [hook])
+    entering = [lean for entering, lean in hook.seen if entering]
+    after = [lean for entering, lean in hook.seen if not entering and lean > 1e-3]
+    assert len(entering) >= 2
+    assert max(entering) < min(after)
+    assert not column.march.position.entering

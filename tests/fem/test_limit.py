@@ -18,6 +18,7 @@ from fem.effects.elastic import Elastic
 from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Symmetry
 from fem.kinematics.domain import Domain
+from fem.march.equilibrium import Equilibrium
 from fem.march.hooks import AfterStep, Hook, Marching
 from fem.march.limit_points import crossing, extreme, limit_ahead
 from fem.march.march import March
@@ -279,3 +280,34 @@ def test_crossing_lies_between_the_last_states() -> None:
     states = _states([(v, (v - 1) ** 2) for v in (0.5, 1.5, 3.0)])
     assert crossing(states, "pressure", 1.0) == pytest.approx(2.0)
     assert math.isclose(crossing(states[1:], "pressure", 0.25), 1.5)
+
+
+class _Told(Equilibrium):
+    """Counts one unstable mode everywhere; the conjugate grows with the value at a known rate."""
+
+    def __init__(self, rate: float | None) -> None:
+        self._rate = rate
+
+    def _modes(self) -> int:
+        return 1
+
+    def perturbed(self, base: State, scalar: str, sign: float = 1.0) -> State:
+        assert self._rate is not None, "nothing asks for another factor"
+        change = {"value pressure": 1.0, "conjugate pressure": self._rate}
+        near = {name: base.measures[name] + by for name, by in change.items()}
+        return State(base.w, {}, near, None, {})
+
+
+@pytest.mark.parametrize(("conjugate", "rate"), [(2.0, 3.0), (2.0, -3.0), (0.0, None)])
+def test_a_load_that_turns_while_another_mode_is_lost_is_seen(
+    conjugate: float, rate: float | None
+) -> None:
+    # the count stays one: of the load that falls before, of a mode that has nothing to do with it
+    def at(value: float, conjugate: float, **more: float) -> State:
+        measures = {"value pressure": value, "conjugate pressure": conjugate, **more}
+        return State(np.zeros(0), {}, measures, None, {})
+
+    before = at(0.5, 1.0, **{"rate pressure": -1.0, "modes": 1})
+    new = at(0.6, conjugate)
+    _Told(rate).assess_stability(new, before, "pressure")
+    assert new.measures["rate pressure"] == (-1.0 if rate is None else rate)

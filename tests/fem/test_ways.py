@@ -64,6 +64,37 @@ def test_an_angle_beyond_the_end_of_the_load_or_behind_it_is_not_taken() -> None
     assert "ahead" in MISSED
 
 
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_an_angle_beyond_the_next_stop_of_the_load_waits_until_the_stop_is_hit(
+    side: float,
+) -> None:
+    way = Way("value", "value pressure", side, side, 1.0, (side * 0.5, side * 0.8), np.inf)
+    asked = _requests(side * 0.1)
+    assert asked.due(0.0, side * 0.095) == side * 0.1
+    passed = _at(side * 0.1, side * 0.52)
+    assert asked.judge(_at(0.0), passed, "control", side * 0.1, way) == "again"
+    assert asked.due(0.0, side * 0.095) is None
+    # from the stop on the load runs past it, and is sent back
+    stop = _at(side * 0.095, side * 0.5)
+    assert asked.judge(stop, _at(side * 0.15, side * 0.8), "value", side * 0.8, way) == "again"
+    assert asked.due(stop.measures["control"], side * 0.15) == side * 0.1
+    assert asked.judge(stop, passed, "control", side * 0.1, way) == "keep"
+
+
+def test_pressures_and_angles_close_together_are_all_hit() -> None:
+    stops = (TARGET / 3, TARGET / 2)
+    body = bender(Rules(turn=np.deg2rad(10.0)))
+    body.run([Ramp("pressure", stop) for stop in stops])
+    # the load passes a stop on the way to an angle just beyond
+    angle = 1.005 * body.states[-1].measures["control"]
+    body = bender(Rules(turn=np.deg2rad(10.0)))
+    report = body.run([Ramp("pressure", TARGET, stops=stops, at=(angle,))])
+    assert report.status == "converged", report.reason
+    assert [value for _, value in report.hits] == [angle]
+    reached = [state.measures["value pressure"] for state in body.states]
+    assert all(stop in reached for stop in stops)
+
+
 def _angles(body: Bender) -> np.ndarray:
     return np.array([state.measures["control"] for state in body.states])
 

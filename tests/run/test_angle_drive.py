@@ -15,6 +15,7 @@ from fiberbend.models.choice import meshed
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import as_case
 from fiberbend.running.assembly import assemble
+from fiberbend.running.messages import angle_missed
 from tests.run.conftest import small
 
 QUIET = {"pictures": False, "fields": False}
@@ -176,3 +177,26 @@ def test_a_body_is_bent_backward_by_vacuum() -> None:
         found = run(small(effects=effects, mesh={"axial": "6 mm"}, output=output))
         assert (found.status, found.last("angle_deg")) == ("converged", pytest.approx(-3.0))
         assert -12 < found.last("pressure_kPa") < -8
+
+
+def _course(*states: tuple[float, float]) -> list[dict[str, Any]]:
+    return [{"pressure_kPa": pressure, "angle_deg": angle} for pressure, angle in states]
+
+
+def test_what_other_loads_have_done_before_is_not_the_pressure_s_best() -> None:
+    # its weight bends it to 15.5°, vacuum back to 13.9° and no further
+    rows = _course((0, 0), (0, 9), (0, 15.5), (-3, 14.3), (-5.7, 13.9), (-6.6, 14.1))
+    turned, reason = angle_missed(rows, 15.5, 2.0, "")
+    assert turned
+    assert reason == (
+        "2° is not reached: the angle is least at 13.9°, -5.7 kPa, and goes back to 14.1° at "
+        "-6.6 kPa"
+    )
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_an_angle_that_has_turned_back_is_greatest_to_either_side(side: float) -> None:
+    rows = _course((0, 0), (side * 5, side * 20), (side * 6, side * 12))
+    turned, reason = angle_missed(rows, 0.0, side * 45, "")
+    assert turned
+    assert f"the angle is greatest at {side * 20:.4g}°, {side * 5:.4g} kPa" in reason

@@ -2,16 +2,32 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import shutil
 from pathlib import Path
 from typing import Any
 
 import pytest
+from mpi4py import MPI
 
+from fem.march.records import MODES
+from fem.results.checkpoint import Archive
+from fem.solver.newton import Outcome
+from fiberbend.models.choice import meshed
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import as_case
-from fiberbend.running.folder import CHECKPOINT, CHECKPOINT_BEFORE, MESH, RUN_FILE, read_history
+from fiberbend.running.assembly import assemble
+from fiberbend.running.folder import (
+    CHECKPOINT,
+    CHECKPOINT_BEFORE,
+    MESH,
+    RUN_FILE,
+    RunFolder,
+    read_history,
+)
+from fiberbend.running.history import Recorder
+from fiberbend.running.hooks import Recording
 from fiberbend.running.progress import Progress
 from fiberbend.running.runner import run_case
 from tests.run import test_contact
@@ -151,3 +167,24 @@ def test_a_run_that_had_ended_goes_to_output(whole: RunResult, tmp_path: Path) -
     assert_bitwise(again, whole)
     assert json.loads((out / RUN_FILE).read_text())["status"] == "converged"
     assert read_history(out / "history.csv")[-1]["angle_deg"] == pytest.approx(16.0)
+
+
+@pytest.mark.parametrize("entering", [True, False])
+def test_no_checkpoint_is_left_while_a_branch_is_entered(
+    entering: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Near the crossing a load does not tell the branches apart: none goes on from there."""
+    saved: list[int] = []
+    monkeypatch.setattr(Recording, "_save", lambda _self, _folder, _march, step: saved.append(step))
+    case = as_case(CASE)
+    assembly = assemble(case, meshed(case).mesh(case), MPI.COMM_SELF)
+    march, gauge = assembly.march, assembly.observables.gauge()
+    recorder = Recorder(assembly.scene, gauge, meshed(case), march.rest)
+    archive = Archive(assembly.scene, assembly.observables.frames)
+    quiet = Progress(quiet=True)
+    folder = RunFolder(tmp_path)
+    recording = Recording(case, assembly, archive, recorder, folder, quiet, meshed(case))
+    march.position.entering = entering
+    state = dataclasses.replace(march.rest, measures={**march.rest.measures, MODES: 0})
+    recording.after_step(march, state, Outcome(True, 1, 1, "", [], 1.0))
+    assert saved == ([] if entering else [1])
