@@ -8,6 +8,8 @@ import sys
 import time
 from pathlib import Path
 
+import pytest
+
 from tests.conftest import ROOT
 
 PROGRAM = """
@@ -95,6 +97,19 @@ def test_without_a_compiler_the_message_says_so(tmp_path: Path) -> None:
         "machine.folders.MachineError: no C compiler: no-such-cc is not found; install gcc, or "
         "set CC or PATH"
     )
+
+
+@pytest.mark.parametrize("command", ["run", "control"])
+def test_without_a_compiler_a_command_is_one_line(command: str, tmp_path: Path) -> None:
+    arguments = [command, str(ROOT / "cases" / "section.yaml"), "--out", str(tmp_path / "run")]
+    done = subprocess.run(
+        [sys.executable, "-m", "fiberbend", *arguments],
+        env=os.environ | {"CC": "no-such-cc", "XDG_CACHE_HOME": str(tmp_path / "cache")},
+        capture_output=True,
+        text=True,
+    )
+    line = "no C compiler: no-such-cc is not found; install gcc, or set CC or PATH\n"
+    assert (done.returncode, done.stderr) == (1, line)
 
 
 def test_the_working_folder_steers_nothing(tmp_path: Path) -> None:
