@@ -133,6 +133,8 @@ class _Run:
 
     def _go(self, again: bool) -> RunResult:
         progress, case = self.progress, self.case
+        # before this run takes of the memory that is free
+        known = doubts(case)
         progress.phase("mesh")
         mesh = _on_rank_0(self.comm, lambda: self._mesh(again))
         section = self._section()
@@ -144,7 +146,7 @@ class _Run:
         assembly = assemble(case, mesh, self.comm, make_guide, watch=True)
         recorder, recording = self._recording(assembly, again)
         self.recording = recording
-        recording.warn(doubts(case))
+        recording.warn(known)
         progress.phase("solve")
         assembly.march.run(assembly.ramps, [recording])
         status, reason = ended(case, assembly, recorder.rows)

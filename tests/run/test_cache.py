@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.conftest import ROOT
+from tests.conftest import ROOT, MpiRun
 
 PROGRAM = """
 import ufl
@@ -110,6 +110,19 @@ def test_without_a_compiler_a_command_is_one_line(command: str, tmp_path: Path) 
     )
     line = "no C compiler: no-such-cc is not found; install gcc, or set CC or PATH\n"
     assert (done.returncode, done.stderr) == (1, line)
+
+
+@pytest.mark.mpi
+def test_without_a_compiler_two_ranks_say_one_line(
+    mpirun: MpiRun, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CC", " no-such-cc")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    case = ROOT / "cases" / "section.yaml"
+    done = mpirun(2, ["-m", "fiberbend", "run", case, "--out", tmp_path / "run"])
+    assert done.returncode == 1
+    assert done.stderr.count("no C compiler: no-such-cc is not found") == 1
+    assert "rank" not in done.stderr.partition("---")[0]
 
 
 def test_the_working_folder_steers_nothing(tmp_path: Path) -> None:
