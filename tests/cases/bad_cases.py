@@ -81,8 +81,8 @@ BAD_SETTINGS = [
         'solver.max_step: "1e-09 kPa", expected at least a 100000th of "200 kPa"',
     ),
     (
-        "solver.max_turn=1e-7 deg",
-        'solver.max_turn: "1e-07 deg", expected at least a 100000th of "360 deg"',
+        "solver.max_turn=1e-6 deg",
+        'solver.max_turn: "1e-06 deg", expected at least a 100000th of "360 deg"',
     ),
     # unknown names
     ("materials.wall=chewing-gum", 'materials.wall: "chewing-gum", expected '),
