@@ -28,13 +28,12 @@ from typing import Any
 import yaml
 from pebble import ProcessPool
 
+from bench.survive import ROOT, put
+from fiberbend.columns import AXIS_STRETCH, DET_F, VOLUME
 from fiberbend.plan.plan import make_plan
 from fiberbend.reader.reader import read_case
 from fiberbend.schema.problems import LINES, CaseError
 
-ROOT = Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs" / "stability.md"
-BEGIN, END = "<!-- fuzz, by `make survive` -->", "<!-- end of fuzz -->"
 CASES = sorted([*(ROOT / "cases").glob("*.yaml"), *(ROOT / "cases" / "fig11").glob("*.yaml")])
 COUNT, RUNS = 300, 40
 LIMIT = 30
@@ -302,7 +301,7 @@ def _insane(rows: Sequence[dict[str, str]]) -> str:
         wrong = [key for key, value in values.items() if not math.isfinite(value)]
         if wrong:
             return f"row {number}: {wrong[0]} is {values[wrong[0]]}"
-        for key in ("chamber_volume_mm3", "min_det_F", "axis_stretch"):
+        for key in (VOLUME, DET_F, AXIS_STRETCH):
             if values.get(key, 1.0) <= 0:
                 return f"row {number}: {key} is {values[key]}"
     return ""
@@ -391,16 +390,6 @@ def table(
     ]
 
 
-def put(lines: Sequence[str]) -> None:
-    """Write the part of docs/stability.md between its marks, at the end where it is not there."""
-    text = PAGE.read_text(encoding="utf-8")
-    before, found, rest = text.partition(BEGIN)
-    after = rest.partition(END)[2] if found else "\n"
-    if not found:
-        before = before.rstrip("\n") + "\n\n"
-    PAGE.write_text(before + "\n".join([BEGIN, *lines, END]) + after, encoding="utf-8")
-
-
 def main() -> int:
     """Fuzz; write the page when all ran."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -425,7 +414,7 @@ def main() -> int:
     lines = table(seeds, ends, runs, time.monotonic() - start)
     print(*lines, sep="\n")
     if (options.count, options.runs, options.first) == (COUNT, RUNS, 0):
-        put(lines)
+        put("fuzz", lines)
     return int(any(fault for _, fault in ends) or any(fault for _, _, fault in runs))
 
 

@@ -9,7 +9,6 @@ import hashlib
 import logging
 import os
 import platform
-import shlex
 import shutil
 import sys
 import sysconfig
@@ -120,7 +119,8 @@ def compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
         # on several ranks dolfinx hands on the text of the error only
         if "Compil" not in f"{type(error).__name__} {error}":
             raise
-        name = shlex.split(os.environ.get("CC") or str(sysconfig.get_config_var("CC")))[0]
+        given = os.environ.get("CC", "").split()
+        name = (given or str(sysconfig.get_config_var("CC")).split())[0]
         if shutil.which(name) is None:
             text = f"no C compiler: {name} is not found; install gcc, or set CC or PATH"
             raise MachineError(text) from error

@@ -14,15 +14,24 @@ if (
 ):
     del sys.path[0]
 
-from collections.abc import Mapping
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-from fiberbend.version import __version__ as __version__
-
+# Nothing slow here: until fiberbend.__main__ takes the signals, Ctrl-C is a traceback.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+    from typing import Any
+
     from fiberbend.case.case import Case
     from fiberbend.models.result import RunResult
+    from fiberbend.version import __version__ as __version__
+
+
+def __getattr__(name: str) -> str:
+    if name != "__version__":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from fiberbend.version import __version__
+
+    return __version__
 
 
 def run(
@@ -48,6 +57,8 @@ def run(
         fiberbend.schema.problems.CaseError: everything that is wrong with the case, or not
             enough memory for it.
     """
+    from pathlib import Path
+
     from fiberbend.reader.reader import as_case
     from fiberbend.running import launch
     from fiberbend.running.progress import Progress

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal, NoReturn
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
 
 from fiberbend.process import signals, streams
 from fiberbend.reader.arguments import CaseFile, Changes
@@ -91,6 +91,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print_error=False,
             result_action="return_value",
         )
+    except UnusedCliTokensError as error:
+        text = f"too many arguments, no use for {' '.join(error.unused_tokens or ())}"
+        raise SystemExit(launch.refuse(f"fiberbend: {text}", WRONG_INPUT)) from None
     except CycloptsError as error:
         raise SystemExit(launch.refuse(f"fiberbend: {error}", WRONG_INPUT)) from None
     except Exception as error:
@@ -200,7 +203,7 @@ def run(
         return launch.stopped(signals.stop_of(error))
     except BaseException as error:
         progress.close()
-        if isinstance(error, MachineError) and launch.size() == 1:
+        if isinstance(error, MachineError):
             raise
         return launch.crash(error, folder)
     progress.close()

@@ -16,6 +16,7 @@ from fiberbend.running import launch
 from fiberbend.running.launch import say
 from fiberbend.schema.quantities import Quantity
 from fiberbend.schema.units import KINDS
+from machine.folders import MachineError
 
 
 def _text(name: str) -> tuple[str, Any, Any]:
@@ -82,7 +83,7 @@ def control(
 
         with signals.raising():
             result = run_control(checked, wanted, folder, overwrite)
-    except CaseError:
+    except (CaseError, MachineError):
         raise
     except KeyboardInterrupt as error:
         return launch.stopped(signals.stop_of(error))

@@ -87,7 +87,7 @@ def _numbers(case: Case) -> Iterator[str]:
         )
     free, need = room(), needed_mb(case)
     if free is not None and need > _TIGHT * free.mb:
-        yield (
-            f"memory: about {gigabytes(need)} of the {gigabytes(free.mb)} that are free, an "
-            "estimate good to a factor of two"
-        )
+        share = f"of the {gigabytes(free.mb)} that are free"
+        if need > free.mb:
+            share = f"where {gigabytes(free.mb)} are free"
+        yield f"memory: about {gigabytes(need)} {share}, an estimate good to a factor of two"

@@ -47,6 +47,7 @@ class _Pending:
     number = 0
     since = 0.0
     raises = False
+    held = False
 
 
 _pending = _Pending()
@@ -73,6 +74,19 @@ def raising() -> Iterator[None]:
         _pending.raises = before
 
 
+@contextlib.contextmanager
+def held() -> Iterator[None]:
+    """Within, a signal waits for the end: around what takes moments and cannot be left halfway."""
+    before, _pending.held = _pending.held, True
+    earlier = _pending.number
+    try:
+        yield
+    finally:
+        _pending.held = before
+    if not earlier and not before:
+        check()
+
+
 def check() -> None:
     """Raise what was lost: in a finaliser or a library's callback an exception goes nowhere."""
     if _pending.number:
@@ -92,6 +106,8 @@ def _handle(number: int, _frame: FrameType | None) -> None:
         os._exit(128 + number)
     if not _pending.number:
         _pending.number, _pending.since = number, time.monotonic()
-        raise Interrupted(number)
+        if not _pending.held:
+            raise Interrupted(number)
+        return
     if time.monotonic() - _pending.since > _PATIENCE:
         os._exit(128 + number)

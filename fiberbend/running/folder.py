@@ -15,7 +15,7 @@ import yaml
 
 from fiberbend import columns as col
 from fiberbend.case.case import Case
-from fiberbend.process import remains
+from fiberbend.process import remains, signals
 from fiberbend.process.lock import FolderLock, HeldError, holder
 from fiberbend.schema.paths import differences, value_at
 from fiberbend.schema.problems import CaseError, Problem, found
@@ -60,6 +60,9 @@ _OF_A_SWEEP = ("sweep.csv", "trends.md", "maps/*.png")
 _OF_CONTROL = ("control.json", "control.csv", "control.png", "filter.csv", "angle_filter.h")
 FILES = (*_OF_A_RUN, *(f"{BLOCKED}/{name}" for name in _OF_A_RUN), *_OF_A_SWEEP, *_OF_CONTROL)
 """What is written: no other name can be, and `overwrite` removes nothing else."""
+
+_HELD = "{}, expected its end, or another folder by --out"
+_EXISTS = "exists, expected a new folder, or --overwrite or --resume"
 
 
 class RunFolder:
@@ -186,11 +189,6 @@ class RunFolder:
         """Write run.json; keys of `RUN_KEYS` that are not given are null."""
         self.write_json(RUN_FILE, {**dict.fromkeys(RUN_KEYS), **entries})
 
-    def remove(self, name: str) -> None:
-        """Remove a file, if it is there."""
-        if self.writes:
-            (self.path / name).unlink(missing_ok=True)
-
     def replace(self, name: str, other: str) -> None:
         """Rename a file, if it is there."""
         if self.writes:
@@ -215,8 +213,11 @@ class RunFolder:
         target.parent.mkdir(parents=True, exist_ok=True)
         handle, part = remains.begin(target)
         try:
+            # an archive left half made prints a page when it is collected
+            whole = signals.held() if name.endswith(".npz") else contextlib.nullcontext()
             with os.fdopen(handle, "wb") as file:
-                fill(file)
+                with whole:
+                    fill(file)
                 file.flush()
                 os.fsync(file.fileno())
             # mkstemp makes files that only their owner can read.
@@ -266,8 +267,9 @@ def _check(path: Path, overwrite: bool) -> None:
     if not entries:
         return
     if not overwrite:
-        text = "exists, expected a new folder, or --overwrite or --resume"
-        raise CaseError([Problem(str(path), holder(path) or text)])
+        who = holder(path)
+        text = _HELD.format(who) if who else _EXISTS
+        raise CaseError([Problem(str(path), text)])
     if not _is_run(path, entries):
         raise CaseError([Problem(str(path), "contains no run, expected the folder of a run")])
 
@@ -282,8 +284,7 @@ def _hold(path: Path) -> FolderLock:
     try:
         return FolderLock(path)
     except HeldError as error:
-        text = f"{error}, expected its end, or another folder by --out"
-        raise CaseError([Problem(str(path), text)]) from None
+        raise CaseError([Problem(str(path), _HELD.format(error))]) from None
 
 
 def _same_case(path: Path, case: Case) -> FolderLock:

@@ -69,9 +69,9 @@ class Progress:
         if not self._speaks:
             return
         if self._stream.isatty() and launch.size() == 1:
+            pressure, angle = _unsigned(pressure_kpa, 1), _unsigned(angle_deg, 1)
             self._draw(
-                fraction,
-                f"step {step}  {pressure_kpa:.1f} kPa  {angle_deg:.1f}°  {iterations} iter.",
+                fraction, f"step {step}  {pressure:.1f} kPa  {angle:.1f}°  {iterations} iter."
             )
             return
         spent = self._clock() - self._phase_begin
@@ -79,9 +79,11 @@ class Progress:
         times = f"{_clock_text(self._clock() - self._begin)} elapsed"
         if left is not None:
             times += f", about {_clock_text(left)} to go"
+        plural = " " if iterations == 1 else "s"
         self._say(
-            f"step {step:3d}  P {pressure_kpa:8.2f} kPa  θ {angle_deg:7.2f}°  "
-            f"{iterations:2d} iterations  {100 * fraction:5.1f} %  {times}"
+            f"step {step:3d}  P {_unsigned(pressure_kpa, 2):8.2f} kPa  "
+            f"θ {_unsigned(angle_deg, 2):7.2f}°  "
+            f"{iterations:2d} iteration{plural}  {100 * fraction:5.1f} %  {times}"
         )
 
     def message(self, text: str) -> None:
@@ -139,6 +141,11 @@ class Progress:
         if self._bar is not None:
             self._bar.stop()
             self._bar = None
+
+
+def _unsigned(value: float, digits: int) -> float:
+    """A value without the sign of what its digits show as nothing."""
+    return round(value, digits) + 0.0
 
 
 def _clock_text(seconds: float) -> str:

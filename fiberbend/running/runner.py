@@ -27,7 +27,7 @@ from fiberbend.plan.memory import refuse_shortage
 from fiberbend.process.signals import Interrupted, stop_of
 from fiberbend.running import launch, messages, record, restart
 from fiberbend.running.assembly import Assembly, assemble
-from fiberbend.running.folder import MESH, RUN_FILE, RunFolder
+from fiberbend.running.folder import MESH, RunFolder
 from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording, ended, unmet
 from fiberbend.running.progress import Progress
@@ -71,8 +71,14 @@ def run_case(
     else:
         folder = RunFolder.create(out, case, overwrite, comm)
     with folder:
-        # of an end that is no more
-        folder.remove(RUN_FILE)
+        # in place of an end that is no more
+        folder.write_run(
+            status="running",
+            reason="begun; where no process runs it: go on with --resume",
+            model=choose_model(case)[0].name,
+            ranks=comm.size,
+            versions=record.versions(),
+        )
         return _solve(case, folder, progress, comm, resume)
 
 
@@ -127,6 +133,8 @@ class _Run:
 
     def _go(self, again: bool) -> RunResult:
         progress, case = self.progress, self.case
+        # before this run takes of the memory that is free
+        known = doubts(case)
         progress.phase("mesh")
         mesh = _on_rank_0(self.comm, lambda: self._mesh(again))
         section = self._section()
@@ -138,7 +146,7 @@ class _Run:
         assembly = assemble(case, mesh, self.comm, make_guide, watch=True)
         recorder, recording = self._recording(assembly, again)
         self.recording = recording
-        recording.warn(doubts(case))
+        recording.warn(known)
         progress.phase("solve")
         assembly.march.run(assembly.ramps, [recording])
         status, reason = ended(case, assembly, recorder.rows)
@@ -191,8 +199,8 @@ class _Run:
         if kept:
             stop.reason = f"stopped at step {kept}, kept; go on with --resume"
         else:
-            stop.reason = f"stopped at step {rows[-1][col.STEP] if rows else 0}; "
-            stop.reason += "go on with --resume, from the beginning"
+            step = rows[-1][col.STEP] if rows else 0
+            stop.reason = f"stopped at step {step}, nothing kept; --resume begins anew"
         stop.together = self.comm.size == 1 == launch.size() or launch.all_stopped()
         if folder.writes or not stop.together:
             run = record.unfinished(
@@ -309,7 +317,8 @@ class _Run:
             f"iterations, {run['factorisations']} factorisations, {run['cutbacks']} cut-backs"
         )
         phases = ", ".join(f"{name} {value:.1f} s" for name, value in run["wall_s"].items())
-        say(f"{phases}; peak memory {run['peak_memory_MB']:.0f} MB on {run['ranks']} ranks")
+        ranks = f"{run['ranks']} rank{'' if run['ranks'] == 1 else 's'}"
+        say(f"{phases}; peak memory {run['peak_memory_MB']:.0f} MB on {ranks}")
         say_warnings(run["warnings"], say)
 
     def _draw(

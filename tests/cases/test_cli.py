@@ -64,7 +64,7 @@ def test_wrong_input_ends_with_1(
         (["bend"], 'Unknown command "bend"'),
         (["valdate", BASELINE], 'Unknown command "valdate". Did you mean "validate"?'),
         (["run"], 'Command "run" parameter CASE requires an argument'),
-        (["validate", BASELINE, BASELINE], "Unused Tokens"),
+        (["validate", BASELINE, BASELINE], f"too many arguments, no use for {BASELINE}"),
         (["validate", BASELINE, "--sett"], "Unknown option: --sett. Did you mean --set?"),
         (["validate", "--case", BASELINE], "Unknown option: --case"),
         (["run", BASELINE, "--no-quiet"], "Unknown option: --no-quiet"),

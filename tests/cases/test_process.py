@@ -106,6 +106,39 @@ def _stopped(code: str, number: int, *arguments: str) -> tuple[int, str, str]:
     return process.returncode, out, err
 
 
+HELD = """
+import time
+from fiberbend.process import signals
+
+signals.install()
+try:
+    with signals.raising():
+        with signals.held():
+            print("up", flush=True)
+            end = time.monotonic() + 1
+            while time.monotonic() < end:
+                time.sleep(0.01)
+            print("whole", flush=True)
+        print("not stopped", flush=True)
+except KeyboardInterrupt as error:
+    with signals.held():
+        print("written of the stop", flush=True)
+    raise SystemExit(signals.stop_of(error).code)
+"""
+
+
+def test_a_signal_waits_for_what_cannot_be_left_halfway() -> None:
+    code, out, err = _stopped(HELD, signal.SIGTERM)
+    assert (code, out, err) == (143, "whole\nwritten of the stop\n", "")
+
+
+def test_nothing_slow_is_loaded_before_signals_are_taken() -> None:
+    """Else Ctrl-C in the first moments is a traceback."""
+    code = "import sys; import fiberbend.process.signals; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {"importlib.metadata", "email", "numpy"} & {*done.stdout.split()}
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_is_one_line_and_its_exit_code(number: int) -> None:
     assert _stopped(WAIT, number) == (

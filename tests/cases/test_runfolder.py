@@ -255,6 +255,21 @@ def test_plain_lines() -> None:
     assert progress.wall_s["mesh"] == 10.0
 
 
+@pytest.mark.parametrize("stream", [io.StringIO(), _Terminal()])
+def test_nothing_has_no_sign(stream: io.StringIO) -> None:
+    progress = Progress(stream=stream)
+    progress.step(1, 1.0, -1e-9, -1e-7, 1)
+    progress.close()
+    assert "-0.0" not in plain(stream)
+    assert "0.0" in plain(stream)
+
+
+def test_one_iteration_is_no_plural() -> None:
+    stream = io.StringIO()
+    Progress(stream=stream).step(1, 1.0, 5.0, 0.0, 1)
+    assert " 1 iteration   100.0 %" in stream.getvalue()
+
+
 def plain(stream: io.StringIO) -> str:
     """What a terminal shows, without colours."""
     return re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", stream.getvalue())

@@ -7,16 +7,15 @@ from pathlib import Path
 import pytest
 import yaml
 
+from bench.survive import PAGE
 from bench.survive_fuzz import (
-    BEGIN,
-    END,
     KINDS,
-    PAGE,
     complaint_fault,
     mutant,
     outcome,
     run_fault,
 )
+from fiberbend.columns import VOLUME
 from fiberbend.schema.problems import CaseError, Problem
 from tests.conftest import ROOT
 
@@ -59,15 +58,15 @@ def test_a_bad_end_of_a_run_is_a_fault(tmp_path: Path) -> None:
     def fault(status: str = "converged", code: int = 0, row: str = "0,1000.0,1.0") -> str:
         reason = "" if status == "converged" else "why"
         (tmp_path / "run.json").write_text(f'{{"status": "{status}", "reason": "{reason}"}}')
-        head = "step,chamber_volume_mm3,axis_stretch"
+        head = f"step,{VOLUME},axis_stretch"
         (tmp_path / "history.csv").write_text(f"{head}\n0,1000.0,1.0\n{row}\n")
         return run_fault(tmp_path, code, "")
 
     assert fault() == fault("failed", 2) == fault("stopped") == ""
     assert fault("failed", 0) == "failed with exit code 0"
-    assert fault(row="1,nan,1.0") == "row 1: chamber_volume_mm3 is nan"
+    assert fault(row="1,nan,1.0") == f"row 1: {VOLUME} is nan"
     assert fault(row="1,1e3,inf") == "row 1: axis_stretch is inf"
-    assert fault(row="1,-3,1.0") == "row 1: chamber_volume_mm3 is -3.0"
+    assert fault(row="1,-3,1.0") == f"row 1: {VOLUME} is -3.0"
     assert fault(row="1,3,") == ""
     assert fault(code=139).startswith("exit code 139")
     assert run_fault(tmp_path, 1, "") == "refused without a word"
@@ -76,7 +75,7 @@ def test_a_bad_end_of_a_run_is_a_fault(tmp_path: Path) -> None:
 
 def test_the_page_has_its_table() -> None:
     text = PAGE.read_text(encoding="utf-8")
-    part = text.partition(BEGIN)[2].partition(END)[0]
+    part = text.partition("<!-- fuzz,")[2].partition("<!-- end of fuzz -->")[0]
     rows = [line for line in part.splitlines() if line.startswith(tuple(f"| {k} " for k in KINDS))]
     assert len(rows) == len(KINDS)
     assert all(row.endswith("| 0 |") for row in rows)

@@ -8,7 +8,9 @@ import sys
 import time
 from pathlib import Path
 
-from tests.conftest import ROOT
+import pytest
+
+from tests.conftest import ROOT, MpiRun
 
 PROGRAM = """
 import ufl
@@ -95,6 +97,32 @@ def test_without_a_compiler_the_message_says_so(tmp_path: Path) -> None:
         "machine.folders.MachineError: no C compiler: no-such-cc is not found; install gcc, or "
         "set CC or PATH"
     )
+
+
+@pytest.mark.parametrize("command", ["run", "control"])
+def test_without_a_compiler_a_command_is_one_line(command: str, tmp_path: Path) -> None:
+    arguments = [command, str(ROOT / "cases" / "section.yaml"), "--out", str(tmp_path / "run")]
+    done = subprocess.run(
+        [sys.executable, "-m", "fiberbend", *arguments],
+        env=os.environ | {"CC": "no-such-cc", "XDG_CACHE_HOME": str(tmp_path / "cache")},
+        capture_output=True,
+        text=True,
+    )
+    line = "no C compiler: no-such-cc is not found; install gcc, or set CC or PATH\n"
+    assert (done.returncode, done.stderr) == (1, line)
+
+
+@pytest.mark.mpi
+def test_without_a_compiler_two_ranks_say_one_line(
+    mpirun: MpiRun, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CC", " no-such-cc")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    case = ROOT / "cases" / "section.yaml"
+    done = mpirun(2, ["-m", "fiberbend", "run", case, "--out", tmp_path / "run"])
+    assert done.returncode == 1
+    assert done.stderr.count("no C compiler: no-such-cc is not found") == 1
+    assert "rank" not in done.stderr.partition("---")[0]
 
 
 def test_the_working_folder_steers_nothing(tmp_path: Path) -> None:

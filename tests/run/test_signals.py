@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 import yaml
 
-from bench.survive import LIMIT, end, files, launch, session
+from bench.survive import LIMIT, end, files, kill, launch, session
 from tests.conftest import MpiRun
 from tests.run.conftest import small
 
@@ -31,9 +31,9 @@ def _stop(ranks: int, number: int, tmp_path: Path) -> tuple[int, str, dict[str, 
     for line in process.stdout:
         if line.startswith("step   1"):
             break
-    while not (out / "run.json").exists():
+    while (run := json.loads((out / "run.json").read_text()))["load_steps"] is None:
         time.sleep(0.01)
-    assert json.loads((out / "run.json").read_text())["status"] == "running"
+    assert run["status"] == "running"
     begin = time.monotonic()
     process.send_signal(number)
     code, text = end(process)
@@ -49,6 +49,17 @@ def test_a_run_that_is_told_to_stop_keeps_its_steps(tmp_path: Path) -> None:
     code, text, run = _stop(1, signal.SIGTERM, tmp_path)
     assert code == 143
     assert_said(text, run)
+
+
+def test_a_run_says_from_its_beginning_that_it_runs(tmp_path: Path) -> None:
+    case, out = tmp_path / "case.yaml", tmp_path / "run"
+    case.write_text(yaml.safe_dump(small(model="section")))
+    process = launch(1, ["run", case, "--out", out])
+    assert process.stdout is not None
+    assert process.stdout.readline() == "mesh …\n"
+    kill(process)
+    run = json.loads((out / "run.json").read_text())
+    assert (run["status"], run["model"]) == ("running", "section")
 
 
 @pytest.mark.mpi

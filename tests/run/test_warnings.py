@@ -68,6 +68,9 @@ def test_little_memory_is_a_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
     (text,) = doubts(read_case(BASELINE, ["model=section"]))
     assert text.startswith("memory: about 0.4")
     assert "of the 0.6 GB that are free" in text
+    monkeypatch.setattr(known, "room", lambda: Room(300.0, "of this machine"))
+    (text,) = doubts(read_case(BASELINE, ["model=section"]))
+    assert "where 0.3 GB are free" in text
 
 
 def test_an_effect_that_knows_no_error_is_a_doubt() -> None:
