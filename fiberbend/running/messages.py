@@ -14,6 +14,10 @@ UNSTABLE_END = (
     "the end is unstable where every load is kept at its value: given the pressure, no actuator "
     "rests there"
 )
+WRINKLE = (
+    "; its waves span less than three elements, so that the mesh gives this load: under pressure a "
+    "winding has no stiffness against bending (tension_only: true lets it go slack)"
+)
 TURNED = 0.1
 """An angle that has come back by so much, in degrees, has had its greatest value."""
 _LEFT = {
@@ -40,6 +44,7 @@ def critical_points(report: Report, symmetry_factor: float) -> list[dict[str, An
             "unstable_modes_before": point.before,
             "unstable_modes_beyond": point.after,
             **({"side": point.side} if point.side else {}),
+            **({"wrinkle": True} if point.wrinkle else {}),
         }
         for point in report.critical
     ]
@@ -83,7 +88,7 @@ def remark(point: Critical) -> str:
         plural = "" if point.after == 1 else "s"
         return (
             f"{count} unstable mode{plural} from {where} on: the body buckles: another "
-            f"branch starts here; {_LEFT[point.side]}"
+            f"branch starts here; {_LEFT[point.side]}{WRINKLE if point.wrinkle else ''}"
         )
     return f"stable again from {where} on"
 

@@ -89,6 +89,47 @@ def test_a_step_over_a_limit_point_is_taken_back() -> None:
     assert coarse.last("chamber_mm3") == pytest.approx(fine.last("chamber_mm3"), rel=1e-3)
 
 
+def crown(divisions: int, slack: bool = False) -> RunResult:
+    """A vacuum that presses a stiff winding between soft layers, in the section model."""
+    winding = {"pattern": "double-helix", "pitch": "3 mm", "fiber": "kevlar"}
+    if slack:
+        winding |= {"tension_only": True}
+    return run(
+        {
+            "actuator": {
+                "section": "hemicircle",
+                "radius": "8 mm",
+                "length": "80 mm",
+                "wall": "2 mm",
+                "floor": "2 mm",
+                "sheath": "1 mm",
+                "cap": "10 mm",
+            },
+            "materials": {
+                "wall": "elastosil-m4601",
+                "floor": "combined-base",
+                "sheath": "ecoflex-0030",
+            },
+            "effects": [{"pressure": {"to": "-14.5 kPa"}}, {"winding": winding}],
+            "model": "section",
+            "mesh": {"section": divisions},
+            "output": QUIET,
+        }
+    )
+
+
+def test_a_wrinkle_that_the_mesh_gives_is_named() -> None:
+    # a thread has no stiffness against bending: pressed, it wrinkles from node to node
+    result = crown(4)
+    point = result.run["critical_points"][0]
+    assert point["wrinkle"]
+    assert point["pressure_kPa"] == pytest.approx(-14.07, abs=0.05)
+    assert any("the mesh gives this load" in text for text in result.run["warnings"])
+    # coarser, the same load finds none; nor where the thread goes slack
+    assert not crown(2).run["critical_points"]
+    assert not crown(4, slack=True).run["critical_points"]
+
+
 @pytest.mark.hard
 def test_a_tube_collapses_to_one_volume_whatever_the_step() -> None:
     # before: 98 % in one step, 21 % in steps of 0.1 kPa
