@@ -266,9 +266,10 @@ HARD: tuple[Hard, ...] = (
     ),
     Hard(
         "vacuum-20",
-        "a vacuum that the crown does not bear",
+        "a vacuum that the crown does not bear; beyond, in the cell, the surface creases",
         {TO: "-20 kPa"},
-        refused=dict.fromkeys(MODELS, "collapses"),
+        refused=dict.fromkeys(MODELS, "collapses")
+        | {"cell": "wrinkle of less than three elements"},
         warns=("collapses",),
         fast=("section",),
     ),
@@ -278,7 +279,7 @@ HARD: tuple[Hard, ...] = (
         {TO: "-100 kPa"},
         models=("section", "cell"),
         absent="body: with vacuum-20 it ends at the same limit point",
-        refused=dict.fromkeys(MODELS, "collapses"),
+        refused={"section": "collapses", "cell": "wrinkle of less than three elements"},
         warns=("collapses",),
         fast=("section",),
     ),

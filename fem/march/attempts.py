@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
+
+import numpy as np
 
 from fem.march.branches import excess
 from fem.march.equilibrium import Equilibrium
-from fem.march.increments import guess
+from fem.march.increments import first_size, guess
 from fem.march.limit_points import crossing, last_limit, limit_between, passed
 from fem.march.position import Position
 from fem.march.predictor import distinct
 from fem.march.records import MODES, Ramp, Rules, State, measure
+from fem.march.turning import leads_nowhere, toward
 from fem.solver.newton import Outcome
 
 STRAY = 0.35
@@ -34,6 +38,29 @@ class Attempts:
 
     def __init__(self, equilibrium: Equilibrium, rules: Rules) -> None:
         self._equilibrium, self._rules = equilibrium, rules
+
+    def begin(self, position: Position, ramp: Ramp, span: float, guided: bool) -> float:
+        """The first increment of a ramp, and which way it goes where the load hardly bends.
+
+        Args:
+            position: where the march stands, at the beginning of the ramp; is told.
+            ramp: the load.
+            span: its whole change.
+            guided: a guide knows the way.
+
+        Returns:
+            Its size; 0 where the load does not bend it, neither way.
+        """
+        base = position.states[-1]
+        seed = self._equilibrium.perturbed(base, ramp.scalar, np.sign(span))
+        size = first_size(seed, base, ramp, abs(span), self._rules, guided)
+        position.states = [seed, base]
+        if leads_nowhere(seed, base, ramp, self._rules):
+            find = functools.partial(self.find, position)
+            position.toward, size = toward(find, self._equilibrium, seed, base, ramp)
+            position.path_following = True
+            return size if position.toward else 0.0
+        return float(min(size, abs(ramp.largest or np.inf), abs(span)))
 
     def increment(
         self, position: Position, ramp: Ramp, span: float, kind: str, aim: float

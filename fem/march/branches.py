@@ -26,8 +26,6 @@ from fem.solver.side_conditions import GivenFunctional
 
 Floats = npt.NDArray[np.float64]
 
-SHARP = 0.01
-"""A load at which stability is lost is known within this part of it before its branch is left."""
 FIRST = 0.01
 """First amplitude of a mode, in parts of the least extent of what is modelled."""
 TRIES = 30
@@ -41,6 +39,8 @@ LEAST = 1e-3
 """Amplitude, in parts of the first, below which there is no branch to be found."""
 TILTED = 1e-6
 """Part of the load that works on a mode from which the loads choose its side, not round-off."""
+ROUGH = 0.3
+"""Roughness of a mode from which the mesh gives its wave: less than three elements."""
 CLEAR = 0.3
 """A measure of the mode's direction is taken if it is so large beside the greatest of them."""
 
@@ -66,6 +66,9 @@ class Crossing:
         share: where it lies between the two, from 0 to 1.
         mode: the critical mode, pointing to the side that is taken.
         chosen: both sides are alike, the mode's direction was chosen.
+        seen: the mode is the one that is lost: stable at one state, unstable at the other. Further
+            off, another mode may be softer than that at both.
+        wrinkle: the mode's waves are as short as elements: their size gives the load.
     """
 
     stable: State
@@ -73,6 +76,8 @@ class Crossing:
     share: float
     mode: Mode
     chosen: bool
+    seen: bool
+    wrinkle: bool
 
     def between(self, a: Floats | float, b: Floats | float) -> Floats:
         """Interpolated at the crossing between values of the two states."""
@@ -95,6 +100,7 @@ class Crossing:
             before=int(self.stable.measures.get(MODES, 0)),
             after=int(self.unstable.measures[MODES]),
             side=("chosen" if self.chosen else "by the loads") if left else "",
+            wrinkle=self.wrinkle,
         )
 
 
@@ -150,7 +156,8 @@ class Branches:
         """
         (before, push), (after, pull) = (self._softest(s, scalar) for s in (stable, unstable))
         share, mode = 1.0, after
-        if before.stiffness > 0 > after.stiffness:
+        seen = before.stiffness > 0 > after.stiffness
+        if seen:
             share = before.stiffness / (before.stiffness - after.stiffness)
             mode = before if before.stiffness < -after.stiffness else after
         same = np.sign(self._dot(before.w, after.w))
@@ -162,7 +169,16 @@ class Branches:
         side = self._direction(mode.w) if chosen else np.sign(tilt)
         scalars = {name: float(side * q) for name, q in mode.scalars.items()}
         turned = dataclasses.replace(mode, w=side * mode.w, scalars=scalars)
-        return Crossing(stable, unstable, share, turned, chosen)
+        wrinkle = seen and self._equilibrium.roughness(mode.w) > ROUGH
+        return Crossing(stable, unstable, share, turned, chosen, seen, wrinkle)
+
+    def wrinkles(self, state: State, scalar: str) -> bool:
+        """Whether the softest mode of a state has waves as short as elements; collective.
+
+        The scene is left at the state.
+        """
+        mode, _ = self._softest(state, scalar)
+        return self._equilibrium.roughness(mode.w) > ROUGH
 
     def _softest(self, state: State, scalar: str) -> tuple[Mode, float]:
         """The softest mode of a state, and the part of a load's growth that works on it.
@@ -255,6 +271,57 @@ class Branches:
             points.append(_Point(reach, new.w, new.scalars))
             reach *= FACTOR
         return found, outcome
+
+    def onward(
+        self,
+        scalar: str,
+        states: list[State],
+        count: Callable[[Outcome], None],
+        beyond: Callable[[State], bool],
+    ) -> list[tuple[State, Outcome]]:
+        """States along the tangent of the path, where that bends too sharply for its conjugate.
+
+        Where an imperfection rounds a crossing, path and branch run side by side, and a solve at
+        a given conjugate may fall on either. The way along the tangent (arc length, Riks 1979)
+        tells them apart: its steps grow from that between the last two states.
+
+        Args:
+            scalar: the load that is found.
+            states: the last states of the path.
+            count: is told of every solve.
+            beyond: whether a state lies beyond the bend.
+
+        Returns:
+            The states, stable at given conjugate, and how each was found; none where the path does
+            not lead beyond. The scene may be at another state.
+        """
+        before, last = states[-2:]
+        seed = self._equilibrium.perturbed(last, scalar)
+        way, chord = seed.w - last.w, last.w - before.w
+        sign = float(np.sign(self._dot(way, chord)))
+        turned = {name: sign * (q - last.scalars[name]) for name, q in seed.scalars.items()}
+        tangent = Mode(0.0, sign * way, turned)
+        start = Crossing(last, last, 0.0, tangent, chosen=False, seen=True, wrinkle=False)
+        unit, points = self._unit(tangent), [self._start_point(start)]
+        first = abs(self._dot(chord, way)) / (self._dot(way, way) * unit)
+        step, found = first, list[tuple[State, Outcome]]()
+        for _ in range(TRIES):
+            reach = points[-1].amplitude + step
+            outcome, new = self._beside(scalar, start, points, reach, unit)
+            count(outcome)
+            if new is None:
+                step *= CUT
+                if step < LEAST * first:
+                    break
+                continue
+            if excess(new, scalar) > max(0, excess(last, scalar)):
+                break
+            found.append((new, outcome))
+            if beyond(new):
+                return found
+            points.append(_Point(reach, new.w, new.scalars))
+            step *= FACTOR
+        return []
 
     def _unit(self, mode: Mode) -> float:
         """Amplitude of a mode whose greatest displacement is `FIRST` of the least extent."""

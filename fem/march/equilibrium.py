@@ -221,6 +221,22 @@ class Equilibrium:
                 modes -= 1
         return modes
 
+    def roughness(self, w: Floats) -> float:
+        """Part of the square of a displacement that varies within elements; collective.
+
+        Of a wave of length l along elements of length h it is 1 − (sin(πh/l)/(πh/l))²: 0.6 where
+        that spans two elements, 0.3 of three, 0.1 of six.
+
+        Args:
+            w: owned coefficients, (owned,).
+        """
+        body, domain = self.scene.body, self.scene.domain
+        u = body.with_ghosts(w)[body.cell_dofs[: domain.owned]]
+        within = u - u.mean(axis=1, keepdims=True)
+        parts = np.array([np.sum(within**2), np.sum(u**2)])
+        varying, whole = total(domain.comm, parts)
+        return float(varying / max(whole, 1e-300))
+
     def anyhow(self) -> Floats:
         """A displacement without any symmetry, the same on any number of ranks, (owned,)."""
         body = self.scene.body

@@ -9,6 +9,7 @@ import numpy as np
 from fem.march.equilibrium import STILL
 from fem.march.predictor import distinct, lagrange
 from fem.march.records import Ramp, Rules, State, measure
+from fem.solver.newton import Outcome
 
 
 def guess(states: Sequence[State], key: str, target: float, name: str) -> float:
@@ -25,6 +26,20 @@ def turn_limit(states: Sequence[State], drive: str, rules: Rules) -> float:
     a, b = (state.measures for state in states[-2:])
     turned = abs(b["control"] - a["control"])
     return float(abs(b[drive] - a[drive]) * rules.turn / max(turned, 1e-12))
+
+
+def next_size(size: float, outcome: Outcome, largest: float, rules: Rules) -> float:
+    """The next increment after one of a size, by how Newton's method converged.
+
+    Args:
+        size: of the last one.
+        outcome: how Newton's method ended.
+        largest: greatest increment.
+        rules: incrementation.
+    """
+    if outcome.iterations <= rules.easy:
+        return min(size * rules.grow, largest)
+    return size * rules.shrink if outcome.iterations >= rules.slow else size
 
 
 def first_size(

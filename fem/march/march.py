@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import dataclasses
-import functools
 from collections.abc import Sequence
 
 import numpy as np
 
 from fem.march.attempts import BEYOND, Attempts, unstable
-from fem.march.branches import SHARP, Branches, excess
+from fem.march.branches import Branches, excess
 from fem.march.equilibrium import Equilibrium
 from fem.march.frames import Frames
 from fem.march.guide import Guide
 from fem.march.hooks import Hook
-from fem.march.increments import first_size, guess, turn_limit
+from fem.march.increments import guess, next_size, turn_limit
 from fem.march.limit_points import critical, limit_ahead, softens
 from fem.march.position import Position
 from fem.march.predictor import Predictor
 from fem.march.records import Causes, Ramp, Report, Rules, State, measure
 from fem.march.selfcontact import Rod, touching
-from fem.march.turning import UNBENT, leads_nowhere, slackens, toward
-from fem.march.ways import MISSED, Requests, Way, asked_between, way_of
+from fem.march.turning import UNBENT, slackens
+from fem.march.ways import MISSED, Requests, Way, asked_between, near, toward_lost, way_of
 from fem.scene import Scene
 from fem.solver.newton import Newton, Outcome
 from fem.solver.side_conditions import Functional
@@ -29,6 +28,7 @@ from fem.solver.side_conditions import Functional
 CREEPS = "increments shrink to nothing, each of them converging slowly"
 LOST = "along the mode that is lost no state is found on which the body rests"
 NEARBY = "on the way to where a mode is lost"
+WRINKLES = "; the softest mode is a wrinkle of less than three elements, whose size gives its load"
 ACROSS = "the body would leave its symmetry, and half of it does not know how"
 LEAST_GAP = 1e-6
 """Part of a ramp between a stable and an unstable state that are not brought nearer."""
@@ -163,19 +163,9 @@ class March:
         if requests.done(span, self.states[-1]):
             return True
         if position.increment is None:
-            base = self.states[-1]
-            seed = self.equilibrium.perturbed(base, ramp.scalar, np.sign(span))
-            size = first_size(seed, base, ramp, abs(span), self.rules, self._guided)
-            position.states = [seed, base]
-            position.increment = min(size, abs(ramp.largest or np.inf), abs(span))
-            if leads_nowhere(seed, base, ramp, self.rules):
-                find = functools.partial(self._attempts.find, position)
-                position.toward, position.increment = toward(
-                    find, self.equilibrium, seed, base, ramp
-                )
-                position.path_following = True
-                if not position.toward:
-                    return self._end(UNBENT)
+            position.increment = self._attempts.begin(position, ramp, span, self._guided)
+            if not position.increment:
+                return self._end(UNBENT)
         # a load that hardly bends begins with tiny increments of the angle
         first = position.first = position.first or position.increment
         missed = 0
@@ -189,13 +179,9 @@ class March:
             if position.path_following and way.sign * (way.end - now) <= 1e-9 * way.span:
                 return self._end("")
             if slow and position.increment < self.rules.least * min(way.span, first):
-                return self._give_up(dataclasses.replace(slow, reason=CREEPS), "")
-            size = min(
-                position.increment, turn_limit(self.states, way.key, self.rules), way.largest
-            )
-            if position.lost is not None:
-                gap = abs(position.lost - now)
-                size = min(size, gap if self._near(way.key, now, position.lost) else gap / 2)
+                return self._give_up(ramp, dataclasses.replace(slow, reason=CREEPS), "")
+            turn = turn_limit(self.states, way.key, self.rules)
+            size = min(position.increment, turn, way.largest, toward_lost(position, way, self.rest))
             target = way.next(now, size)
             if way.kind == "value" and limit_ahead(self.states, ramp.scalar, target):
                 self._follow_path(ramp)
@@ -231,7 +217,10 @@ class March:
                 for hook in self._called:
                     hook.after_cutback(self, outcome.reason)
                 if hopeless:
-                    return self._give_up(outcome, inverted)
+                    if self._round(ramp, way):
+                        continue
+                    self.equilibrium.restore(state)
+                    return self._give_up(ramp, outcome, inverted)
                 if way.kind == kind == "value" and (
                     outcome.reason == BEYOND or softens(self.states, ramp.scalar)
                 ):
@@ -258,11 +247,7 @@ class March:
             self._keep(ramp, [*self.states[1 - self.rules.memory :], new], state, outcome)
             self.report.critical += critical(self.states, ramp.scalar)
             slow = outcome if outcome.iterations >= self.rules.slow else None
-            if outcome.iterations <= self.rules.easy:
-                size = min(size * self.rules.grow, way.largest)
-            elif slow:
-                size *= self.rules.shrink
-            position.increment = size
+            position.increment = next_size(size, outcome, way.largest, self.rules)
             self._tell(outcome)
 
     def _requests(self, ramp: Ramp) -> Requests:
@@ -283,17 +268,18 @@ class March:
         position, state, scalar = self.position, self.states[-1], ramp.scalar
         position.lost = new.measures[way.key]
         gap = abs(position.lost - state.measures[way.key])
-        value = measure("value", scalar)
-        sharp = all(self._near(k, state.measures[k], new.measures[k]) for k in (way.key, value))
-        if not sharp and gap > LEAST_GAP * way.span:
-            self.equilibrium.restore(state)
-            position.increment = gap / 2
-            return True
-        if way.kind == "value":
+        least = gap <= LEAST_GAP * way.span
+        keys = (way.key, measure("value", scalar))
+        sharp = least or all(near(k, self.rest, state.measures[k], new.measures[k]) for k in keys)
+        if sharp and way.kind == "value":
             self.equilibrium.restore(state)
             self._follow_path(ramp)
             return True
-        crossing = self._branches.crossing(scalar, state, new)
+        crossing = self._branches.crossing(scalar, state, new) if sharp else None
+        if crossing is None or not (crossing.seen or least):
+            self.equilibrium.restore(state)
+            position.increment = gap / 2
+            return True
         found, outcome = self._branches.leave(
             scalar,
             crossing,
@@ -303,10 +289,28 @@ class March:
         self.report.critical.append(crossing.critical(scalar, left=bool(found)))
         if not found:
             self.equilibrium.restore(state)
-            return self._give_up(dataclasses.replace(outcome, reason=LOST), "")
+            return self._give_up(ramp, dataclasses.replace(outcome, reason=LOST), "")
         # another branch may be flat: its load hardly grows, or falls
         position.path_following = ramp.drive == "value" or bool(position.toward)
-        position.lost = None
+        return self._enter_all(ramp, found)
+
+    def _round(self, ramp: Ramp, way: Way) -> bool:
+        """Go round a bend of the path near which a mode is lost on another one, if there is one."""
+        position = self.position
+        if position.lost is None or way.kind != "conjugate":
+            return False
+        lost = position.lost
+        found = self._branches.onward(
+            ramp.scalar,
+            self.states,
+            self.report.count,
+            lambda new: way.sign * (new.measures[way.key] - lost) > 0,
+        )
+        return bool(found) and self._enter_all(ramp, found)
+
+    def _enter_all(self, ramp: Ramp, found: list[tuple[State, Outcome]]) -> bool:
+        """Keep states on another branch, up to what is asked for."""
+        self.position.lost, self.position.failures = None, 0
         entered: list[State] = []
         for number, (one, how) in enumerate(found, start=1):
             position.entering = number < len(found)
@@ -362,11 +366,6 @@ class March:
         for hook in self._called:
             hook.after_step(self, self.states[-1], outcome)
 
-    def _near(self, key: str, a: float, b: float) -> bool:
-        """Whether two values of a measure are apart by no more than 1 % of the way from rest."""
-        base = self.rest.measures[key]
-        return abs(b - a) <= SHARP * max(abs(a - base), abs(b - base))
-
     # --- limit points --------------------------------------------------------------------------
 
     def _follow_path(self, ramp: Ramp) -> None:
@@ -378,10 +377,14 @@ class March:
         if ramp.drive == "control":
             self.position.toward = float(np.sign(b - a))
 
-    def _give_up(self, outcome: Outcome, inverted: str) -> bool:
+    def _give_up(self, ramp: Ramp, outcome: Outcome, inverted: str) -> bool:
         """No increment leads on from the last state."""
-        if self.position.lost is not None and outcome.reason != LOST:
-            outcome = dataclasses.replace(outcome, reason=f"{outcome.reason} {NEARBY}")
+        reason = outcome.reason
+        if self.position.lost is not None and reason != LOST:
+            reason += f" {NEARBY}"
+        if self._branches.wrinkles(self.states[-1], ramp.scalar):
+            reason += WRINKLES
+        outcome = dataclasses.replace(outcome, reason=reason)
         if self._causes is None:
             return self._end(outcome.reason)
         critical = self.report.critical

@@ -144,6 +144,7 @@ class Critical:
         after: unstable modes beyond it.
         side: of a bifurcation whose other branch was taken, what chose its side: 'by the loads',
             or 'chosen' where both are alike; empty where the path was not left.
+        wrinkle: of a bifurcation, the mode's waves span less than three elements.
     """
 
     kind: str
@@ -154,6 +155,7 @@ class Critical:
     before: int
     after: int
     side: str = ""
+    wrinkle: bool = False
 
 
 @dataclasses.dataclass

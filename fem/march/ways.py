@@ -11,6 +11,8 @@ from fem.march.position import Position
 from fem.march.records import Ramp, Rules, State, measure
 from fem.march.turning import search_end
 
+SHARP = 0.01
+"""A load at which stability is lost is known within this part of it before its branch is left."""
 NEAR = 0.02
 """An increment that would end so near before a value that is asked for hits it (rad, an angle)."""
 NEAR_STEP = 0.5
@@ -81,6 +83,27 @@ def way_of(ramp: Ramp, span: float, position: Position, rest: State, rules: Rule
     elif limit is not None and now.get(measure("rate", ramp.scalar), 1.0) < 0:
         end = limit.conjugate * rules.beyond**sign
     return Way("conjugate", key, sign, end, volume, (), rules.swell * volume)
+
+
+def near(key: str, rest: State, a: float, b: float) -> bool:
+    """Whether two values of a measure are apart by no more than 1 % of the way from rest."""
+    base = rest.measures[key]
+    return abs(b - a) <= SHARP * max(abs(a - base), abs(b - base))
+
+
+def toward_lost(position: Position, way: Way, rest: State) -> float:
+    """Greatest increment toward a state at which a mode is lost: half the way, unless it is near.
+
+    Args:
+        position: where the march stands.
+        way: how the ramp is driven.
+        rest: the state at rest.
+    """
+    if position.lost is None:
+        return np.inf
+    now = position.states[-1].measures[way.key]
+    gap = abs(position.lost - now)
+    return gap if near(way.key, rest, now, position.lost) else gap / 2
 
 
 class Requests:

@@ -14,6 +14,18 @@ UNSTABLE_END = (
     "the end is unstable where every load is kept at its value: given the pressure, no actuator "
     "rests there"
 )
+WRINKLE = (
+    "; its waves span less than three elements, so that the mesh gives this load: under pressure a "
+    "winding has no stiffness against bending (tension_only: true lets it go slack)"
+)
+WHOLE = (
+    "the body buckles across its mirror plane, which half of it cannot: the whole body is solved "
+    "(mesh.symmetry: auto)"
+)
+UNCOUNTED = (
+    "half of the body on tetrahedra cannot tell whether the whole buckles across the mirror plane "
+    "under a load that presses it: mesh.symmetry: full, or mesh.element: hexahedron, tells"
+)
 TURNED = 0.1
 """An angle that has come back by so much, in degrees, has had its greatest value."""
 _SAME = 1e-9
@@ -42,6 +54,7 @@ def critical_points(report: Report, symmetry_factor: float) -> list[dict[str, An
             "unstable_modes_before": point.before,
             "unstable_modes_beyond": point.after,
             **({"side": point.side} if point.side else {}),
+            **({"wrinkle": True} if point.wrinkle else {}),
         }
         for point in report.critical
     ]
@@ -85,7 +98,7 @@ def remark(point: Critical) -> str:
         plural = "" if point.after == 1 else "s"
         return (
             f"{count} unstable mode{plural} from {where} on: the body buckles: another "
-            f"branch starts here; {_LEFT[point.side]}"
+            f"branch starts here; {_LEFT[point.side]}{WRINKLE if point.wrinkle else ''}"
         )
     return f"stable again from {where} on"
 
@@ -105,6 +118,17 @@ def stopped(report: Report, ramp: Ramp, beyond: float) -> str:
     if report.reason:
         followed = f"there the run ends: {report.reason}"
     return f"{amount(ramp.scalar, ramp.target)} is not reached: {remark(limit)}; {followed}"
+
+
+def uncounted(ramps: Sequence[Ramp], rows: Sequence[col.Row]) -> list[str]:
+    """A warning of half a body that does not know its opposite modes, where it may lose one.
+
+    Args:
+        ramps: the loads; an inflation stretches a body, others may press it.
+        rows: of the history.
+    """
+    presses = min(row[col.PRESSURE] for row in rows) < 0
+    return [UNCOUNTED] if presses or any(ramp.scalar != "pressure" for ramp in ramps) else []
 
 
 def missed(requests: Sequence[str]) -> str:

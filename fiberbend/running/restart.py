@@ -98,6 +98,13 @@ def mesh(folder: RunFolder) -> MeshData | None:
         return None
 
 
+def discard(folder: RunFolder) -> None:
+    """Remove what a run would be resumed from."""
+    shots = (shot.relative_to(folder.path) for shot in folder.path.glob("snapshots/*.npz"))
+    for name in (CHECKPOINT, CHECKPOINT_BEFORE, MESH, *map(str, shots)):
+        folder.remove(name)
+
+
 def _newest(path: Path, say: Callable[[str], None]) -> dict[str, Any] | None:
     for name, instead in ((CHECKPOINT, "the one before"), (CHECKPOINT_BEFORE, "the beginning")):
         try:

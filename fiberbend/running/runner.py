@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from mpi4py import MPI
 from fem import kernels
 from fem.march.frames import Frames
 from fem.march.guide import Guide
+from fem.march.march import ACROSS
 from fem.results.checkpoint import Archive
 from fem.scene import Scene
 from fiberbend import columns as col
@@ -32,6 +33,7 @@ from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording, ended, unmet
 from fiberbend.running.progress import Progress
 from fiberbend.running.warm import SectionStates, section_guides, section_states
+from fiberbend.schema.problems import CaseError
 from fiberbend.states.snapshot import ModelMesh
 from geometry.mesh.data import MeshData
 
@@ -65,7 +67,7 @@ def run_case(
     if not force:
         refuse_shortage(case, comm, out is not None)
     if out is None:
-        return _solve(case, None, progress, comm, False)
+        return _solve(case, None, progress, comm, False, force)
     if resume:
         folder = RunFolder.resume(out, case, comm)
     else:
@@ -79,11 +81,20 @@ def run_case(
             ranks=comm.size,
             versions=record.versions(),
         )
-        return _solve(case, folder, progress, comm, resume)
+        return _solve(case, folder, progress, comm, resume, force)
+
+
+class _AcrossError(Exception):
+    """Half a body buckles across its mirror plane, and may be solved whole instead."""
 
 
 def _solve(
-    case: Case, folder: RunFolder | None, progress: Progress, comm: MPI.Comm, resume: bool
+    case: Case,
+    folder: RunFolder | None,
+    progress: Progress,
+    comm: MPI.Comm,
+    resume: bool,
+    force: bool,
 ) -> RunResult:
     model = choose_model(case)[0].elements()
     if model is None:
@@ -91,10 +102,31 @@ def _solve(
 
         return _on_rank_0(comm, lambda: run_analytic(case, folder, progress))  # type: ignore[no-any-return]
     if model.shared:
-        return _Run(case, model, folder, progress, comm).go(resume)
+        whole = _whole(case)
+        leaves = case.mesh.symmetry == "auto" and (force or _fits(whole, comm, folder))
+        try:
+            return _Run(case, model, folder, progress, comm, may_leave=leaves).go(resume)
+        except _AcrossError:
+            if folder is not None:
+                restart.discard(folder)
+            return _Run(whole, model, folder, progress, comm, (messages.WHOLE,)).go(False)
     # too small to share: one rank solves it
     alone = _Run(case, model, folder, progress, MPI.COMM_SELF)
     return _on_rank_0(comm, lambda: alone.go(False))  # type: ignore[no-any-return]
+
+
+def _whole(case: Case) -> Case:
+    """The case without a mirror plane."""
+    return case.model_copy(update={"mesh": case.mesh.model_copy(update={"symmetry": "full"})})
+
+
+def _fits(case: Case, comm: MPI.Comm, folder: RunFolder | None) -> bool:
+    """Whether there is memory for a case; collective, the same on all ranks."""
+    try:
+        refuse_shortage(case, comm, folder is not None)
+    except CaseError:
+        return False
+    return True
 
 
 def _on_rank_0(comm: MPI.Comm, action: Callable[[], Any]) -> Any:
@@ -121,9 +153,12 @@ class _Run:
         folder: RunFolder | None,
         progress: Progress,
         comm: MPI.Comm,
+        remarks: Sequence[str] = (),
+        may_leave: bool = False,
     ) -> None:
         self.case, self.model, self.folder = case, model, folder
         self.progress, self.comm = progress, comm
+        self.remarks, self.may_leave = remarks, may_leave
         self.recording: Recording | None = None
 
     def go(self, again: bool) -> RunResult:
@@ -146,9 +181,16 @@ class _Run:
         assembly = assemble(case, mesh, self.comm, make_guide, watch=True)
         recorder, recording = self._recording(assembly, again)
         self.recording = recording
+        recording.warn(self.remarks, silent=True)
         recording.warn(known)
+        if again and not mesh.half and case.mesh.symmetry == "auto" and self.model.half(case)[0]:
+            # killed in the whole body that stands for the half
+            recording.warn([messages.WHOLE])
         progress.phase("solve")
-        assembly.march.run(assembly.ramps, [recording])
+        report = assembly.march.run(assembly.ramps, [recording])
+        if report.reason == ACROSS and mesh.half and self.may_leave:
+            progress.message(messages.WHOLE)
+            raise _AcrossError
         status, reason = ended(case, assembly, recorder.rows)
         self._warn_of_ends(status, assembly, recorder, recording)
         check = self._cross_check(recorder.rows, section)
@@ -279,6 +321,8 @@ class _Run:
         if status == "converged" and rows[-1].get(col.MODES):
             lines.append(messages.UNSTABLE_END)
         lines += record.doubts(self.case, rows)
+        if assembly.scene.domain.data.half and assembly.scene.free_opposite is None:
+            lines += messages.uncounted(assembly.ramps, rows)
         recording.warn(lines)
 
     def _cross_check(

@@ -89,6 +89,90 @@ def test_a_step_over_a_limit_point_is_taken_back() -> None:
     assert coarse.last("chamber_mm3") == pytest.approx(fine.last("chamber_mm3"), rel=1e-3)
 
 
+def crown(divisions: int, slack: bool = False) -> RunResult:
+    """A vacuum that presses a stiff winding between soft layers, in the section model."""
+    winding: dict[str, Any] = {"pattern": "double-helix", "pitch": "3 mm", "fiber": "kevlar"}
+    if slack:
+        winding |= {"tension_only": True}
+    return run(
+        {
+            "actuator": {
+                "section": "hemicircle",
+                "radius": "8 mm",
+                "length": "80 mm",
+                "wall": "2 mm",
+                "floor": "2 mm",
+                "sheath": "1 mm",
+                "cap": "10 mm",
+            },
+            "materials": {
+                "wall": "elastosil-m4601",
+                "floor": "combined-base",
+                "sheath": "ecoflex-0030",
+            },
+            "effects": [{"pressure": {"to": "-14.5 kPa"}}, {"winding": winding}],
+            "model": "section",
+            "mesh": {"section": divisions},
+            "output": QUIET,
+        }
+    )
+
+
+def test_a_wrinkle_that_the_mesh_gives_is_named() -> None:
+    # a thread has no stiffness against bending: pressed, it wrinkles from node to node
+    result = crown(4)
+    point = result.run["critical_points"][0]
+    assert point["wrinkle"]
+    assert point["pressure_kPa"] == pytest.approx(-14.07, abs=0.05)
+    assert any("the mesh gives this load" in text for text in result.run["warnings"])
+    # coarser, the same load finds none; nor where the thread goes slack
+    assert not crown(2).run["critical_points"]
+    assert not crown(4, slack=True).run["critical_points"]
+
+
+def finger(**mesh: str) -> dict[str, Any]:
+    """A finger that stands upright, thin along x: it buckles across its mirror plane."""
+    rubber = {"law": "neo-hooke", "mu": "0.22 MPa", "density": "3.83 g/cm^3"}
+    return {
+        "actuator": {
+            "section": "rectangle",
+            "width": "2 mm",
+            "height": "6 mm",
+            "floor": "1 mm",
+            "length": "60 mm",
+            "wall": "1 mm",
+            "cap": "2 mm",
+        },
+        "materials": {"wall": rubber, "floor": rubber},
+        "effects": [{"gravity": {"direction": "-z"}}],
+        "model": "body",
+        "mesh": {"axial": "20 mm", "section": 1, **mesh},
+        "output": QUIET,
+    }
+
+
+def test_half_a_body_that_cannot_follow_is_solved_whole() -> None:
+    result = run(finger())
+    assert result.status == "converged"
+    assert any("the whole body is solved" in text for text in result.run["warnings"])
+    assert result.rows[-1]["unstable_modes"] == 0
+    (point,) = result.run["critical_points"]
+    assert 0.95 < point["value"] < 1.0
+    # it leans to the side, and its weight sinks
+    assert abs(result.last("tip_x_mm")) > 0.3
+
+
+def test_half_a_body_that_is_asked_for_stays_half() -> None:
+    result = run(finger(symmetry="half"))
+    assert result.status == "failed"
+    assert "mesh.symmetry: full" in result.reason
+
+
+def test_half_a_body_of_tetrahedra_says_what_it_cannot_tell() -> None:
+    result = run(finger(element="tetrahedron"))
+    assert any("tetrahedra cannot tell" in text for text in result.run["warnings"])
+
+
 @pytest.mark.hard
 def test_a_tube_collapses_to_one_volume_whatever_the_step() -> None:
     # before: 98 % in one step, 21 % in steps of 0.1 kPa

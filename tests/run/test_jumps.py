@@ -29,6 +29,20 @@ def test_energy_out_of_nowhere_is_found(step: int) -> None:
     assert steps(STORED + jump) == [step]
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_uneven_steps_on_a_smooth_path_are_no_jump(sign: float) -> None:
+    # volumes that fall: P = V^-3 − 1 under vacuum, steps of 1 to 6
+    sizes = np.array([1, 1, 1, 4, 2, 6, 1, 4, 1, 1, 3, 1, 1])
+    volume = 1 + np.r_[0, np.cumsum(sizes)] / sizes.sum()
+    pressure = volume**-3 - 1
+    stored = (1 - volume**-2) / 2 - (volume - 1)
+    work, uncertainty = work_of(sign * pressure[:, None], sign * volume[:, None])
+    assert departures(work, uncertainty, stored) == []
+    assert work.sum() == pytest.approx(stored[-1], rel=1e-3)
+    jump = np.where(np.arange(14) >= 6, 0.1 * stored[-1], 0.0)
+    assert departures(work, uncertainty, stored + jump) == [6]
+
+
 def test_few_steps_are_not_judged() -> None:
     few = [0, 6, 12]
     work, uncertainty = work_of(PRESSURE[few, None], VOLUME[few, None])
