@@ -2,28 +2,45 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable
 
 import numpy as np
+import numpy.typing as npt
 
-if TYPE_CHECKING:
-    from fem.scene import Scene
+from fem.effects.effect import Discrete
+from fem.kinematics.kinematics import Kinematics
+from fem.ranks import total
+
+Floats = npt.NDArray[np.float64]
 
 PROBE = 1e-6
 """Part of an element by which nodes are moved to see what a move in their last digit does."""
 
 
-def solid_noise(scene: Scene) -> float:
-    """Norm of the forces inside the solid where nodes are moved in their last digit, N.
+def probed(body: Kinematics, forces: Callable[[Floats], Floats]) -> Floats:
+    """Forces where nodes are moved in their last digit, N, (owned,).
 
     Args:
-        scene: at rest, and left there.
+        body: the kinematics, at rest.
+        forces: sets owned coefficients of the fields, (owned,), and gives their forces, N.
     """
-    rest, body = scene.w.copy(), scene.body
+    rest: Floats = body.w.x.array[: body.owned].copy()
     moved = rest.copy()
     moved[body.node_dofs[body.owned_nodes]] += PROBE * body.astray()
-    scene.set(moved)
-    forces = scene.solid_forces()
-    scene.set(rest)
-    inside = scene.free[: body.owned] & ~scene.volumetric
-    return float(np.finfo(float).eps / PROBE * scene.norm(forces[inside]))
+    noise = np.finfo(float).eps / PROBE * forces(moved)
+    forces(rest)
+    return noise
+
+
+def summed_noise(body: Kinematics, discretes: Iterable[Discrete]) -> float:
+    """Norm of the forces that round-off in potentials with code of their own makes, N; collective.
+
+    Args:
+        body: the kinematics.
+        discretes: the potentials.
+    """
+    noise = np.zeros(body.local)
+    for discrete in discretes:
+        discrete.update(body.w.x.array)
+        discrete.add_noise(noise)
+    return float(np.sqrt(total(body.domain.comm, float(noise @ noise))))

@@ -19,7 +19,7 @@ from fem.kinematics.domain import Domain
 from fem.kinematics.kinematics import Kinematics
 from fem.matrix import may_free
 from fem.ranks import total
-from fem.round_off import solid_noise
+from fem.round_off import probed, summed_noise
 
 Floats = npt.NDArray[np.float64]
 
@@ -90,7 +90,7 @@ class Scene:
         self.natural = tuple(name for name in self.body.natural if name not in fixed)
         self._compile(potentials)
         self._constrain(constraints)
-        self.solid_noise = solid_noise(self)
+        self.solid_noise = self._solid_noise()
         self.force_noise = float(np.hypot(self._noise(), self.solid_noise))
         self.free_opposite = opposite_free(ordered, self.body)
 
@@ -317,14 +317,15 @@ class Scene:
         return values, norm
 
     def _noise(self) -> float:
-        noise = np.zeros(self.body.local)
-        for discrete in self.discrete.values():
-            discrete.update(self.body.w.x.array)
-            discrete.add_noise(noise)
-        return float(np.sqrt(total(self.domain.comm, float(noise @ noise))))
+        return summed_noise(self.body, self.discrete.values())
 
-    def solid_forces(self) -> Floats:
+    def _solid_noise(self) -> float:
+        noise = probed(self.body, self._solid_forces)
+        return self.norm(noise[self.free[: self.body.owned] & ~self.volumetric])
+
+    def _solid_forces(self, w: Floats) -> Floats:
         """The residual without the potentials that have code of their own, owned part, (owned,)."""
+        self.set(w)
         forces: Floats = self._sum(self._forms["residual"], ())[0]
         return forces + sum(map(self.force, self.outside))
 

@@ -297,9 +297,8 @@ class March:
     def _round(self, ramp: Ramp, way: Way) -> bool:
         """Go round a bend of the path near which a mode is lost on another one, if there is one."""
         position = self.position
-        if position.lost is None or way.kind != "conjugate":
+        if (lost := position.lost) is None or way.kind != "conjugate":
             return False
-        lost = position.lost
         found = self._branches.onward(
             ramp.scalar,
             self.states,
@@ -310,8 +309,8 @@ class March:
 
     def _enter_all(self, ramp: Ramp, found: list[tuple[State, Outcome]]) -> bool:
         """Keep states on another branch, up to what is asked for."""
-        self.position.lost, self.position.failures = None, 0
-        entered: list[State] = []
+        position, entered = self.position, list[State]()
+        position.lost, position.failures = None, 0
         for number, (one, how) in enumerate(found, start=1):
             position.entering = number < len(found)
             if self._enter(ramp, entered, one, how):

@@ -189,6 +189,11 @@ class RunFolder:
         """Write run.json; keys of `RUN_KEYS` that are not given are null."""
         self.write_json(RUN_FILE, {**dict.fromkeys(RUN_KEYS), **entries})
 
+    def remove(self, name: str) -> None:
+        """Remove a file, if it is there."""
+        if self.writes:
+            (self.path / name).unlink(missing_ok=True)
+
     def replace(self, name: str, other: str) -> None:
         """Rename a file, if it is there."""
         if self.writes:

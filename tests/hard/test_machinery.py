@@ -96,7 +96,7 @@ def _one_norm(test: Callable[..., int]) -> Callable[..., int]:
 def test_forces_are_measured_by_those_before(monkeypatch: Patch) -> None:
     """Back at no load there is no force to be measured by: before, 'no convergence'."""
     monkeypatch.setattr(fem.solver.newton, "FADED", 0.0)
-    monkeypatch.setattr(fem.scene, "solid_noise", lambda _: 0.0)
+    monkeypatch.setattr(Scene, "_solid_noise", lambda _: 0.0)
     done = unloaded(find("unloaded"), "section")
     assert done.run["status"] == "failed"
 
@@ -104,7 +104,7 @@ def test_forces_are_measured_by_those_before(monkeypatch: Patch) -> None:
 def test_forces_are_no_finer_than_round_off(monkeypatch: Patch) -> None:
     """Of fibers 1e8 times as stiff as rubber the first digits of a strain are all there is."""
     monkeypatch.setattr(Scene, "_noise", lambda _: 0.0)
-    monkeypatch.setattr(fem.scene, "solid_noise", lambda _: 0.0)
+    monkeypatch.setattr(Scene, "_solid_noise", lambda _: 0.0)
     assert solve("fiber-1000").status == "failed"
 
 
