@@ -11,7 +11,7 @@ from analytic.path import section_axes
 from fem.kinematics.kinematics import Kinematics
 from fem.ranks import total
 from geometry.mesh.centroid import winding_weights
-from geometry.mesh.data import MeshData
+from geometry.mesh.data import MeshData, facet_positions
 from geometry.mesh.reference import gauss
 
 Floats = npt.NDArray[np.float64]
@@ -69,7 +69,7 @@ class CentreLine:
         self._kept: Floats = np.ones((rows.shape[0], 3))
         if data.half:
             # with the mirror image the centre-line stays in the plane, and d1 is x
-            blocks = np.repeat([_EVEN, _ODD, (0.0, 0.0, 0.0)], spline.value.shape[1], axis=0)
+            blocks = np.repeat([_EVEN, _ODD, _EVEN], spline.value.shape[1], axis=0)
             self._kept = np.vstack([_ODD, _EVEN, blocks, _ODD, _EVEN])
 
     def _sums(self) -> Floats:
@@ -82,6 +82,9 @@ class CentreLine:
         """Images a_x and a_y of the axes, (k, 3), and tangents inside, (k − 2, 3); collective."""
         sums = self._sums()
         centre, a_x, a_y = (self._inverse @ sums[2:-2]).reshape(3, -1, 3)
+        if self._body.domain.data.half:
+            # d1 is x by symmetry: a collapsed section, which turns a_y over, does not turn it
+            a_y = np.zeros_like(a_y)
         return (
             np.vstack([sums[0], self._value @ a_x, sums[-2]]),
             np.vstack([sums[1], self._value @ a_y, sums[-1]]),
@@ -190,8 +193,10 @@ class _RodFit:
         on = np.flatnonzero(weights)
         z, plane = mesh.nodes[on, 2], mesh.nodes[on, :2] - rest
         length = tip - root
-        # two planes of nodes between knots at least
-        finest = max(float(np.diff(np.unique(z)).max()) * 2, length / 200)
+        # an element between knots at least
+        cell, facet = mesh.facets["winding"].T
+        corners = mesh.nodes[mesh.cells[cell[:, None], facet_positions(mesh.cell_type)[facet]], 2]
+        finest = max(float(np.ptp(corners, axis=1).max()) * (1 - 1e-9), length / 200)
         count = max(1, int(length / max(float(np.ptp(plane, axis=0).max()) / 4, finest)))
         breaks = np.linspace(root, tip, count + 1)
         knots = np.concatenate([[root] * 3, breaks, [tip] * 3])
