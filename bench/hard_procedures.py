@@ -171,6 +171,8 @@ def perturbed(hard: Hard, model: str) -> Done:
     # 0.02 mm from node to node of elements of 2 mm: strains of 4 %; pressures by a tenth
     for number in range(3):
         driven.march.equilibrium.restore(end)
+        # as a step of a march begins: stiff fibers with the forces of the state before
+        scene.extrapolate([end.discrete], np.ones(1))
         start = end.w.copy()
         start[~volumetric] += rng.uniform(-0.02, 0.02, np.count_nonzero(~volumetric))
         start[volumetric] *= rng.uniform(0.9, 1.1, np.count_nonzero(volumetric))

@@ -70,7 +70,7 @@ class Limits:
 LIMITS = {
     # down to a nanometre, for threads and elements of a body of some micrometres
     "length": Limits(1e-6, 1e6, ("1 nm", "1 km"), (1e-2, 1e3)),
-    "pressure": Limits(1e-12, 1e6, ("1 uPa", "1 TPa"), (1e-3, 10.0)),
+    "pressure": Limits(1e-16, 1e6, ("0.1 nPa", "1 TPa"), (1e-3, 10.0)),
     "modulus": Limits(1e-9, 1e11, ("1 mPa", "100 PPa"), (1e-3, 5e5)),
     # from twice the density of air to more than that of osmium
     "density": Limits(2.5e-12, 3e-8, ("2.5 kg/m^3", "30 g/cm^3"), (1e-10, 1e-8)),

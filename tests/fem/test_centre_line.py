@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 
 import numpy as np
@@ -120,6 +121,21 @@ def test_half_a_body_is_the_whole_one() -> None:
     half, whole = (CentreLine(_screw(_mesh(half=half), spin)[0]) for half in (True, False))
     assert half.turns() == pytest.approx(whole.turns(), abs=1e-9)
     assert half.turns()[1:] == pytest.approx([0.0, 0.0], abs=1e-12)
+
+
+@pytest.mark.parametrize("half", [False, True])
+def test_nodes_that_lie_in_no_planes_change_nothing(half: bool) -> None:
+    # as gmsh's tetrahedra have them: a station has more nodes above its centroid, or below
+    mesh = _mesh(half=half, tetrahedra=True)
+    x, y, z = mesh.nodes.T
+    inside = np.where((z > 0) & (z < FINGER.length), np.sin(np.pi * z / FINGER.length), 0.0)
+    wave = 2.5 * np.sin(1.1 * y) * np.sin(0.3 * z) * inside
+    uneven = dataclasses.replace(mesh, nodes=np.column_stack([x, y, z + wave]))
+    for degrees in (1e-6, 130.0):
+        body, exact, _ = _screw(uneven, np.array([np.radians(degrees) / FINGER.length, 0.0, 0.0]))
+        line = CentreLine(body)
+        assert line.turns() == pytest.approx(exact, abs=1e-6)
+        assert line.middle() == pytest.approx(exact, abs=1e-4)
 
 
 @pytest.mark.parametrize("half", [False, True])
