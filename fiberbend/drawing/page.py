@@ -91,8 +91,11 @@ class Page:
     def __init__(self, size: tuple[int, int], title: str) -> None:
         self._size = size
         self._figure = figure(size)
-        heading = {"ha": "center", "va": "center", "fontsize": 17}
-        self._figure.text(0.5, 1 - 28 / size[1], literal(title), **heading)
+        heading: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 17}
+        text = self._figure.text(0.5, 1 - 28 / size[1], literal(title), **heading)
+        width = text.get_window_extent().width / (0.96 * size[0])
+        if width > 1:  # a long one in smaller letters
+            text.set_fontsize(heading["fontsize"] / width)
 
     @classmethod
     def of_panels(
