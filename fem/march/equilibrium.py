@@ -17,6 +17,8 @@ from fem.solver.modes import opposite_modes, softest_opposite
 from fem.solver.newton import Newton, Outcome
 from fem.solver.side_conditions import Functional, GivenConjugate, GivenFunctional, Stationary
 
+Floats = npt.NDArray[np.float64]
+
 TINY = 1e-5
 """Strain of a perturbed state that shows a slope: its square is lost, round-off is not seen."""
 STILL = 1e-6 * TINY
@@ -24,11 +26,8 @@ STILL = 1e-6 * TINY
 millionth of what the strain would turn."""
 NOWHERE = 1e-30
 """Part of a response that shows its direction, and adds nothing to a tangent."""
-
-
 NEUTRAL = 1e-3
 """Stiffness of a mode over that at rest, or the negative of it, that is none on any mesh."""
-Floats = npt.NDArray[np.float64]
 
 
 class Equilibrium:

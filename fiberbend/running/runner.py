@@ -103,7 +103,9 @@ def _solve(
         return _on_rank_0(comm, lambda: run_analytic(case, folder, progress))  # type: ignore[no-any-return]
     if model.shared:
         whole = _whole(case)
-        leaves = case.mesh.symmetry == "auto" and (force or _fits(whole, comm, folder))
+        # asked now: later the half body takes of the memory that is free
+        leaves = case.mesh.symmetry == "auto" and model.half(case)[0]
+        leaves = leaves and (force or _fits(whole, comm, folder))
         try:
             return _Run(case, model, folder, progress, comm, may_leave=leaves).go(resume)
         except _AcrossError:

@@ -279,7 +279,10 @@ TEXT = (
     "makes and runs such a sample, against whole files of tests; what a survivor means is judged "
     "by hand, in tests/verify/mutants.py. Two changes made by hand before are noticed since as "
     "well: Newton's convergence without its tolerance of volumes (test_newton), and whole turns of "
-    "the bending angle rounded up from 0.6 on (test_turns)."
+    "the bending angle rounded up from 0.6 on (test_turns). The sample was drawn before the angle "
+    "became that of the centre-line: results/measures.py and march.py had code then that is now in "
+    "results/centre_line.py, where nothing is rounded to turns, and in march/attempts.py, "
+    "increments.py and ways.py."
 )
 
 
