@@ -18,7 +18,7 @@ SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob
 FENICS = {"dolfinx", "ufl", "ffcx", "basix", "petsc4py", "mpi4py"}
 LIGHT = (
     *("schema", "effects", "case", "reader", "plan"),
-    *("running/progress", "running/folder", "running/launch"),
+    *("running/progress", "results/folder", "running/launch"),
 )
 """Folders and modules of the application that a wrong case does not go beyond."""
 HEAVY = {"numpy", "scipy", "fem", *FENICS, "gmsh", "vtk", "pyvista", "matplotlib"}

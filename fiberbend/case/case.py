@@ -204,8 +204,16 @@ class Output(Spec):
     case file."""
     pictures: bool = True
     """Draw pictures."""
+    animation: bool = False
+    """Draw all load steps as an animation."""
+    report: bool = True
+    """Write report.html, a page with the answer, the curves and the body in space."""
     fields: bool = True
     """Write fields for ParaView."""
+    field_steps: Literal["requested", "all"] = "requested"
+    """Load steps whose fields are written: rest and those that were asked for, or all."""
+    field_halves: Literal["modelled", "both"] = "modelled"
+    """Fields of the half that is modelled, or of it and its mirror image."""
 
 
 class Case(Spec):
@@ -223,6 +231,8 @@ class Case(Spec):
     """How the body is supported."""
     model: ModelName = "auto"
     """Model to solve; auto takes the cheapest that supports every effect."""
+    compare: tuple[Literal["paper"], ...] = Field(default=(), strict=False)
+    """What a run is put beside on top of the cheaper models: the figures of the paper."""
     mesh: Mesh = Mesh()
     """Elements."""
     solver: Solver = Solver()

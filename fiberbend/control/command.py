@@ -31,8 +31,8 @@ from fiberbend.control.export import (
 from fiberbend.control.result import ControlResult, FilterFit
 from fiberbend.control.settings import ControlSettings, refusals
 from fiberbend.models.closed_form import analytic_curves, no_analytic
+from fiberbend.results.folder import RunFolder
 from fiberbend.running import launch
-from fiberbend.running.folder import RunFolder
 from fiberbend.schema.problems import CaseError, Problem
 
 CONTROL_FILE = "control.json"

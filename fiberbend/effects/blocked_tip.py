@@ -7,9 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from fiberbend import columns as col
 from fiberbend.effects.effect import ENDS, STRIPS, Built, Effect, Requests, Site
+from fiberbend.effects.obstacles import post_shape, roof_shape
 from fiberbend.schema.quantities import Length
 
 if TYPE_CHECKING:
+    from fiberbend.states.obstacles import Shape
+    from geometry.actuator import Actuator
     from geometry.mesh.data import MeshData
     from geometry.sections.size import Strips
 
@@ -48,6 +51,13 @@ class BlockedTipEffect(Effect):
         from geometry.sections.size import Strips
 
         return Strips(roof_half_width=self.roof_width / 2, post_length=self.post_length)
+
+    def obstacle_shapes(self, actuator: Actuator) -> dict[str, Shape]:
+        """A bar along the crown, and a block under the tip."""
+        return {
+            "roof": roof_shape(actuator, self.roof_width),
+            "post": post_shape(actuator, self.post_length),
+        }
 
     def uncertainties(self, straight: bool) -> Iterator[str]:
         """The strips' widths."""

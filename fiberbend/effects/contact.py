@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from fem.effects.contact import Obstacle
     from fem.march.records import Rules
     from fem.solver.newton import Settings
+    from fiberbend.states.obstacles import Shape
     from geometry.actuator import Actuator
     from geometry.mesh.data import MeshData
     from geometry.sections.size import MeshSize, Strips
@@ -145,6 +146,10 @@ class ContactEffect(Effect):
             return None
         roof, post = self.roof or RoofSpec(), self.post or PostSpec()
         return Strips(roof_half_width=roof.width / 2, post_length=post.length)
+
+    def obstacle_shapes(self, actuator: Actuator) -> dict[str, Shape]:
+        """All that the case names."""
+        return {name: item.shape(actuator) for name, item in self.obstacles.items()}
 
     def uncertainties(self, straight: bool) -> Iterator[str]:
         """The obstacles' softness."""

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from fem.effects.effect import Effect as Term
     from fem.march.records import Ramp, Rules
     from fem.solver.newton import Settings
+    from fiberbend.states.obstacles import Shape
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
     from geometry.sections.size import MeshSize, Strips
@@ -246,6 +247,10 @@ class Effect(Spec):
             straight: some effect keeps the actuator from bending.
         """
         yield f"{self.name}: what it adds to the error is not known"
+
+    def obstacle_shapes(self, actuator: Actuator) -> dict[str, Shape]:
+        """Rigid obstacles that it places, by their names, as pictures show them."""
+        return {}
 
     def curves(self, actuator: Actuator) -> list[Floats]:
         """Polylines in space, (n, 3), mm, that are to be seen in the mesh file."""

@@ -11,8 +11,11 @@ from fiberbend.schema.quantities import Coordinate, Length, LengthOrZero, Spec
 
 if TYPE_CHECKING:
     from fem.effects.contact import Obstacle
+    from fiberbend.states.obstacles import Shape
     from geometry.actuator import Actuator
 
+_ROOF_HEIGHT, _POST_HEIGHT = 2.0, 8.0
+"""Heights in mm in which pictures show what has a lower or an upper face only."""
 EVERYWHERE = ("outer", "tip")
 """Surfaces that may touch an obstacle anywhere in space."""
 
@@ -28,6 +31,10 @@ class ObstacleSpec(Spec):
     @abstractmethod
     def placed(self, actuator: Actuator) -> Obstacle:
         """The obstacle in space, beside an actuator at rest."""
+
+    @abstractmethod
+    def shape(self, actuator: Actuator) -> Shape:
+        """What a picture shows of it."""
 
 
 class RoofSpec(ObstacleSpec):
@@ -49,6 +56,10 @@ class RoofSpec(ObstacleSpec):
 
         return Plane((0.0, actuator.outer_top + self.gap, 0.0), (0.0, -1.0, 0.0))
 
+    def shape(self, actuator: Actuator) -> Shape:
+        """A bar along the chamber."""
+        return roof_shape(actuator, self.width, self.gap)
+
 
 class PostSpec(ObstacleSpec):
     """A rigid plane under the end of the tip cap."""
@@ -69,6 +80,10 @@ class PostSpec(ObstacleSpec):
 
         return Plane((0.0, actuator.outer_bottom - self.gap, 0.0), (0.0, 1.0, 0.0))
 
+    def shape(self, actuator: Actuator) -> Shape:
+        """A block under the end of the cap."""
+        return post_shape(actuator, self.length, self.gap)
+
 
 class PlaneSpec(ObstacleSpec):
     """A rigid plane; the body stays on the side to which its normal points."""
@@ -85,6 +100,12 @@ class PlaneSpec(ObstacleSpec):
 
         return Plane(self.point, self.normal)
 
+    def shape(self, actuator: Actuator) -> Shape:
+        """A sheet."""
+        from fiberbend.states.obstacles import Sheet
+
+        return Sheet(self.point, self.normal)
+
 
 class CylinderSpec(ObstacleSpec):
     """A rigid round bar across the body, along x."""
@@ -99,3 +120,26 @@ class CylinderSpec(ObstacleSpec):
         from fem.effects.contact import Cylinder
 
         return Cylinder(self.center, self.radius)
+
+    def shape(self, actuator: Actuator) -> Shape:
+        """A bar."""
+        from fiberbend.states.obstacles import Bar
+
+        return Bar(self.center, self.radius)
+
+
+def roof_shape(actuator: Actuator, width: float, gap: float = 0.0) -> Shape:
+    """A bar over the whole chamber, 0 ≤ z ≤ L, as wide as the strip that touches it; mm."""
+    from fiberbend.states.obstacles import Box
+
+    low = actuator.outer_top + gap
+    return Box((-width / 2, low, 0.0), (width / 2, low + _ROOF_HEIGHT, actuator.length))
+
+
+def post_shape(actuator: Actuator, length: float, gap: float = 0.0) -> Shape:
+    """A block under the last piece of the tip cap, as wide as the body; mm."""
+    from fiberbend.states.obstacles import Box
+
+    half, end = actuator.outer_half_width, actuator.length + actuator.cap
+    top = actuator.outer_bottom - gap
+    return Box((-half, top - _POST_HEIGHT, end - length), (half, top, end))

@@ -25,8 +25,8 @@ from fiberbend.models.closed_form import (
 )
 from fiberbend.models.result import Curve, RunResult
 from fiberbend.plan.doubts import doubts, say_warnings
+from fiberbend.results.folder import RunFolder
 from fiberbend.running import launch, messages
-from fiberbend.running.folder import RunFolder
 from fiberbend.running.progress import Progress
 from fiberbend.running.record import beside, entries, peak_memory_mb
 
@@ -105,7 +105,7 @@ def run_analytic(
         folder.write_history(rows)
         folder.write_run(**run)
         if case.output.pictures and folder.writes:
-            from fiberbend.running.report import draw_curves
+            from fiberbend.running.outputs import draw_curves
 
             draw_curves(
                 folder,

@@ -13,12 +13,13 @@ from fem.march.records import Ramp, Report, State
 from fem.results.checkpoint import Archive
 from fem.solver.newton import Outcome
 from fiberbend import columns as col
-from fiberbend.case.case import Case
+from fiberbend.case.case import Case, Output
 from fiberbend.models.model import MeshedModel
 from fiberbend.process import signals
+from fiberbend.results.folder import SNAPSHOTS, RunFolder
+from fiberbend.results.states import LAST, STEP, step_label
 from fiberbend.running import messages, record, restart
 from fiberbend.running.assembly import Assembly
-from fiberbend.running.folder import RunFolder
 from fiberbend.running.history import Recorder
 from fiberbend.running.progress import Progress
 from fiberbend.states.labels import angle_labels, pressure_labels, unused
@@ -80,9 +81,8 @@ class Recording(Hook):
             row[col.ANGLE],
             outcome.iterations,
         )
-        label = self._requested(march.position.report, state)
-        if label:
-            self.keep(label)
+        asked = self._requested(march.position.report, state)
+        self.keep(asked or step_label(row[col.STEP]))
         if self._folder is not None and self._resumes and not march.position.entering:
             self._recorder.integrate()
             self._save(self._folder, march, row[col.STEP])
@@ -120,12 +120,11 @@ class Recording(Hook):
                     self._progress.message(text)
 
     def keep(self, label: str) -> None:
-        """Keep the present state for fields and pictures; collective."""
-        output = self._case.output
-        if self._folder is None or not (output.fields or output.pictures):
+        """Keep the present state for fields, pictures and the report; collective."""
+        if self._folder is None or not shows_states(self._case.output):
             return
         row = self._recorder.rows[-1]
-        if label == "last" and any(s.step == row[col.STEP] for s in self.snapshots):
+        if label == LAST and any(s.step == row[col.STEP] for s in self.snapshots):
             return
         displacement, multiplier = self._archive.displacement(), self._archive.multiplier()
         if displacement is None or multiplier is None:
@@ -142,9 +141,10 @@ class Recording(Hook):
             fiber_force=self._archive.fiber_force(),
             **{name: scene.scalar(name) for name in scene.body.natural},
         )
-        self.snapshots.append(shot)
+        if not label.startswith(STEP):
+            self.snapshots.append(shot)
         arrays = {k: v for k, v in vars(shot).items() if v is not None}
-        self._folder.write_arrays(f"snapshots/{label}.npz", **arrays)
+        self._folder.write_arrays(f"{SNAPSHOTS}/{label}.npz", **arrays)
 
     def _fraction(self, number: int, state: State) -> float:
         """Part of all ramps that is done."""
@@ -162,6 +162,11 @@ class Recording(Hook):
             if abs(pressure - goal) <= SAME * abs(goal):
                 return unused(label, taken)
         return ""
+
+
+def shows_states(output: Output) -> bool:
+    """Whether anything is asked for that needs the states of a run, not its history alone."""
+    return output.fields or output.pictures or output.report or output.animation
 
 
 def ended(case: Case, assembly: Assembly, rows: Sequence[dict[str, Any]]) -> tuple[str, str]:

@@ -131,3 +131,14 @@ def doubts(case: Case, rows: Sequence[col.Row]) -> list[str]:
 def beside(check: Check | None) -> dict[str, Any]:
     """How the run compares with other models, where that is known."""
     return {} if check is None else {"crosscheck": check.entry()}
+
+
+def cost(run: Mapping[str, Any]) -> list[str]:
+    """Lines on what a run of finite elements has cost, from its run.json."""
+    phases = ", ".join(f"{name} {value:.1f} s" for name, value in run["wall_s"].items())
+    ranks = f"{run['ranks']} rank{'' if run['ranks'] == 1 else 's'}"
+    return [
+        f"{run['unknowns']} unknowns: {run['load_steps']} steps, {run['newton_iterations']} "
+        f"iterations, {run['factorisations']} factorisations, {run['cutbacks']} cut-backs",
+        f"{phases}; peak memory {run['peak_memory_MB']:.0f} MB on {ranks}",
+    ]

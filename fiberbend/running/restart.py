@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import zipfile
-import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -15,13 +13,11 @@ import numpy as np
 from fem.march.position import Position
 from fem.results.checkpoint import Archive
 from fiberbend import columns as col
-from fiberbend.running.folder import CHECKPOINT, CHECKPOINT_BEFORE, MESH, RunFolder
+from fiberbend.results.folder import CHECKPOINT, CHECKPOINT_BEFORE, FIBERS, MESH, RunFolder
+from fiberbend.results.states import DAMAGED, LAST, STEP, read_snapshot, snapshot_paths
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.states.snapshot import Snapshot
 from geometry.mesh.data import MeshData
-
-DAMAGED = (zipfile.BadZipFile, zlib.error, ValueError, EOFError, KeyError)
-"""How reading a file of arrays ends that is cut off or changed: zip has a check sum of each."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -81,9 +77,10 @@ def load(folder: RunFolder, archive: Archive, say: Callable[[str], None]) -> Sav
         raise CaseError([Problem(str(folder.path / CHECKPOINT), text)])
     rows = json.loads(str(arrays.pop("rows")))
     snapshots = []
-    for shot in sorted((folder.path / "snapshots").glob("*.npz")):
-        snapshot = _snapshot(shot, say)
-        if snapshot and snapshot.step <= rows[-1][col.STEP] and snapshot.label != "last":
+    asked = (p for p in snapshot_paths(folder.path) if not p.stem.startswith(STEP))
+    for shot in asked:
+        snapshot = read_snapshot(shot, say)
+        if snapshot and snapshot.step <= rows[-1][col.STEP] and snapshot.label != LAST:
             snapshots.append(snapshot)
     return Saved(
         archive.unpack(arrays), rows, sorted(snapshots, key=lambda snapshot: snapshot.step)
@@ -100,8 +97,8 @@ def mesh(folder: RunFolder) -> MeshData | None:
 
 def discard(folder: RunFolder) -> None:
     """Remove what a run would be resumed from."""
-    shots = (shot.relative_to(folder.path) for shot in folder.path.glob("snapshots/*.npz"))
-    for name in (CHECKPOINT, CHECKPOINT_BEFORE, MESH, *map(str, shots)):
+    shots = (shot.relative_to(folder.path) for shot in snapshot_paths(folder.path))
+    for name in (CHECKPOINT, CHECKPOINT_BEFORE, MESH, FIBERS, *map(str, shots)):
         folder.remove(name)
 
 
@@ -115,14 +112,3 @@ def _newest(path: Path, say: Callable[[str], None]) -> dict[str, Any] | None:
         except DAMAGED:
             say(f"{path / name} is damaged: goes on from {instead}")
     return None
-
-
-def _snapshot(path: Path, say: Callable[[str], None]) -> Snapshot | None:
-    """A state that was asked for; None where its file is damaged."""
-    try:
-        with np.load(path) as file:
-            entries = {k: file[k] if file[k].ndim else file[k].item() for k in file.files}
-    except DAMAGED:
-        say(f"{path} is damaged: left out")
-        return None
-    return Snapshot(**{"fiber_force": None, **entries})

@@ -26,9 +26,10 @@ from fiberbend.models.result import RunResult
 from fiberbend.plan.doubts import doubts, say_warnings
 from fiberbend.plan.memory import refuse_shortage
 from fiberbend.process.signals import Interrupted, stop_of
+from fiberbend.results.folder import MESH, RunFolder
+from fiberbend.results.states import LAST, write_fibers
 from fiberbend.running import launch, messages, record, restart
 from fiberbend.running.assembly import Assembly, assemble
-from fiberbend.running.folder import MESH, RunFolder
 from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording, ended, unmet
 from fiberbend.running.progress import Progress
@@ -183,6 +184,8 @@ class _Run:
         assembly = assemble(case, mesh, self.comm, make_guide, watch=True)
         recorder, recording = self._recording(assembly, again)
         self.recording = recording
+        if self.folder is not None and assembly.parts.fibers is not None:
+            write_fibers(self.folder, assembly.parts.fibers, assembly.parts.smeared)
         recording.warn(self.remarks, silent=True)
         recording.warn(known)
         if again and not mesh.half and case.mesh.symmetry == "auto" and self.model.half(case)[0]:
@@ -198,7 +201,7 @@ class _Run:
         check = self._cross_check(recorder.rows, section)
         recording.warn([] if check is None else check.doubts(), silent=True)
         progress.phase("output")
-        recording.keep("last")
+        recording.keep(LAST)
         rows = check.beside(recorder.rows) if check else recorder.rows
         run = record.entries(
             status,
@@ -356,15 +359,8 @@ class _Run:
     def _report(self, run: dict[str, Any], check: Check | None) -> None:
         """Report the cost of the run, and the comparison with other models."""
         say = self.progress.message
-        for line in check.lines() if check is not None else ():
+        for line in (*(check.lines() if check is not None else ()), *record.cost(run)):
             say(line)
-        say(
-            f"{run['unknowns']} unknowns: {run['load_steps']} steps, {run['newton_iterations']} "
-            f"iterations, {run['factorisations']} factorisations, {run['cutbacks']} cut-backs"
-        )
-        phases = ", ".join(f"{name} {value:.1f} s" for name, value in run["wall_s"].items())
-        ranks = f"{run['ranks']} rank{'' if run['ranks'] == 1 else 's'}"
-        say(f"{phases}; peak memory {run['peak_memory_MB']:.0f} MB on {ranks}")
         say_warnings(run["warnings"], say)
 
     def _draw(
@@ -376,7 +372,7 @@ class _Run:
         check: Check | None,
     ) -> None:
         """Fields, pictures and plots, on rank 0."""
-        from fiberbend.running import report
+        from fiberbend.running import outputs
 
         assert self.folder is not None
         model_mesh = ModelMesh(
@@ -387,7 +383,7 @@ class _Run:
             title=self.case.title,
             uniform=not self.model.ends,
         )
-        report.draw(
+        outputs.draw(
             self.folder,
             self.case,
             model_mesh,

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from fiberbend.plan.memory import needed_mb, room, shortage
 from fiberbend.process.signals import Interrupted, stop_of
+from fiberbend.results.folder import RunFolder
 from fiberbend.running import launch
-from fiberbend.running.folder import RunFolder
 from fiberbend.running.launch import FAILED
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.sweep.points import Sweep, read_sweep

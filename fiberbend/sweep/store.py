@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from fiberbend.case.case import Case
-from fiberbend.running.folder import (
+from fiberbend.results.folder import (
     BLOCKED,
     CHECKPOINT,
     CHECKPOINT_BEFORE,

@@ -16,7 +16,7 @@ from fiberbend import columns as col
 from fiberbend.case.case import Case
 from fiberbend.models import lines
 from fiberbend.models.closed_form import analytic_curves, lever_arm
-from fiberbend.running.folder import BLOCKED
+from fiberbend.results.folder import BLOCKED
 from fiberbend.schema.units import show
 from fiberbend.sweep.file import ReportSpec
 from fiberbend.sweep.points import Point, Sweep

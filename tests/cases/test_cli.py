@@ -14,8 +14,8 @@ import pytest
 
 from fiberbend.cli import main
 from fiberbend.reader.reader import read_case
+from fiberbend.results.folder import RunFolder
 from fiberbend.running import launch
-from fiberbend.running.folder import RunFolder
 from tests.cases import bad_cases
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -223,7 +223,7 @@ for path in {files!r}:
 from mpi4py import MPI
 from fiberbend.schema.problems import CaseError
 from fiberbend.reader.reader import read_case
-from fiberbend.running.folder import RunFolder
+from fiberbend.results.folder import RunFolder
 from tests.cases import bad_cases
 
 case, comm, out = read_case({case!r}), MPI.COMM_WORLD, Path({out!r})

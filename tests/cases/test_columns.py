@@ -12,7 +12,7 @@ from fiberbend import columns
 from fiberbend.columns import BODY, COLUMNS, RUN, UNIFORM, Column, check, column
 from fiberbend.models.choice import MODELS
 from fiberbend.models.model import ModelKind
-from fiberbend.running.folder import RunFolder
+from fiberbend.results.folder import RunFolder
 
 
 def test_every_group_is_filled_and_every_model_fills_those_that_there_are() -> None:

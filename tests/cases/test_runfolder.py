@@ -16,7 +16,7 @@ import pytest
 from fiberbend.process import remains
 from fiberbend.process.lock import LOCK_FILE
 from fiberbend.reader.reader import read_case
-from fiberbend.running.folder import (
+from fiberbend.results.folder import (
     CASE_FILE,
     FILES,
     HISTORY_COLUMNS,

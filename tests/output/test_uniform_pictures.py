@@ -17,8 +17,8 @@ from fiberbend.drawing.cell import Slices, plot_tension, tension_along
 from fiberbend.drawing.crosscut import Crosscut
 from fiberbend.drawing.section import Sections
 from fiberbend.reader.reader import parse_case
-from fiberbend.running.folder import RunFolder
-from fiberbend.running.uniform_report import draw_states
+from fiberbend.results.folder import RunFolder
+from fiberbend.running.uniform_outputs import draw_states
 from fiberbend.states.bend import Bend
 from fiberbend.states.recovery import cauchy_stress, recover
 from fiberbend.states.snapshot import ModelMesh
@@ -328,8 +328,8 @@ def test_tension_is_that_of_the_whole_fiber(half: bool, tmp_path: Path) -> None:
 def test_nothing_is_imported_for_a_run_without_pictures() -> None:
     # pyvista and matplotlib take longer to import than a section takes to solve
     code = (
-        "import sys, fiberbend.running.runner, fiberbend.running.report\n"
-        "import fiberbend.running.uniform_report\n"
+        "import sys, fiberbend.running.runner, fiberbend.running.outputs\n"
+        "import fiberbend.running.uniform_outputs\n"
         "print([name for name in ('pyvista', 'matplotlib', 'vtkmodules') if name in sys.modules])"
     )
     done = subprocess.run(

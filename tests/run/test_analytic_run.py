@@ -24,13 +24,13 @@ from fiberbend.models.closed_form import (
 )
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case
-from fiberbend.running.analytic import run_analytic
-from fiberbend.running.folder import (
+from fiberbend.results.folder import (
     HISTORY_COLUMNS,
     RUN_KEYS,
     RunFolder,
     read_history,
 )
+from fiberbend.running.analytic import run_analytic
 from fiberbend.running.progress import Progress
 from materials.material import Material
 

@@ -17,8 +17,8 @@ from fiberbend import run
 from fiberbend.models.choice import meshed
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import as_case
+from fiberbend.results.folder import read_history
 from fiberbend.running.assembly import assemble
-from fiberbend.running.folder import read_history
 from fiberbend.schema.problems import CaseError
 from tests.conftest import MpiRun
 from tests.run.conftest import small, write_case

@@ -17,8 +17,7 @@ from fem.solver.newton import Outcome
 from fiberbend.models.choice import meshed
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import as_case
-from fiberbend.running.assembly import assemble
-from fiberbend.running.folder import (
+from fiberbend.results.folder import (
     CHECKPOINT,
     CHECKPOINT_BEFORE,
     MESH,
@@ -26,6 +25,7 @@ from fiberbend.running.folder import (
     RunFolder,
     read_history,
 )
+from fiberbend.running.assembly import assemble
 from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording
 from fiberbend.running.progress import Progress

@@ -57,7 +57,7 @@ ACTS = dict(item.split("=", 1) for item in os.environ["FAKE"].split() if "=" in 
 
 def run_case(case, out, overwrite=False, progress=None, resume=False, force=False):
     from fiberbend.models.result import RunResult
-    from fiberbend.running.folder import RunFolder
+    from fiberbend.results.folder import RunFolder
     folder = RunFolder.resume(out, case) if resume else RunFolder.create(out, case, overwrite)
     with open(os.environ["FAKE_LOG"], "a") as log:
         mpi = "mpi4py.MPI" in sys.modules

@@ -122,12 +122,12 @@ def test_pictures_that_cannot_be_drawn_are_a_warning(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from fiberbend.drawing.renderer import PictureError
-    from fiberbend.running import uniform_report
+    from fiberbend.running import uniform_outputs
 
     def blind(*_: Any) -> None:
         raise PictureError("no display")
 
-    monkeypatch.setattr(uniform_report, "draw_bent", blind)
+    monkeypatch.setattr(uniform_outputs, "draw_bent", blind)
     spread = small()["effects"][1]["winding"] | {"as": "smeared"}
     effects = [{"pressure": {"to": "2 kPa"}}, {"winding": spread}]
     output = {"pictures": True, "fields": False}

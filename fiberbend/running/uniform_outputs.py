@@ -10,7 +10,7 @@ import numpy as np
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.models.section import picture_layers
-from fiberbend.running.folder import RunFolder
+from fiberbend.results.folder import RunFolder
 from fiberbend.states.bend import Bend
 from fiberbend.states.recovery import NodalFields, recover
 from fiberbend.states.snapshot import ModelMesh, Snapshot, Write
@@ -71,7 +71,7 @@ def _draw(
     say: Callable[[str], None],
 ) -> None:
     from fiberbend.drawing.section import draw_sections
-    from fiberbend.running.report import pictures
+    from fiberbend.running.outputs import pictures
 
     name = "section" if _is_section(model_mesh) else "section where a fiber passes the crown"
     with pictures(say):

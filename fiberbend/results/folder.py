@@ -42,6 +42,9 @@ CASE_FILE = "case.resolved.yaml"
 RUN_FILE = "run.json"
 HISTORY_FILE = "history.csv"
 MESH = "mesh.npz"
+FIBERS = "fibers.npz"
+"""The winding on the mesh, for who draws a run that is done."""
+SNAPSHOTS = "snapshots"
 CHECKPOINT = "checkpoint.npz"
 CHECKPOINT_BEFORE = "checkpoint.before.npz"
 """The one before the last, for when that cannot be read."""
@@ -50,13 +53,15 @@ BLOCKED = "blocked"
 
 _OF_A_RUN = (
     *(CASE_FILE, RUN_FILE, HISTORY_FILE, MESH, CHECKPOINT, CHECKPOINT_BEFORE, "actuator.msh"),
-    *("error.log", "error.rank*.log", "snapshots/*.npz"),
-    *("fields/*.vtu", "fields/*.vtp", "fields/states.pvd"),
+    *("error.log", "error.rank*.log", f"{SNAPSHOTS}/*.npz"),
+    *(FIBERS, "run.log", "report.html"),
+    *("fields/*.vtu", "fields/*.vtp", "fields/*.pvd"),
+    *("pictures/rest.png", "pictures/animation.gif", "pictures/animation.mp4"),
     *("pictures/undeformed.png", "pictures/cut.png", "pictures/montage.png", "pictures/bent*.png"),
-    *("pictures/pressure_*.png", "pictures/tip_*.png"),
+    *("pictures/pressure_*.png", "pictures/tip_*.png", "pictures/contact_*.png"),
     *("pictures/section_*.png", "pictures/cell_*.png", "pictures/fiber_*.png"),
 )
-_OF_A_SWEEP = ("sweep.csv", "trends.md", "maps/*.png")
+_OF_A_SWEEP = ("sweep.csv", "trends.md", "maps/*.png", "report.html")
 _OF_CONTROL = ("control.json", "control.csv", "control.png", "filter.csv", "angle_filter.h")
 FILES = (*_OF_A_RUN, *(f"{BLOCKED}/{name}" for name in _OF_A_RUN), *_OF_A_SWEEP, *_OF_CONTROL)
 """What is written: no other name can be, and `overwrite` removes nothing else."""
@@ -211,7 +216,7 @@ class RunFolder:
             ValueError: a name that `FILES` does not have.
         """
         if not remains.matches(name, FILES):
-            raise ValueError(f"{name} is no file of a run, expected one of running.folder.FILES")
+            raise ValueError(f"{name} is no file of a run, expected one of results.folder.FILES")
         if not self.writes:
             return
         target = self.path / name

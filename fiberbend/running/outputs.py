@@ -10,7 +10,7 @@ import numpy as np
 
 from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
-from fiberbend.running.folder import RunFolder
+from fiberbend.results.folder import RunFolder
 from fiberbend.states.recovery import recover
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 
@@ -49,7 +49,7 @@ def draw(
     if not (snapshots and (output.fields or output.pictures)):
         return
     if model_mesh.uniform:
-        from fiberbend.running.uniform_report import draw_states
+        from fiberbend.running.uniform_outputs import draw_states
 
         draw_states(folder, case, model_mesh, snapshots, say)
         return

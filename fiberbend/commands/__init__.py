@@ -1,0 +1,1 @@
+"""Commands that `fiberbend.cli` loads when they are called, a file each."""

@@ -1,0 +1,1 @@
+"""report.html: one page of a run or a sweep that opens without a network."""
