@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.models.section import picture_layers
 from fiberbend.results.folder import RunFolder
+from fiberbend.results.space import Space, is_section
 from fiberbend.states.bend import Bend
-from fiberbend.states.recovery import NodalFields, recover
+from fiberbend.states.recovery import NodalFields
 from fiberbend.states.snapshot import ModelMesh, Snapshot, Write
 from fiberbend.states.stack import (
     Stack,
-    extruded,
-    repeated,
     split_alike,
 )
 
@@ -31,7 +28,7 @@ def draw_states(
 ) -> None:
     """Write fields/*.vtu and pictures/*.png of a section or cell, as the case wants them.
 
-    Fields are those of the whole length of a section, and of one pitch of a cell.
+    Fields are those of the whole length between the caps.
 
     Args:
         folder: where to write.
@@ -44,21 +41,17 @@ def draw_states(
     def into(sub: str) -> Write:
         return lambda name, fill: folder.write(f"{sub}/{name}", fill)
 
-    nodes = split_alike(model_mesh.mesh)
-    fields = [recover(model_mesh, state, nodes) for state in snapshots]
-    whole = functools.cache(lambda: _whole(case, model_mesh, snapshots))
+    space = Space(case, model_mesh)
+    fields = [space.recovered(state) for state in snapshots]
     if case.output.fields:
         from fiberbend.states.paraview import write_fields
 
-        stack = (
-            whole()
-            if _is_section(model_mesh)
-            else repeated(model_mesh, _slices_a_pitch(model_mesh))
-        )
-        moved, spread = _in_space(stack, model_mesh, snapshots, fields)
-        write_fields(stack.model_mesh, moved, into("fields"), spread)
+        moved = [space.snapshot(state) for state in snapshots]
+        pairs = zip(snapshots, fields, strict=True)
+        spread = [space.fields(state, own) for state, own in pairs]
+        write_fields(space.model_mesh, moved, into("fields"), spread)
     if case.output.pictures:
-        _draw(case, model_mesh, snapshots, fields, whole, into("pictures"), say)
+        _draw(case, model_mesh, snapshots, fields, space, into("pictures"), say)
 
 
 def _draw(
@@ -66,18 +59,19 @@ def _draw(
     model_mesh: ModelMesh,
     snapshots: Sequence[Snapshot],
     fields: Sequence[NodalFields],
-    whole: Callable[[], Stack],
+    space: Space,
     write: Write,
     say: Callable[[str], None],
 ) -> None:
     from fiberbend.drawing.section import draw_sections
     from fiberbend.running.outputs import pictures
 
-    name = "section" if _is_section(model_mesh) else "section where a fiber passes the crown"
+    name = "section" if is_section(model_mesh) else "section where a fiber passes the crown"
     with pictures(say):
         draw_sections(model_mesh, snapshots, write, fields, name)
     with pictures(say, "no pictures in space"):
-        draw_bent(whole(), model_mesh, snapshots, write, fields)
+        assert space.stack is not None
+        draw_bent(space.stack, model_mesh, snapshots, write, fields)
         turns = case.turns
         if turns is not None and model_mesh.lines is not None:
             from fiberbend.drawing.cell import draw_cell
@@ -115,7 +109,7 @@ def draw_bent(
     )
     strains = [stack.at_cells(field.log_strain[nodes.cells]) for field in fields]
     high = max(float(np.quantile(side_by_side.outside.interpolate(s), 0.998)) for s in strains)
-    model = "section" if _is_section(model_mesh) else "cell"
+    model = "section" if is_section(model_mesh) else "cell"
     page = side_by_side.page(
         title=f"{model_mesh.title}: {model} model, caps not modelled",
         captions=[_caption(state, model_mesh, stack) for state in snapshots],
@@ -135,32 +129,5 @@ def _caption(state: Snapshot, model_mesh: ModelMesh, stack: Stack) -> str:
     return f"{state.caption},  twist {twist:.0f}°".replace("-", "−")
 
 
-def _is_section(model_mesh: ModelMesh) -> bool:
-    return model_mesh.mesh.cell_type == "quadrilateral"
-
-
-def _whole(case: Case, model_mesh: ModelMesh, snapshots: Sequence[Snapshot]) -> Stack:
-    """The whole length; a cell's as near as whole slices come."""
-    length = case.actuator.length
-    if not _is_section(model_mesh):
-        return repeated(model_mesh, max(1, round(length / model_mesh.mesh.nodes[-1, 2])))
-    warps = snapshots[0].displacement.shape[1] == 3
-    return extruded(model_mesh, length, picture_layers(case), turned=warps)
-
-
 def _slices_a_pitch(model_mesh: ModelMesh) -> int:
     return 2 if model_mesh.mesh.half else 1
-
-
-def _in_space(
-    stack: Stack,
-    model_mesh: ModelMesh,
-    snapshots: Sequence[Snapshot],
-    fields: Sequence[NodalFields],
-) -> tuple[list[Snapshot], list[NodalFields]]:
-    """States and fields of a stack."""
-    nodes = split_alike(model_mesh.mesh)
-    return (
-        [stack.snapshot(model_mesh, state) for state in snapshots],
-        [stack.fields(model_mesh, nodes, *pair) for pair in zip(fields, snapshots, strict=True)],
-    )
