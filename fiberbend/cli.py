@@ -45,6 +45,17 @@ app.command(
 """,
 )
 
+app.command(
+    "fiberbend.commands.init:init",
+    name="init",
+    help="Write a commented case file of your own actuator, by options or by questions.",
+    help_epilogue="""Examples:
+  fiberbend init finger.yaml
+  fiberbend init finger.yaml --radius 6.35mm --length 80mm --wall 2mm dragon-skin-30
+  fiberbend init finger.yaml --section rectangle --width 20mm --height 10mm --pressure "80 kPa"
+""",
+)
+
 
 def entry() -> NoReturn:
     """The command as a process: `main`, with signals, streams and other ranks in order."""

@@ -19,6 +19,16 @@ NAMED: dict[str, Material] = {
         density=1070.0,
         source=f"{_PAPER}; density: Smooth-On data sheet",
     ),
+    "dragon-skin-30": Material(
+        "yeoh",
+        {"c1": 0.0904, "c2": 0.0091},
+        density=1080.0,
+        source=(
+            "fitted to tensile tests up to a stretch of 2, rms error 0.7 % of the greatest stress: "
+            "Marechal et al. 2021, Soft Robotics 8(3), DOI 10.1089/soro.2019.0115; density: "
+            "Smooth-On data sheet"
+        ),
+    ),
     "combined-base": Material(
         "yeoh",
         {"c1": 7.9, "c2": 0.0},
