@@ -56,6 +56,16 @@ app.command(
 """,
 )
 
+app.command(
+    "fiberbend.commands.show:show",
+    name="show",
+    help="Draw the actuator of a case at rest, with its dimensions; nothing is solved.",
+    help_epilogue="""Examples:
+  fiberbend show cases/free_bending.yaml --open
+  fiberbend show cases/grasp.yaml --set actuator.radius="10 mm" --out grasp.png
+""",
+)
+
 
 def entry() -> NoReturn:
     """The command as a process: `main`, with signals, streams and other ranks in order."""

@@ -19,9 +19,10 @@ from geometry.mesh.data import Floats, MeshData, facet_positions
 SIZE = (1400, 1000)
 """Width and height of the page in pixels."""
 _OBSTACLE, _INK = "#b5651d", "#303030"
-_THREAD: dict[str, Any] = {"color": COLORS["fiber"], "linewidth": 0.7, "alpha": 0.7}
+_THREAD: dict[str, Any] = {"color": COLORS["fiber"], "linewidth": 0.5, "alpha": 0.6}
 _LINE: dict[str, Any] = {"color": _INK, "linewidth": 0.9}
 _TEXT: dict[str, Any] = {"fontsize": 11, "color": _INK, "zorder": 8}
+_MARGIN = 2.0
 _TURNS = 40
 """So many turns at most are drawn; more would be a grey area."""
 
@@ -69,7 +70,7 @@ class Blueprint:
 
     @property
     def layers(self) -> list[tuple[str, float, float]]:
-        """Region and lowest and highest y in mm of what lies over x = 0, from below; "" is empty."""
+        """What lies over x = 0, from below: region, or "" for empty, least and greatest y in mm."""
         mesh = self.section
         pairs = mesh.facets["symmetry"]
         low, high = [], []
@@ -97,10 +98,13 @@ class Blueprint:
         layers, start, end = self.layers, -self.cap, self.length + self.cap
         bottom, top = layers[0][1], layers[-1][2]
         for name, low, high in layers:
-            body = {"facecolor": COLORS.get(name or "wall", "#999999"), "edgecolor": "0.45"}
+            body: dict[str, Any] = {
+                "facecolor": COLORS.get(name or "wall", "#999999"),
+                "edgecolor": "0.45",
+            }
             axes.add_patch(Rectangle((start, low), end - start, high - low, linewidth=0.6, **body))
             if not name:
-                hole = {"facecolor": "white", "edgecolor": "0.45", "linewidth": 0.8}
+                hole: dict[str, Any] = {"facecolor": "white", "edgecolor": "0.45", "linewidth": 0.8}
                 axes.add_patch(Rectangle((0.0, low), self.length, high - low, **hole))
         self._threads(axes)
         self._rigid(axes)
@@ -110,10 +114,10 @@ class Blueprint:
         _dimension(axes, (0.0, row), (self.length, row), f"length {self.length:g} mm")
         _dimension(axes, (self.length, row), (end, row), f"cap {self.cap:g} mm")
         if self.pitch is not None and self.pitch < self.length:
-            at = max(0.0, 0.5 * self.length - self.pitch)
-            above = top + 0.3 * high
-            text = f"pitch {self.pitch:g} mm"
-            _dimension(axes, (at, above), (at + self.pitch, above), text)
+            boxes = [shape.high[1] for shape in self.obstacles.values() if isinstance(shape, Box)]
+            above, at = max([top, *boxes]) + 0.15 * high, 0.1 * self.length
+            _arrow(axes, (at, above), (at + self.pitch, above))
+            axes.text(at + 1.5 * self.pitch, above, f"pitch {self.pitch:g} mm", **_TEXT)
         curl = {"arrowstyle": "-|>", "connectionstyle": "arc3,rad=-0.45", "color": "#c0392b"}
         tip = end + 0.25 * high
         axes.annotate("", (tip, bottom - high), (tip, top), arrowprops=curl | {"linewidth": 1.6})
@@ -132,9 +136,21 @@ class Blueprint:
             place = (origin[0] + 1.15 * tip_of[0], origin[1] + 1.15 * tip_of[1])
             axes.text(*place, name, ha="center", va="center", **_TEXT | {"style": "italic"})
         axes.set_aspect("equal")
-        axes.autoscale_view()
-        axes.margins(0.02)
+        ends = self._extent()
+        axes.set_xlim(min(origin[0], ends[0][0]) - 0.3 * high, max(tip + 2.2 * high, ends[1][0]))
+        axes.set_ylim(min(row - 0.6 * high, ends[0][1]), max(top + 0.9 * high, ends[1][1]))
         axes.set_axis_off()
+
+    def _extent(self) -> tuple[Floats, Floats]:
+        """Least and greatest z and y of the obstacles that have an end of their own, mm."""
+        points = [np.zeros((1, 3))]
+        for shape in self.obstacles.values():
+            if not isinstance(shape, Sheet):
+                points.append(np.asarray(shape.surface(np.zeros((1, 3))).points))
+            else:
+                points.append(np.array([[0.0, shape.point[1] - 3.0, self.length / 2]]))
+        every = np.concatenate(points)[:, [2, 1]]
+        return every.min(axis=0) - _MARGIN, every.max(axis=0) + _MARGIN
 
     def _threads(self, axes: Any) -> None:
         """The half of every fiber that faces the viewer, x ≤ 0."""
@@ -152,13 +168,16 @@ class Blueprint:
     def _rigid(self, axes: Any) -> None:
         from matplotlib.patches import Circle, Rectangle
 
-        look = {"facecolor": _OBSTACLE, "edgecolor": _OBSTACLE, "alpha": 0.55}
+        look: dict[str, Any] = {"facecolor": _OBSTACLE, "edgecolor": _OBSTACLE, "alpha": 0.55}
         for name, shape in self.obstacles.items():
             label: dict[str, Any] = {"color": _OBSTACLE, "fontsize": 12, "ha": "center"}
             if isinstance(shape, Box):
                 (_, y0, z0), (_, y1, z1) = shape.low, shape.high
                 axes.add_patch(Rectangle((z0, y0), z1 - z0, y1 - y0, **look))
-                axes.text((z0 + z1) / 2, y1 if y0 >= 0 else y0, name, **label, va=_beside(y0))
+                if y0 >= 0:
+                    axes.text((z0 + z1) / 2, y1, name, **label, va="bottom")
+                else:
+                    axes.text(z1, y0, f" {name}", **label | {"ha": "left"}, va="bottom")
             elif isinstance(shape, Bar):
                 y, z = shape.center
                 axes.add_patch(Circle((z, y), shape.radius, **look))
@@ -171,7 +190,8 @@ class Blueprint:
                     middle = np.array([self.length / 2, y + _rise(shape, self.length / 2 - z)])
                     ends = np.stack([middle - along, middle + along])
                     axes.plot(*ends.T, color=_OBSTACLE, linewidth=3, alpha=0.7)
-                    axes.text(*ends[0], f"{name} ", **label | {"ha": "right"}, va="center")
+                    left = ends[np.argmin(ends[:, 0])]
+                    axes.text(*left, name, **label | {"ha": "left"}, va="bottom")
 
     # --- the cross-section ---------------------------------------------------------------------
 
@@ -188,7 +208,7 @@ class Blueprint:
                 list(shown * [side, 1.0]), facecolors=colors, edgecolors=colors, linewidths=0.6
             )
             axes.add_collection(pieces)
-        half, (low, high) = float(mesh.nodes[:, 0].max()), np.ptp(mesh.nodes, axis=0)
+        half, high = float(mesh.nodes[:, 0].max()), float(np.ptp(mesh.nodes[:, 1]))
         row = half + 0.12 * high
         last = -np.inf
         for name, y0, y1 in self.layers:
@@ -204,14 +224,12 @@ class Blueprint:
         _dimension(axes, (-half, below), (half, below), f"{2 * half:.4g} mm")
         _, y0, y1 = next(layer for layer in self.layers if not layer[0])
         axes.text(0.0, (y0 + y1) / 2, self.width, ha="center", va="center", **_TEXT)
-        axes.text(-half, float(mesh.nodes[:, 1].max()), "section", va="bottom", **_TEXT)
         for name, tip in (("x", (0.3 * high, 0.0)), ("y", (0.0, 0.3 * high))):
             origin = np.array([-half - 0.35 * high, bottom])
             arrow = {"arrowstyle": "-|>", "color": "black", "shrinkA": 0}
             axes.annotate("", origin + tip, origin, arrowprops=arrow)
             place = origin + 1.2 * np.array(tip)
             axes.text(*place, name, ha="center", va="center", **_TEXT | {"style": "italic"})
-        del low
         axes.set_aspect("equal")
         axes.set_xlim(-half - 0.5 * high, half + 0.95 * high)
         axes.set_ylim(below - 0.2 * high, float(mesh.nodes[:, 1].max()) + 0.1 * high)
@@ -235,10 +253,6 @@ class Blueprint:
         )
 
 
-def _beside(low: float) -> str:
-    return "bottom" if low >= 0 else "top"
-
-
 def _rise(sheet: Sheet, along: float) -> float:
     """Change of a sheet's y over a length along z, in the plane x = 0."""
     return -sheet.normal[2] / sheet.normal[1] * along if sheet.normal[1] else 0.0
@@ -249,12 +263,8 @@ def _arrow(axes: Any, start: tuple[float, float], end: tuple[float, float]) -> N
     axes.annotate("", start, end, arrowprops=both)
 
 
-def _dimension(
-    axes: Any, start: tuple[float, float], end: tuple[float, float], text: str
-) -> None:
+def _dimension(axes: Any, start: tuple[float, float], end: tuple[float, float], text: str) -> None:
     """An arrow between two points of one height, and its text below."""
     _arrow(axes, start, end)
     middle = ((start[0] + end[0]) / 2, start[1])
-    axes.annotate(
-        text, middle, (0, -4), textcoords="offset points", ha="center", va="top", **_TEXT
-    )
+    axes.annotate(text, middle, (0, -4), textcoords="offset points", ha="center", va="top", **_TEXT)
