@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import platform
 import resource
+import shlex
+import sys
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from fiberbend import columns as col
@@ -15,6 +18,7 @@ from fiberbend.models.resolution import winding_remark
 from fiberbend.running import messages
 from fiberbend.running.assembly import Assembly
 from fiberbend.version import __version__
+from machine import origin
 
 
 def versions(*libraries: Mapping[str, str]) -> dict[str, str]:
@@ -23,6 +27,18 @@ def versions(*libraries: Mapping[str, str]) -> dict[str, str]:
     for more in libraries:
         found |= more
     return found
+
+
+def provenance() -> dict[str, Any]:
+    """Command line, commit of the source, machine and BLAS: what else a result depends on."""
+    name, *arguments = sys.argv or [""]
+    program = Path(name).name
+    return {
+        "command": shlex.join(["fiberbend" if program == "__main__.py" else program, *arguments]),
+        "commit": origin.commit(Path(__file__).resolve().parents[2]),
+        "machine": origin.machine(),
+        "blas": origin.blas(),
+    }
 
 
 def peak_memory_mb() -> float:
@@ -61,6 +77,7 @@ def entries(
         "peak_memory_MB": round(memory_mb, 1),
         "ranks": ranks,
         "versions": versions(libraries),
+        **provenance(),
     }
 
 
@@ -92,6 +109,7 @@ def unfinished(
         "peak_memory_MB": round(peak_memory_mb(), 1),
         "ranks": ranks,
         "versions": versions(),
+        **provenance(),
     }
 
 
