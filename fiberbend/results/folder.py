@@ -49,6 +49,8 @@ MESH = "mesh.npz"
 FIBERS = "fibers.npz"
 """The winding on the mesh, for who draws a run that is done."""
 SNAPSHOTS = "snapshots"
+REPORT = "report.html"
+"""The page with answer, curves and the body in space."""
 LOG = "run.log"
 """What the run has said, a line at a time."""
 CHECKPOINT = "checkpoint.npz"
@@ -60,7 +62,7 @@ BLOCKED = "blocked"
 _OF_A_RUN = (
     *(CASE_FILE, RUN_FILE, HISTORY_FILE, MESH, CHECKPOINT, CHECKPOINT_BEFORE, "actuator.msh"),
     *("error.log", "error.rank*.log", f"{SNAPSHOTS}/*.npz"),
-    *(FIBERS, LOG, "report.html"),
+    *(FIBERS, LOG, REPORT),
     *("fields/*.vtu", "fields/*.vtp", "fields/*.pvd"),
     *("pictures/rest.png", "pictures/animation.gif", "pictures/animation.mp4"),
     *("pictures/undeformed.png", "pictures/cut.png", "pictures/montage.png", "pictures/bent*.png"),

@@ -11,12 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from fiberbend import columns as col
+from fiberbend.answer.strain import greatest_strain
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
 from fiberbend.models.resolution import winding_remark
 from fiberbend.running import messages
 from fiberbend.running.assembly import Assembly
+from fiberbend.states.snapshot import Snapshot
 from fiberbend.version import __version__
 from machine import origin
 
@@ -39,6 +41,19 @@ def provenance() -> dict[str, Any]:
         "machine": origin.machine(),
         "blas": origin.blas(),
     }
+
+
+def header() -> list[str]:
+    """First lines of a log."""
+    known = provenance()
+    commit = f" (commit {known['commit'][:12]})" if known["commit"] else ""
+    machine, blas = known["machine"], known["blas"]
+    linear = f"; {blas['library']} {blas['kernel'] or ''}" if blas else ""
+    return [
+        known["command"],
+        f"fiberbend {__version__}{commit}, Python {platform.python_version()}, "
+        f"{machine['processor']}, {machine['usable_cores']} cores, {machine['system']}{linear}",
+    ]
 
 
 def peak_memory_mb() -> float:
@@ -149,6 +164,19 @@ def doubts(case: Case, rows: Sequence[col.Row]) -> list[str]:
 def beside(check: Check | None) -> dict[str, Any]:
     """How the run compares with other models, where that is known."""
     return {} if check is None else {"crosscheck": check.entry()}
+
+
+def strain(case: Case, assembly: Assembly, last: Snapshot | None) -> dict[str, Any]:
+    """The greatest strain of the last state, where that is at hand; on rank 0.
+
+    Args:
+        case: the case.
+        assembly: its scene.
+        last: the last state, or None.
+    """
+    if last is None:
+        return {}
+    return {"greatest_strain": greatest_strain(case, assembly.model_mesh(case), last)}
 
 
 def cost(run: Mapping[str, Any]) -> list[str]:
