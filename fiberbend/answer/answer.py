@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -20,6 +21,9 @@ WIDTH = 100
 """Columns of the printed answer."""
 _SAME = 1e-6
 """Part of an asked angle or pressure by which a row may miss it."""
+_HARD = "\u00a0"
+_TOGETHER = re.compile(r"(?<==) (?=-?\d)|(?<=[a-z]) (?==)|(?<=\d) (?=(?:[a-zA-Z]+³?|%)(?:\W|$))")
+"""Spaces within "x = 8 mm"."""
 _SEEN = 5e-3
 """Degrees and millimetres that are shown; less is round-off."""
 
@@ -97,27 +101,28 @@ def lines(found: Answer, verbose: bool = False) -> list[str]:
         found: the answer.
         verbose: with the comparisons.
     """
-    text = textwrap.wrap(found.title, WIDTH)
-    text += textwrap.wrap(found.sentence, WIDTH)
+    text = [*_wrapped(found.title), *_wrapped(found.sentence)]
     width = max((len(entry.label) for entry in found.entries), default=0)
     for entry in found.entries:
         note = f" ({entry.note})" if entry.note else ""
-        text += textwrap.wrap(
-            f"  {entry.label:<{width}}  {entry.value}{note}",
-            WIDTH,
-            subsequent_indent=" " * (width + 6),
-            break_on_hyphens=False,
-        )
+        text += _wrapped(f"  {entry.label:<{width}}  {entry.value}{note}", width + 6)
     if verbose:
         for line in found.comparisons:
-            text += textwrap.wrap(line, WIDTH, subsequent_indent="  ", break_on_hyphens=False)
-    text += textwrap.wrap(found.trust, WIDTH, subsequent_indent="  ")
+            text += _wrapped(line, 2)
+    text += _wrapped(found.trust, 2)
     if found.warnings:
         number = len(found.warnings)
         text.append(f"{number} warning{'s' if number > 1 else ''}:")
         # a warning stays a line, which scripts can find
         text += [f"  {line}" for line in found.warnings]
     return text
+
+
+def _wrapped(text: str, indent: int = 0) -> list[str]:
+    """A text in lines of `WIDTH` columns; a number and its unit stay together."""
+    whole = _TOGETHER.sub(_HARD, text)
+    lines = textwrap.wrap(whole, WIDTH, subsequent_indent=" " * indent, break_on_hyphens=False)
+    return [line.replace(_HARD, " ") for line in lines]
 
 
 # --- how it ended -----------------------------------------------------------------------------
