@@ -135,7 +135,13 @@ def _sentence(case: Case, model: ModelKind, rows: Sequence[col.Row], run: Mappin
         if case.straight and last.get(col.TIP_FORCE) is not None:
             force = quantity(last[col.TIP_FORCE], "N")
             pressure = quantity(last[col.PRESSURE], "kPa")
-            return f"The blocked tip presses with {force} at {pressure} ({model.name} model)."
+            if model.ends:
+                return (
+                    f"At {pressure} the tip presses on its post with {force} ({model.name} model)."
+                )
+            return (
+                f"Kept straight at {pressure}, the {model.name} model gives a tip force of {force}."
+            )
         if case.inflation is None:
             return f"The actuator ends at {here} ({model.name} model)."
         angle, pressure = quantity(last[col.ANGLE], "°"), quantity(last[col.PRESSURE], "kPa")

@@ -184,7 +184,8 @@ class Progress:
             self._bar = self._new_bar()
         task = self._bar.task_ids[0]
         done = None if fraction is None else min(max(fraction, 0.0), 1.0)
-        self._bar.update(task, completed=done, description=text)
+        # at once: a solver that computes lets no thread draw
+        self._bar.update(task, completed=done, description=text, refresh=True)
         self._bar.start()
 
     def _new_bar(self) -> RichProgress:
