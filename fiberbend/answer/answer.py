@@ -327,9 +327,9 @@ def _trust(run: Mapping[str, Any]) -> str:
     """One line: how it ended, the section model beside it, and how many warnings there are."""
     parts = []
     if run.get("status") != "converged":
-        parts.append("the values up to the end of the run are those of converged states")
+        parts.append("the values up to the end of the run are valid")
     beside = (run.get("crosscheck") or {}).get("section") or {}
-    if beside.get("text"):
+    if beside.get("band_percent") is not None and beside.get("text"):
         parts.append(beside["text"])
     number = len(run.get("warnings") or ())
     if number:

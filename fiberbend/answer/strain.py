@@ -68,10 +68,11 @@ def _place(actuator: Actuator, region: str, at: list[float]) -> str:
     """A place in words: its region, around the section, and along the axis."""
     words, profile = [region], actuator.profile
     across, height = abs(at[0]), at[1] - profile.bottom
-    if abs(height) <= _ROUNDING and across >= _CORNER * profile.half_width:
-        words.append("lower corner of the chamber")
+    if height < -_ROUNDING:
+        words.append("under the chamber")
     elif height <= _ROUNDING:
-        words.append("underside")
+        corner = across >= _CORNER * profile.half_width
+        words.append("lower corner of the chamber" if corner else "lower face of the chamber")
     elif height > (profile.top - profile.bottom) / 2 and across <= _CROWN * profile.half_width:
         words.append("crown")
     else:
