@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from fiberbend import columns as col
-from fiberbend.answer.numbers import quantity
+from fiberbend.answer.numbers import number, quantity
 from fiberbend.answer.touch import touches
 from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
@@ -284,12 +284,10 @@ def _critical(run: Mapping[str, Any]) -> Iterator[Entry]:
         before, beyond = point["unstable_modes_before"], point["unstable_modes_beyond"]
         if beyond <= before:
             continue
-        parts = []
-        if point.get(col.PRESSURE) is not None:
-            parts.append(quantity(point[col.PRESSURE], "kPa"))
-        if point.get(col.ANGLE) is not None:
-            parts.append(quantity(point[col.ANGLE], "°"))
-        load = point.get("load", "load")
+        load = point["load"]
+        parts = [f"{load} {number(point['value'])}"] if "value" in point else []
+        units = {col.PRESSURE: "kPa", col.ANGLE: "°"}
+        parts += [quantity(point[key], unit) for key, unit in units.items() if key in point]
         if point["kind"] == "limit":
             yield Entry("limit point", ", ".join(parts), f"beyond it the {load} falls")
         else:

@@ -297,12 +297,23 @@ def test_limit_points_and_lost_stability() -> None:
         "unstable_modes_beyond": 1,
     }
     buckles = limit | {"kind": "bifurcation", "pressure_kPa": -12.0}
+    gravity = {
+        "kind": "bifurcation",
+        "load": "gravity",
+        "value": 0.31,
+        "unstable_modes_before": 0,
+        "unstable_modes_beyond": 2,
+    }
     regained = buckles | {"unstable_modes_before": 1, "unstable_modes_beyond": 0}
     run = CONVERGED | {"critical_points": [limit, buckles, regained]}
     said = answer(case_of(), [row(0, 0, 0), row(1, 45.0, 88.0)], run)
     assert found(said, "limit point").value == "45.21 kPa, 88.1°"
     assert found(said, "limit point").note == "beyond it the pressure falls"
     assert found(said, "stability lost").value == "-12 kPa, 88.1°"
+    said = answer(
+        case_of(), [row(0, 0, 0), row(1, 45.0, 88.0)], CONVERGED | {"critical_points": [gravity]}
+    )
+    assert found(said, "stability lost").value == "gravity 0.31"
 
 
 def test_lines_fit_and_keep_numbers_with_their_units() -> None:
@@ -350,9 +361,17 @@ def test_strain_of_a_bar_that_is_pulled_is_exact() -> None:
 # --- of runs ----------------------------------------------------------------------------------
 
 
-def ran(case: Case, folder: Path | None, **show: bool) -> tuple[RunResult, list[str]]:
+def ran(
+    case: Case,
+    folder: Path | None,
+    quiet: bool = False,
+    verbose: bool = False,
+    answers: bool = False,
+) -> tuple[RunResult, list[str]]:
+    """What a run hands back, and what it has printed."""
     stream = io.StringIO()
-    result = run_case(case, folder, progress=Progress(stream=stream, **show))
+    progress = Progress(quiet, stream, verbose=verbose, answers=answers)
+    result = run_case(case, folder, progress=progress)
     return result, stream.getvalue().splitlines()
 
 
