@@ -224,7 +224,7 @@ def _forces(case: Case, model: ModelKind, rows: Sequence[col.Row]) -> Iterator[E
         yield Entry(f"tip force at {at}", quantity(last[col.TIP_FORCE], "N"))
     yield Entry("this force is", _force_name(case, model))
     forces = ((col.ROOF_FORCE, "force of the roof", "N"), (col.AXIAL_FORCE, "axial force", "N"))
-    for key, label, unit in (*forces, (col.MOMENT, "moment that keeps it straight", "N mm")):
+    for key, label, unit in (*forces, (col.MOMENT, "bending moment", "N mm")):
         if last.get(key) is not None:
             yield Entry(label, quantity(last[key], unit))
 
@@ -323,15 +323,17 @@ def _comparisons(run: Mapping[str, Any]) -> Iterator[str]:
 
 def _trust(run: Mapping[str, Any]) -> str:
     """One line: how it ended, the section model beside it, and how many warnings there are."""
-    parts = []
+    parts, warnings = [], run.get("warnings") or ()
     if run.get("status") != "converged":
         parts.append("the values up to the end of the run are valid")
     beside = (run.get("crosscheck") or {}).get("section") or {}
-    if beside.get("band_percent") is not None and beside.get("text"):
-        parts.append(beside["text"])
-    number = len(run.get("warnings") or ())
-    if number:
-        parts.append(f"read the {'warning' if number == 1 else f'{number} warnings'} below")
+    text = beside.get("text")
+    # what is not expected stands among the warnings
+    if text and beside.get("band_percent") is not None and text not in warnings:
+        parts.append(text)
+    if warnings:
+        count = len(warnings)
+        parts.append(f"read the {'warning' if count == 1 else f'{count} warnings'} below")
     else:
         parts.append("no doubt beyond the expected error is known")
     return f"Trust: {'; '.join(parts)}."

@@ -283,6 +283,9 @@ def test_trust_has_the_section_beside_it_and_counts_warnings() -> None:
     warned = answer(case_of(), rows, run | {"warnings": ["one", "two"]})
     assert warned.trust.endswith("read the 2 warnings below.")
     assert lines(warned)[-3:] == ["2 warnings:", "  one", "  two"]
+    # a difference that is a warning is said once
+    twice = answer(case_of(), rows, run | {"warnings": [text]})
+    assert twice.trust == "Trust: read the warning below."
     assert "another" not in lines(warned)
     assert "another" in lines(warned, verbose=True)
 
