@@ -168,8 +168,8 @@ def run(
 ) -> int:
     """Solve a case, and print what it answers.
 
-    The run folder has the curves (history.csv), what was computed how (run.json), everything that
-    was printed (run.log), and report.html, pictures and fields where the case asks for them.
+    Its folder gets the curves (history.csv), how they were computed (run.json),
+    what was printed (run.log), and report.html, pictures and fields as asked.
 
     Args:
         case: Case file.
