@@ -19,7 +19,7 @@ class Comparison:
         at: where, such as "180.0°".
         band: percent within which they are expected to agree; None where that is not known.
         causes: estimates of what sets them apart there.
-        closed: the other one is a closed form.
+        limits: of what a difference beyond the band is known, where a cause is found; may be empty.
         quantity: what is compared, "pressure" or "force".
         reference: the run is measured by the other one, not the other one by the run.
     """
@@ -30,7 +30,7 @@ class Comparison:
     at: str
     band: float | None
     causes: tuple[Cause, ...] = ()
-    closed: bool = False
+    limits: str = ""
     quantity: str = "pressure"
     reference: bool = False
 
@@ -38,6 +38,11 @@ class Comparison:
     def beyond(self) -> bool:
         """Whether the greatest difference is beyond the band."""
         return self.band is not None and abs(self.percent) > self.band
+
+    @property
+    def unexpected(self) -> bool:
+        """Whether it casts doubt on the run."""
+        return self.beyond and not (self.limits and self.likely)
 
     @property
     def likely(self) -> list[Cause]:
@@ -82,8 +87,8 @@ class Comparison:
             why = " and ".join(cause.brief or cause.name for cause in causes)
             return f", as expected {f'for {why}' if why else f'(within {self.band:g} %)'}"
         names = ", ".join(cause.name for cause in causes)
-        if self.closed and names:
-            return f", by known limits of the closed form: {names}"
+        if self.limits and names:
+            return f", by known limits of {self.limits}: {names}"
         reason = f"likely {names}" if names else "unexplained"
         return f", beyond the {self.band:g} % expected: {reason}"
 

@@ -336,6 +336,17 @@ def test_force_of_a_blocked_tip() -> None:
     assert compared(check, "section").percent == pytest.approx(100 * (3.6 * 14 / 94 - 1))
     assert likely(check, "section") == ["guided tip", "soft sheath"]
     assert not compared(check, "analytic").beyond
+    # a body has about half the force of a section kept straight: known, and no doubt of the run
+    assert compared(check, "section").line() == (
+        "section model (M/L_f): force 86.5 % higher at 50.0 kPa, by known limits of a section kept "
+        "straight: guided tip, soft sheath"
+    )
+    assert check.doubts() == []
+    # much less than half is not known, whatever may lower it; nor is more
+    for force in (2.0, 9.0):
+        rows = blocked_rows(force, 8.9)
+        odd = crosscheck(case_of("blocked_tip"), BODY, rows, straight=straight)
+        assert any("section model (M/L_f)" in doubt for doubt in odd.doubts())
     # held as the section is: nothing to explain
     same = crosscheck(case_of("blocked_tip"), BODY, blocked_rows(94 / 14, 0.0), straight=straight)
     assert not compared(same, "section").beyond
