@@ -80,16 +80,23 @@ class RunFolder:
         path: the folder.
         writes: this rank writes.
         lock: on the folder, or None.
+        durable: a file that is written stays also where the power goes out.
 
     Attributes:
         path: the folder.
         writes: True on the rank that writes.
     """
 
-    def __init__(self, path: Path, writes: bool = True, lock: FolderLock | None = None) -> None:
+    def __init__(
+        self,
+        path: Path,
+        writes: bool = True,
+        lock: FolderLock | None = None,
+        durable: bool = True,
+    ) -> None:
         self.path = path
         self.writes = writes
-        self._lock = lock
+        self._lock, self._durable = lock, durable
 
     def __enter__(self) -> RunFolder:
         return self
@@ -230,8 +237,9 @@ class RunFolder:
             with os.fdopen(handle, "wb") as file:
                 with whole:
                     fill(file)
-                file.flush()
-                os.fsync(file.fileno())
+                if self._durable:
+                    file.flush()
+                    os.fsync(file.fileno())
             # mkstemp makes files that only their owner can read.
             os.chmod(part, 0o666 & ~_umask())
             os.replace(part, target)
