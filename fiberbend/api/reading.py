@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fiberbend import columns as col
 from fiberbend.schema.problems import CaseError, Problem, found
 from fiberbend.schema.units import KINDS, parse, show
-
-if TYPE_CHECKING:
-    from geometry.mesh.data import Floats
 
 SAME = 1e-6
 """Part of a pressure or an angle by which a load step may miss it and still be taken as it is."""
@@ -111,9 +109,9 @@ def read_at(rows: Sequence[col.Row], key: str, goal: float) -> Reading:
     """The row of a run where its pressure or angle has a value, or that of a step.
 
     A load step that has the value is taken as it is. Between two steps every column is
-    interpolated along the branch: by a monotone cubic (PCHIP; Fritsch and Butland 1984) through
-    the steps over which the asked quantity grows or falls without a turn, so that no value lies
-    beyond those of the two steps. Counts are not interpolated.
+    interpolated along the branch: by the cubic through two steps on either side, as far as the
+    asked quantity grows or falls over them without a turn, and never beyond the values of the two
+    steps. Counts are not interpolated.
 
     Args:
         rows: rows of history.csv, n of them.
@@ -158,39 +156,36 @@ def _as_it_is(row: col.Row, at: str) -> Reading:
 def _ambiguous(
     rows: Sequence[col.Row], at: str, hits: Sequence[int], crossings: Sequence[int]
 ) -> str:
-    places = [(index, f"step {rows[index][col.STEP]}") for index in hits]
+    places = [(index, f"at step {rows[index][col.STEP]}") for index in hits]
     places += [
         (index, f"between steps {rows[index][col.STEP]} and {rows[index + 1][col.STEP]}")
         for index in crossings
     ]
     listed = [text for _, text in sorted(places)]
     more = f" and {len(listed) - _MOST} more" if len(listed) > _MOST else ""
-    return f"{at} is passed at {', '.join(listed[:_MOST])}{more}: expected a step"
+    return f"{at} is passed {', '.join(listed[:_MOST])}{more}: expected a step"
 
 
 def _between(
     rows: Sequence[col.Row], x: Sequence[float], index: int, column: str, goal: float, at: str
 ) -> Reading:
     """The row between a step and the next, by the steps around them that go the same way."""
-    import numpy as np
-
-    way = np.sign(np.diff(x))
+    way = [(b > a) - (b < a) for a, b in itertools.pairwise(x)]
     first, last = index, index + 1
     while first > 0 and way[first - 1] == way[index]:
         first -= 1
     while last < len(x) - 1 and way[last] == way[index]:
         last += 1
+    start = max(first, min(index - 1, last - 3))
+    around = range(start, min(start + 4, last + 1))
     values: dict[str, float] = {}
     for name in rows[index]:
         if name in col.COUNTS or not (_known(rows[index], name) and _known(rows[index + 1], name)):
             continue
-        low, high = index, index + 1
-        while low > first and _known(rows[low - 1], name):
-            low -= 1
-        while high < last and _known(rows[high + 1], name):
-            high += 1
-        y = np.array([rows[i][name] for i in range(low, high + 1)], dtype=float)
-        values[name] = _interpolated(np.array(x[low : high + 1]), y, goal)
+        points = [i for i in around if _known(rows[i], name)]
+        y = [float(rows[i][name]) for i in points]
+        low, high = sorted((float(rows[index][name]), float(rows[index + 1][name])))
+        values[name] = min(max(_lagrange([x[i] for i in points], y, goal), low), high)
     values[column] = goal
     return Reading(values, (int(rows[index][col.STEP]), int(rows[index + 1][col.STEP])), at)
 
@@ -200,10 +195,9 @@ def _known(row: col.Row, name: str) -> bool:
     return value is not None and math.isfinite(value)
 
 
-def _interpolated(x: Floats, y: Floats, goal: float) -> float:
-    """y where x, which grows or falls throughout, is the goal."""
-    from scipy.interpolate import PchipInterpolator
-
-    if x[0] > x[-1]:
-        x, y = x[::-1], y[::-1]
-    return float(PchipInterpolator(x, y)(goal))
+def _lagrange(x: Sequence[float], y: Sequence[float], goal: float) -> float:
+    """The polynomial through points with different x, at the goal."""
+    return sum(
+        y[i] * math.prod((goal - x[j]) / (x[i] - x[j]) for j in range(len(x)) if j != i)
+        for i in range(len(x))
+    )

@@ -14,6 +14,7 @@ from fiberbend import columns as col
 from fiberbend.api import reading
 from fiberbend.api.reading import Reading
 from fiberbend.models.result import RunResult
+from fiberbend.process.ranks import rank
 from fiberbend.results.folder import HISTORY_COLUMNS, RunFolder
 from fiberbend.schema.problems import CaseError, Problem, found
 
@@ -109,7 +110,8 @@ class Result(RunResult):
         """All columns at a pressure, at a bending angle or at a load step.
 
         A load step that has the value is taken as it is. Between two steps every column but counts
-        is interpolated along the branch by a monotone cubic, within the values of the two steps.
+        is interpolated along the branch by the cubic through two steps on either side, within the
+        values of the two steps.
         `output.at_pressures` and `output.at_angles` of a case make load steps where they are
         wanted.
 
@@ -251,8 +253,9 @@ class Result(RunResult):
                 if label == state.label:
                     return state
         if label not in (None, "last"):
-            names = ", ".join(state.label for state in kept)
-            raise CaseError([Problem("label", f"{found(label)}, expected last or one of {names}")])
+            names = ["last", "rest", *(state.label for state in kept if state.asked)]
+            known = f"{', '.join(dict.fromkeys(names))}, or a step"
+            raise CaseError([Problem("label", f"{found(label)}, expected {known}")])
         key, value = reading.asked("mesh", pressure=pressure, angle=angle, step=step)
         along = [_along(state, key) for state in kept]
         span = max(map(abs, along))
@@ -289,6 +292,8 @@ class Result(RunResult):
     def report(self, out: Path | str | None = None) -> Path:
         """Write the run's page, one HTML file that needs no network.
 
+        Under mpirun rank 0 writes.
+
         Args:
             out: the file; report.html in the run folder unless given.
 
@@ -303,14 +308,21 @@ class Result(RunResult):
         if out is None and self.folder is None:
             text = "a run without a folder, expected the name of a file"
             raise CaseError([Problem("out", text)])
-        folder = self.folder or self.kept_in
-        if folder is None:
-            raise CaseError([Problem("report", "its states are gone, expected a run with `out`")])
-        write_report(RunFolder(folder), self.case, self.rows, self.run)
-        made = folder / REPORT
+        path = self.folder or self.kept_in
+        if path is None:
+            text = "a run without folder and states, expected a run with `out`"
+            raise CaseError([Problem("report", text)])
+        folder = RunFolder(path, writes=rank() == 0)
+        if self.folder is None:
+            # the page offers them as downloads
+            folder.write_case(self.case)
+            folder.write_history(self.rows)
+            folder.write_run(**self.run)
+        write_report(folder, self.case, self.rows, self.run)
         if out is None:
-            return made
-        shutil.copyfile(made, out)
+            return path / REPORT
+        if folder.writes:
+            shutil.copyfile(path / REPORT, out)
         return Path(out)
 
 
