@@ -21,9 +21,12 @@ from fiberbend.schema.problems import CaseError, Problem, found
 if TYPE_CHECKING:
     import pandas as pd
     import pyvista as pv
+    from matplotlib.figure import Figure
 
     from fiberbend.answer.answer import Answer
+    from fiberbend.api.runs import RunData
     from fiberbend.case.case import Case
+    from fiberbend.drawing.page import Style
     from fiberbend.results.states import Kept, States
 
 REPORT = "report.html"
@@ -288,6 +291,47 @@ class Result(RunResult):
         from fiberbend.answer.answer import answer
 
         return answer(self.case, self.rows, self.run)
+
+    def plot(
+        self,
+        x: str = "",
+        y: str | Sequence[str] = "",
+        *,
+        beside: Sequence[Result | Path | str] = (),
+        measured: Path | str | Sequence[Path | str] = (),
+        target: Path | str | None = None,
+        style: Style | None = None,
+        labels: Sequence[str] = (),
+    ) -> Figure:
+        """Draw columns of the run over each other, other runs and measured points beside it.
+
+        Args:
+            x: column along the lower axis; the pressure unless given.
+            y: one or several columns of one unit; the angle, or the force of a body that touches
+                something, unless given.
+            beside: further runs, and folders of runs and sweeps.
+            measured: CSV files of measured points.
+            target: file to write; none is written unless given.
+            style: format, width in mm, dpi and letters; one column of a journal unless given.
+            labels: names of the curves, in place of what differs between the runs.
+
+        Returns:
+            The matplotlib figure.
+
+        Raises:
+            CaseError: no such column, wrong measured data, or too little room.
+        """
+        from fiberbend.api.plot import PAPER, plot
+
+        runs = [run.drawn() if isinstance(run, Result) else run for run in (self, *beside)]
+        return plot(runs, x, y, measured, target, style or PAPER, labels)
+
+    def drawn(self) -> RunData:
+        """The run, as far as curves of it go."""
+        from fiberbend.api.runs import RunData
+
+        name = self.case.title or self.model if self.folder is None else self.folder.resolve().name
+        return RunData(name, self.case.resolved(), self.rows)
 
     def report(self, out: Path | str | None = None) -> Path:
         """Write the run's page, one HTML file that needs no network.

@@ -229,8 +229,9 @@ def test_folders_of_runs_that_came_to_no_end(folder: Path, tmp_path: Path) -> No
     }.items():
         (tmp_path / name / "run.json").write_text(json.dumps(run | changes))
         found = fiberbend.load(tmp_path / name)
+        assert isinstance(found, Result)
         assert (found.status, found.reason) == (changes["status"], changes["reason"])
-        assert found.mesh("last").n_cells > 0  # type: ignore[union-attr]
+        assert found.mesh("last").n_cells > 0
 
 
 def test_what_is_no_run(folder: Path, tmp_path: Path) -> None:
@@ -330,6 +331,26 @@ def test_report_and_answer_are_asked_of_their_own_modules(
     assert "out: a run without a folder" in refusal(bent.report)
     assert bent.report(str(tmp_path / "two.html")).read_text() == "page"
     assert given[-1] == (bent.case, bent.rows, bent.run)
+
+
+def test_plot_is_drawn_by_its_own_module(
+    bent: Result, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import sys
+    import types
+
+    plot, runs = types.ModuleType("plot"), types.ModuleType("runs")
+    runs.RunData = lambda *given: given  # type: ignore[attr-defined]
+    plot.PAPER, plot.plot = "paper", lambda *given: given  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "fiberbend.api.plot", plot)
+    monkeypatch.setitem(sys.modules, "fiberbend.api.runs", runs)
+    other = fiberbend.load(folder)
+    assert isinstance(other, Result)
+    given: Any = bent.plot("pressure_kPa", "tip_y_mm", beside=[other, "runs/x"], target="a.pdf")
+    (one, two, three), *rest = given
+    assert one == ("A short actuator", bent.case.resolved(), bent.rows)
+    assert (two[0], three) == ("run", "runs/x")
+    assert rest == ["pressure_kPa", "tip_y_mm", (), "a.pdf", "paper", ()]
 
 
 def test_two_ranks_each_have_the_states(mpirun: MpiRun, tmp_path: Path) -> None:

@@ -53,7 +53,7 @@ def test_folder_gives_the_same_and_is_gone_on_with(done: Sweep) -> None:
 
 def test_problems_of_a_mapping_have_no_lines(tmp_path: Path) -> None:
     wrong = FILE | {"vary": {"actuator.walls": ["2 mm"]}}
-    with pytest.raises(CaseError, match="actuator.walls") as error:
+    with pytest.raises(CaseError, match=r"actuator\.walls") as error:
         fiberbend.sweep(wrong, tmp_path / "points")
     assert "(line " not in str(error.value)
     for file, message in ((3, "a mapping or the path"), (tmp_path / "no.yaml", "no such file")):
