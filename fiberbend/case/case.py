@@ -213,6 +213,14 @@ class MeasuredSpec(Spec):
     decimal: Literal[".", ","] | None = None
     """The mark before decimals; found from the numbers by default."""
 
+    def column(self, kind: str) -> tuple[str | None, str | None]:
+        """Name and unit of the column of a quantity, 'pressure', 'angle' or 'force', as given."""
+        return {
+            "pressure": (self.pressure, self.pressure_unit),
+            "angle": (self.angle, self.angle_unit),
+            "force": (self.force, self.force_unit),
+        }[kind]
+
     @model_validator(mode="before")
     @classmethod
     def _from_file(cls, data: Any) -> Any:

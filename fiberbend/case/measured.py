@@ -152,13 +152,17 @@ def _read(
     delimiter = None if spec.delimiter is None else marks[spec.delimiter]
     table = read_table(Path(spec.file), delimiter, spec.decimal)
     value = _FORCE if blocked else _ANGLE
-    places = [_place(table, wanted, getattr(spec, wanted.kind)) for wanted in (_PRESSURE, value)]
+    given = [spec.column(wanted.kind) for wanted in (_PRESSURE, value)]
+    places = [
+        _place(table, wanted, name)
+        for wanted, (name, _) in zip((_PRESSURE, value), given, strict=True)
+    ]
     if places[0] == places[1]:
         name = table.columns[places[0]]
         raise ValueError(f"{table.source}: {name!r} given twice, expected two columns")
     units = [
-        _unit(table, wanted, table.columns[place], getattr(spec, f"{wanted.kind}_unit"))
-        for wanted, place in zip((_PRESSURE, value), places, strict=True)
+        _unit(table, wanted, table.columns[place], unit)
+        for wanted, place, (_, unit) in zip((_PRESSURE, value), places, given, strict=True)
     ]
     factors = factor(units[0], _PRESSURE.kind), factor(units[1], value.kind)
     return table.values(places), factors, (units[0], units[1])

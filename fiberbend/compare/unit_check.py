@@ -112,7 +112,8 @@ def _seen(known: Mapping[str, Mapping[float, str]], usual: str, size: float) -> 
         usual: the usual unit.
         size: of the unit in which it is read, in the usual one.
     """
-    return known["tens"] | {size: usual} | {k * size: name for k, name in known["units"].items()}
+    units = {k * size: name for k, name in known["units"].items()}
+    return {**known["tens"], size: usual, **units}
 
 
 def _unit(factors: Floats, known: Mapping[float, str]) -> str:

@@ -206,8 +206,14 @@ def test_delimiter_and_decimal_that_a_case_names(tmp_path: Path) -> None:
     ("spec", "message"),
     [
         ({"pressure": "Q"}, "no column 'Q', found columns 'P', 'P [psi]', 'theta', 'theta [rad]'"),
-        ({"pressure": "P"}, "column 'P' has no unit, expected a name such as 'P [kPa]', or pressu"),
-        ({"pressure": "P [psi]", "pressure_unit": "kPa"}, "is in psi, pressure_unit says kPa"),
+        (
+            {"pressure": "P", "angle": "theta"},
+            "column 'P' has no unit, expected a name such as 'P [",
+        ),
+        (
+            {"pressure": "P [psi]", "angle": "theta [rad]", "pressure_unit": "kPa"},
+            "is in psi, pressure_unit says kPa",
+        ),
         ({"pressure": "theta", "angle": "theta"}, "'theta' given twice, expected two columns"),
         ({"pressure_unit": "psig"}, 'pressure_unit: "psig", expected a unit of a pressure such as'),
         ({"pressure_unit": "mm"}, 'pressure_unit: "mm", expected a unit of a pressure such as kPa'),
