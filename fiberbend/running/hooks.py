@@ -65,7 +65,7 @@ class Recording(Hook):
         self._case, self._assembly, self._archive = case, assembly, archive
         self._recorder, self._folder, self._progress = recorder, folder, progress
         self._model, self._resumes = model.name, model.resumes
-        self._states = states
+        self._states, self._room = states, True
         self.rows = recorder.rows
         self.kept = int(self.rows[-1][col.STEP]) if model.resumes else 0
         self.snapshots = list(snapshots)
@@ -147,7 +147,15 @@ class Recording(Hook):
         if not label.startswith(STEP):
             self.snapshots.append(shot)
         arrays = {k: v for k, v in vars(shot).items() if v is not None}
-        self._states.write_arrays(f"{SNAPSHOTS}/{label}.npz", **arrays)
+        try:
+            if self._room:
+                self._states.write_arrays(f"{SNAPSHOTS}/{label}.npz", **arrays)
+        except OSError as error:
+            if self._folder is not None:
+                raise
+            # of a run without a folder the rows are the result: a full disk costs its states
+            self._room = False
+            self.warn([f"states are kept up to step {shot.step - 1} only: {error.strerror}"])
 
     def _fraction(self, number: int, state: State) -> float:
         """Part of all ramps that is done."""

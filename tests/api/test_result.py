@@ -155,6 +155,25 @@ def test_a_run_that_breaks_leaves_no_states(
     assert list(tmp_path.glob("fiberbend-*")) == []
 
 
+def test_a_full_disk_costs_the_states_and_not_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    from fiberbend.results.folder import RunFolder
+
+    write = RunFolder.write_arrays
+
+    def full(self: RunFolder, name: str, **arrays: Any) -> None:
+        if "step_0003" in name:
+            raise OSError(28, "No space left on device")
+        write(self, name, **arrays)
+
+    monkeypatch.setattr(RunFolder, "write_arrays", full)
+    result = fiberbend.run(section())
+    assert result.status == "converged"
+    warning = "states are kept up to step 2 only: No space left on device"
+    assert warning in result.run["warnings"]
+    assert [state.step for state in result.states] == [0, 1, 2]
+    assert "no state at step 10" in refusal(result.mesh, "last")
+
+
 def test_without_states() -> None:
     result = fiberbend.run(section(), states=False)
     assert result.kept_in is None
