@@ -264,7 +264,7 @@ def hanging(hard: Hard, model: str) -> Done:
     direction = hard.case(model)["effects"][0]["gravity"]["direction"]
     pull = np.zeros(3)
     pull["xyz".index(direction[1])] = 1.0 if direction[0] == "+" else -1.0
-    at = next(i for i, row in enumerate(done.rows) if row["load gravity"] == 1.0)
+    at = next(i for i, row in enumerate(done.rows) if row["load_gravity"] == 1.0)
     move = driven.extra[at] - driven.extra[0]
     along = float(move @ pull)
     other = float(np.linalg.norm(move - along * pull))

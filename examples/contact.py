@@ -31,8 +31,10 @@ def main(out: Path) -> tuple[float, float]:
     )
     result = fiberbend.run(table, out, overwrite=True)
     (touched,) = result.run["contact"]["plane"]["touched_at_kPa"]
-    force = result.last("contact_plane_y_N")
+    force = result.at(pressure="60 kPa")["contact_plane_y_N"]
+    body = result.mesh("last").warp_by_vector("displacement_mm")
     print(f"touches at {touched:.1f} kPa, presses with {force:.3f} N at 60 kPa")
+    print(f"the body reaches down to y = {body.bounds[2]:.2f} mm, the table is at -8 mm")
     return touched, force
 
 

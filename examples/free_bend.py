@@ -15,6 +15,7 @@ import fiberbend
 from examples.actuator import WINDING, case, hemicircle
 
 ANGLES = ("90 deg", "180 deg", "270 deg", "360 deg")
+"""Load steps are made there, so that no pressure is interpolated."""
 
 
 def main(out: Path) -> dict[str, list[float]]:
@@ -25,8 +26,7 @@ def main(out: Path) -> dict[str, list[float]]:
         output = {"at_angles": list(ANGLES), "fields": False}
         free = case("Free bending", hemicircle(160), bend, WINDING, model=model, output=output)
         result = fiberbend.run(free, out / model, overwrite=True)
-        at = {round(row["angle_deg"]): row["pressure_kPa"] for row in result.rows}
-        found[model] = [at[angle] for angle in (90, 180, 270, 360)]
+        found[model] = [result.at(angle=angle)["pressure_kPa"] for angle in ANGLES]
         print(f"{model:8}", "  ".join(f"{kpa:6.1f} kPa" for kpa in found[model]))
     return found
 

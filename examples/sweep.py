@@ -8,20 +8,15 @@ the same from the shell, two points at a time.
 
 from __future__ import annotations
 
-import csv
 import sys
 from pathlib import Path
 
-import yaml
-
+import fiberbend
 from examples.actuator import SMEARED, case, hemicircle
-from fiberbend.running import launch
-from fiberbend.sweep.command import run_sweep
 
 
-def main(out: Path) -> list[dict[str, str]]:
-    """Run the sweep; the rows of its table."""
-    out.mkdir(parents=True, exist_ok=True)
+def main(out: Path) -> fiberbend.Sweep:
+    """Run the sweep."""
     bend = {"pressure": {"angle": "90 deg"}}
     silent = {"pictures": False, "fields": False}
     base = case("Base", hemicircle(160), bend, SMEARED, model="section", output=silent)
@@ -30,27 +25,14 @@ def main(out: Path) -> list[dict[str, str]]:
         "actuator.wall": ["1.5 mm", "2 mm", "2.5 mm"],
     }
     report = {"angles": ["90 deg"]}
-    files = {
-        "base.yaml": base,
-        "sweep.yaml": {
-            "title": "Radius and wall",
-            "case": "base.yaml",
-            "vary": vary,
-            "report": report,
-        },
-    }
-    for name, content in files.items():
-        (out / name).write_text(yaml.safe_dump(content), encoding="utf-8")
-    launch.start_mpi()
-    run_sweep(out / "sweep.yaml", out / "points")
-    with (out / "points" / "sweep.csv").open(newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    least = min(rows, key=lambda row: float(row["pressure_90deg_kPa"]))
+    file = {"title": "Radius and wall", "case": base, "vary": vary, "report": report}
+    found = fiberbend.sweep(file, out)
+    least = found.frame.sort_values("pressure_90deg_kPa").iloc[0]
     print(
-        f"least pressure at 90°: {float(least['pressure_90deg_kPa']):.1f} kPa with a radius of "
-        f"{least['radius_mm']} mm and a wall of {least['wall_mm']} mm"
+        f"least pressure at 90°: {least['pressure_90deg_kPa']:.1f} kPa with a radius of "
+        f"{least['radius_mm']:g} mm and a wall of {least['wall_mm']:g} mm"
     )
-    return rows
+    return found
 
 
 if __name__ == "__main__":

@@ -1,4 +1,11 @@
-"""Soft fiber-reinforced bending actuators: cases, runs and their results."""
+"""Soft fiber-reinforced bending actuators: cases, runs and their results.
+
+import fiberbend
+
+r = fiberbend.run("finger.yaml", settings={"actuator.wall": "3 mm"})
+r.at(pressure="100 kPa")["angle_deg"], r.frame, r.mesh("last")
+fiberbend.load("runs/finger"), fiberbend.plan("finger.yaml")
+"""
 
 from __future__ import annotations
 
@@ -15,61 +22,67 @@ if (
     del sys.path[0]
 
 # Nothing slow here: until fiberbend.__main__ takes the signals, Ctrl-C is a traceback.
+_PLACES = {
+    "run": "fiberbend.api.calls",
+    "load": "fiberbend.api.calls",
+    "plan": "fiberbend.api.calls",
+    "validate": "fiberbend.api.calls",
+    "sweep": "fiberbend.api.calls",
+    "Case": "fiberbend.case.case",
+    "CaseError": "fiberbend.schema.problems",
+    "Result": "fiberbend.api.result",
+    "Sweep": "fiberbend.api.sweep",
+    "__version__": "fiberbend.version",
+}
+"""Public names, and the modules that are imported when they are asked for."""
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
-    from typing import Any
-
-    from fiberbend.case.case import Case
-    from fiberbend.models.result import RunResult
+    from fiberbend.api.calls import load as load
+    from fiberbend.api.calls import plan as plan
+    from fiberbend.api.calls import run as run
+    from fiberbend.api.calls import sweep as sweep
+    from fiberbend.api.calls import validate as validate
+    from fiberbend.api.result import Result as Result
+    from fiberbend.api.sweep import Sweep as Sweep
+    from fiberbend.case.case import Case as Case
+    from fiberbend.schema.problems import CaseError as CaseError
     from fiberbend.version import __version__ as __version__
 
+__all__ = [
+    "Case",
+    "CaseError",
+    "Result",
+    "Sweep",
+    "__version__",
+    "load",
+    "plan",
+    "run",
+    "sweep",
+    "validate",
+]
 
-def __getattr__(name: str) -> str:
-    if name != "__version__":
+
+class _Package(type(sys)):  # type: ignore[misc]
+    """This module, in which the folders plan/ and sweep/ do not hide the functions."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not (name in __all__ and isinstance(value, type(sys))):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package
+
+
+def __getattr__(name: str) -> object:
+    if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from fiberbend.version import __version__
+    import importlib
 
-    return __version__
+    value: object = getattr(importlib.import_module(_PLACES[name]), name)
+    globals()[name] = value
+    return value
 
 
-def run(
-    case: Case | Mapping[str, Any] | Path | str,
-    out: Path | str | None = None,
-    overwrite: bool = False,
-    quiet: bool = True,
-    force: bool = False,
-) -> RunResult:
-    """Solve a case.
-
-    Args:
-        case: a case, a mapping as its YAML gives it, or the path of a case file.
-        out: run folder; without one nothing is written.
-        overwrite: replace an earlier run in `out`.
-        quiet: report no progress.
-        force: run whether the memory that it is expected to need is free or not.
-
-    Returns:
-        What was computed.
-
-    Raises:
-        fiberbend.schema.problems.CaseError: everything that is wrong with the case, or not
-            enough memory for it.
-    """
-    from pathlib import Path
-
-    from fiberbend.reader.reader import as_case
-    from fiberbend.running import launch
-    from fiberbend.running.progress import Progress
-
-    checked = as_case(case)
-    launch.start_mpi()
-    from fiberbend.running.runner import run_case
-
-    progress = Progress(quiet=quiet)
-    folder = None if out is None else Path(out)
-    try:
-        return run_case(checked, folder, overwrite, progress, force=force)
-    finally:
-        progress.close()
+def __dir__() -> list[str]:
+    return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})

@@ -54,6 +54,9 @@ UNIFORM = "uniform"
 BODY = "body"
 """Columns of a body in space, with its supports and obstacles."""
 
+COUNTS = frozenset({STEP, ITERATIONS, MODES})
+"""Columns of integers."""
+
 Row = Mapping[str, Any]
 """A row of history.csv: values by the names of their columns; None or absent: not known."""
 Read = Callable[[Any, Any], float | None]
@@ -75,7 +78,8 @@ class Column:
     """A column of history.csv.
 
     Attributes:
-        name: as in the file's head; a part in braces stands for a name of the case.
+        name: as in the file's head; a part in braces stands for a name of the case, of letters,
+            digits and "_".
         unit: of its values; empty for a number without one.
         meaning: what it is.
         group: models fill it that have the group among `fills`.
@@ -101,7 +105,7 @@ class Column:
 
     def names(self, key: str) -> bool:
         """Whether it is the column that a row calls so."""
-        pattern = re.sub(r"\\\{\w+\\\}", r".+", re.escape(self.name))
+        pattern = re.sub(r"\\\{\w+\\\}", r"[A-Za-z0-9_]+", re.escape(self.name))
         return re.fullmatch(pattern, key) is not None
 
 
@@ -148,12 +152,18 @@ COLUMNS = (
     Column(CROWN_STRETCH, "", "stretch of the highest line", UNIFORM),
     Column(WORK, "mJ", "work of the loads since rest, Σ ∫ q dQ", ELEMENTS),
     Column(STORED, "mJ", "stored energy", ELEMENTS),
-    Column("energy {effect} mJ", "mJ", "potential of an effect", ELEMENTS),
+    Column("energy_{effect}_mJ", "mJ", "potential of an effect", ELEMENTS),
     Column(
-        "load {load}", "", "a load: the pressure in MPa, of gravity the share that acts", ELEMENTS
+        "load_{load}",
+        "",
+        "a load beside the pressure, of gravity the share that acts; its unit ends the name",
+        ELEMENTS,
     ),
     Column(
-        "conjugate {load}", "", "what it does work on: of the pressure mm³, of gravity mJ", ELEMENTS
+        "conjugate_{load}",
+        "",
+        "what it does work on, of gravity mJ; its unit ends the name",
+        ELEMENTS,
     ),
     Column(MODES, "", "unstable modes with every load kept at its value", ELEMENTS),
     Column(ROOF_FORCE, "N", "force of the roof on the body", BODY),
@@ -204,6 +214,64 @@ COLUMNS = (
 """In the order of a row."""
 
 
+def energy_columns(keys: Iterable[str]) -> dict[str, str]:
+    """The columns of the energies of effects.
+
+    Args:
+        keys: of the effects of a scene, such as "SmearedWinding" and "Elastic[neo-hookean]".
+
+    Returns:
+        A column for each key, "energy_smeared_winding_mJ" and "energy_elastic_neo_hookean_mJ"; the
+        second key of the same letters gets a number, so that no two share a column.
+    """
+    columns: dict[str, str] = {}
+    for key in keys:
+        name, number = _plain(key), 2
+        while f"energy_{name}_mJ" in columns.values():
+            name, number = f"{_plain(key)}_{number}", number + 1
+        columns[key] = f"energy_{name}_mJ"
+    return columns
+
+
+def load_columns(load: str, unit: str, conjugate_unit: str) -> tuple[str, str]:
+    """The columns of a load's value and of its work-conjugate, with their units.
+
+    Args:
+        load: name of the global scalar, such as "gravity"; the pressure has columns of its own.
+        unit: of the value; empty for a share.
+        conjugate_unit: of the work-conjugate.
+    """
+    value, conjugate = (
+        f"{kind}_{_plain(load)}" + ("_" if end else "") + end
+        for kind, end in (("load", unit), ("conjugate", conjugate_unit))
+    )
+    return value, conjugate
+
+
+def _plain(key: str) -> str:
+    """A key as a part of a column: "Contact[left-post]" becomes contact_left_post."""
+    words = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", key)
+    return re.sub(r"[^A-Za-z0-9]+", "_", words).strip("_").lower()
+
+
+def present_name(key: str) -> str | None:
+    """What a column of an older history.csv is called now; None where another one says the same.
+
+    Raises:
+        KeyError: neither this version nor an older one has such a column.
+    """
+    value, conjugate = load_columns("gravity", "", "mJ")
+    old: dict[str, str | None] = {"load pressure": None, "conjugate pressure": None}
+    old |= {"load gravity": value, "conjugate gravity": conjugate}
+    if key in old:
+        return old[key]
+    energy = re.fullmatch(r"energy (.+) mJ", key)
+    if energy is not None:
+        return energy_columns([energy[1]])[energy[1]]
+    column(key)
+    return key
+
+
 @functools.cache
 def column(key: str) -> Column:
     """The column that a row calls so.
@@ -215,6 +283,11 @@ def column(key: str) -> Column:
         if known.names(key):
             return known
     raise KeyError(f"column {key!r} is not in the table of columns")
+
+
+def is_column(key: str) -> bool:
+    """Whether the table has a column of that name."""
+    return any(each.names(key) for each in COLUMNS)
 
 
 def check(keys: Iterable[str], model: Filler) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from fem.effects.effect import Effect
 from fem.kinematics.kinematics import Kinematics
@@ -19,6 +19,7 @@ class ChamberPressure(Effect):
     """
 
     scalar = "pressure"
+    units: ClassVar = {scalar: ("MPa", "mm3")}
 
     def __init__(self, surface: str = "chamber") -> None:
         self.surface = surface

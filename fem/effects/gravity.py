@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import ufl
 
@@ -19,6 +19,7 @@ class Gravity(Effect):
     """
 
     scalar = "gravity"
+    units: ClassVar = {scalar: ("", "mJ")}
 
     def __init__(self, density: dict[str, float], acceleration: tuple[float, float, float]) -> None:
         self.density = density

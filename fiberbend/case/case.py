@@ -17,6 +17,7 @@ from pydantic import (
     model_serializer,
     model_validator,
 )
+from pydantic_core import PydanticCustomError
 
 from fiberbend.case.coefficients import coefficient_fields
 from fiberbend.case.names import MODELS
@@ -33,6 +34,7 @@ from fiberbend.schema.quantities import (
     Pressure,
     SignedPressure,
     Spec,
+    UnitName,
 )
 from geometry.sections.table import SECTIONS
 from materials.laws.table import LAWS
@@ -187,6 +189,55 @@ class Solver(Spec):
     """Residual forces and volumes, each in units of its own internal force."""
 
 
+class MeasuredSpec(Spec):
+    """A file of measured points, and how to read it."""
+
+    file: str
+    """CSV file, relative to the case file; written alone where nothing else is given,
+    `measured: trial.csv`."""
+    pressure: str | None = None
+    """Name of the column of pressures, such as "P [psi]"; pressure or P by default."""
+    angle: str | None = None
+    """Name of the column of bending angles; angle, theta or θ by default."""
+    force: str | None = None
+    """Name of the column of tip forces, where the tip is blocked; tip_force, force or F by
+    default."""
+    pressure_unit: Annotated[str, UnitName("pressure")] | None = None
+    """Unit of the pressures, where their column's name does not have it."""
+    angle_unit: Annotated[str, UnitName("angle")] | None = None
+    """Unit of the angles, likewise."""
+    force_unit: Annotated[str, UnitName("force")] | None = None
+    """Unit of the forces, likewise."""
+    delimiter: Literal["tab", "semicolon", "comma", "bar", "spaces"] | None = None
+    """What stands between the columns; found from the lines by default."""
+    decimal: Literal[".", ","] | None = None
+    """The mark before decimals; found from the numbers by default."""
+
+    def column(self, kind: str) -> tuple[str | None, str | None]:
+        """Name and unit of the column of a quantity, 'pressure', 'angle' or 'force', as given."""
+        return {
+            "pressure": (self.pressure, self.pressure_unit),
+            "angle": (self.angle, self.angle_unit),
+            "force": (self.force, self.force_unit),
+        }[kind]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_file(cls, data: Any) -> Any:
+        if not isinstance(data, str | dict | MeasuredSpec):
+            raise PydanticCustomError("measured", "expected the name of a file, or a mapping")
+        return {"file": data} if isinstance(data, str) else data
+
+    @model_serializer(mode="wrap")
+    def _to_file(self, write: Any) -> Any:
+        return self.file if self.model_fields_set == {"file"} else write(self)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict[str, Any]:
+        """A file alone is allowed too."""
+        return {"anyOf": [{"type": "string"}, handler.resolve_ref_schema(handler(schema))]}
+
+
 class Output(Spec):
     """What a run leaves beyond its curves."""
 
@@ -198,10 +249,10 @@ class Output(Spec):
     stop_at_angle: Angle | None = None
     """The run ends where the pressure, or a load after it, crosses this bending angle, up or down;
     what is put on before the pressure is put on whole."""
-    measured: str | None = None
-    """CSV file of measured points that are drawn over the curves and compared with them, with the
-    columns pressure_kPa and angle_deg, or tip_force_N where the tip is blocked; relative to the
-    case file."""
+    measured: MeasuredSpec | None = None
+    """Measured points that are drawn over the curves and compared with them: a CSV file with
+    columns of pressures and bending angles, or tip forces where the tip is blocked, and their
+    units, such as pressure_kPa or "P [psi]"."""
     pictures: bool = True
     """Draw pictures."""
     animation: bool = False

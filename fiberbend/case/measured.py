@@ -8,15 +8,59 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from analytic.table import read_columns
+from analytic.table import DELIMITERS, Table, read_table
 from fiberbend import columns as col
-from fiberbend.case.case import Case
+from fiberbend.case.case import Case, MeasuredSpec
+from fiberbend.schema.units import factor
 
 if TYPE_CHECKING:
     from geometry.mesh.data import Floats
+
+_UNITS = (
+    re.compile(r"(?P<stem>.*?)\s*\[\s*(?P<unit>.+?)\s*\]"),
+    re.compile(r"(?P<stem>.*?)\s*\(\s*(?P<unit>.+?)\s*\)"),
+)
+"""Names of columns that say a unit: "P [kPa]", "pressure (psi)"."""
+_PERHAPS = (
+    re.compile(r"(?P<stem>.+?)\s*/\s*(?P<unit>[^\s/]+)"),
+    re.compile(r"(?P<stem>.+?)\s+in\s+(?P<unit>\S+)"),
+    re.compile(r"(?P<stem>.+)_(?P<unit>[^_]+)"),
+)
+"""Names that say a unit where there is such a one: "p / kPa", "angle in deg", "pressure_kPa"."""
+
+
+@dataclasses.dataclass(frozen=True)
+class _Wanted:
+    """A column that is looked for.
+
+    Attributes:
+        name: as this program writes it.
+        kind: of its quantity, a key of `schema.units.KINDS`; also its key in the case.
+        words: what else it may be called.
+        example: a name with its unit.
+    """
+
+    name: str
+    kind: str
+    words: frozenset[str]
+    example: str
+
+
+_PRESSURE = _Wanted(col.PRESSURE, "pressure", frozenset({"pressure", "p"}), "P [kPa]")
+_ANGLE = _Wanted(
+    col.ANGLE,
+    "angle",
+    frozenset({"angle", "theta", "θ", "bending angle", "bending_angle"}),
+    "theta [deg]",
+)
+_FORCE = _Wanted(
+    col.TIP_FORCE, "force", frozenset({"force", "f", "tip force", "tip_force"}), "F [N]"
+)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -28,12 +72,14 @@ class Measured:
         pressure: pressures, (n,), MPa.
         value: bending angles in rad, or tip forces in N, (n,).
         source: name of the file.
+        units: of the pressures and of the values in the file; None: kPa, and degrees or N.
     """
 
     quantity: str
     pressure: Floats
     value: Floats
     source: str
+    units: tuple[str, str] | None = None
 
     def shown(self) -> tuple[Floats, Floats]:
         """The points as plots and tables show them: kPa, and degrees or N, (n,) each."""
@@ -48,26 +94,25 @@ def expected_quantity(blocked: bool) -> str:
     return col.TIP_FORCE if blocked else col.ANGLE
 
 
-def what_is_wrong(file: str, blocked: bool) -> str | None:
+def what_is_wrong(measured: MeasuredSpec, blocked: bool) -> str | None:
     """Why a file cannot be compared with a run.
 
     Args:
-        file: its path.
+        measured: the file, and what the case says of it.
         blocked: the tip is blocked, so that forces were measured and not angles.
 
     Returns:
         What was found and what was expected, or None.
     """
     wanted = f"columns pressure_kPa and {expected_quantity(blocked)}"
-    path = Path(file)
     try:
-        read_columns(path, (col.PRESSURE, expected_quantity(blocked)))
+        _read(measured, blocked)
     except FileNotFoundError:
-        return f'"{file}", no such file, expected a CSV file with {wanted}'
+        return f'"{measured.file}", no such file, expected a CSV file with {wanted}'
     except OSError as error:
-        return f'"{file}", {error.strerror}, expected a CSV file with {wanted}'
+        return f'"{measured.file}", {error.strerror}, expected a CSV file with {wanted}'
     except ValueError as error:
-        return f"{error}, expected {wanted}"
+        return str(error) if "expected" in str(error) else f"{error}, expected {wanted}"
     return None
 
 
@@ -80,11 +125,139 @@ def read_measured(case: Case) -> Measured | None:
     """
     import numpy as np
 
-    file = case.output.measured
-    if file is None:
+    spec = case.output.measured
+    if spec is None:
         return None
-    quantity = expected_quantity(case.straight)
-    pressure, value = np.array(read_columns(Path(file), (col.PRESSURE, quantity))).T
-    if quantity == col.ANGLE:
-        value = value * (math.pi / 180)
-    return Measured(quantity, 1e-3 * pressure, value, Path(file).name)
+    rows, factors, units = _read(spec, case.straight)
+    pressure, value = np.array(rows).T
+    return Measured(
+        expected_quantity(case.straight),
+        factors[0] * pressure,
+        factors[1] * value,
+        Path(spec.file).name,
+        units,
+    )
+
+
+def _read(
+    spec: MeasuredSpec, blocked: bool
+) -> tuple[list[list[float]], tuple[float, float], tuple[str, str]]:
+    """The points of a file, what one of their units is in the internal one, and these units.
+
+    Raises:
+        ValueError: what was found in the file and what was expected.
+        OSError: the file cannot be read.
+    """
+    marks = {name: mark for mark, name in DELIMITERS.items()}
+    delimiter = None if spec.delimiter is None else marks[spec.delimiter]
+    table = read_table(Path(spec.file), delimiter, spec.decimal)
+    value = _FORCE if blocked else _ANGLE
+    given = [spec.column(wanted.kind) for wanted in (_PRESSURE, value)]
+    places = [
+        _place(table, wanted, name)
+        for wanted, (name, _) in zip((_PRESSURE, value), given, strict=True)
+    ]
+    if places[0] == places[1]:
+        name = table.columns[places[0]]
+        raise ValueError(f"{table.source}: {name!r} given twice, expected two columns")
+    units = [
+        _unit(table, wanted, table.columns[place], unit)
+        for wanted, place, (_, unit) in zip((_PRESSURE, value), places, given, strict=True)
+    ]
+    factors = factor(units[0], _PRESSURE.kind), factor(units[1], value.kind)
+    return table.values(places), factors, (units[0], units[1])
+
+
+def _place(table: Table, wanted: _Wanted, name: str | None) -> int:
+    """Place of the column of a quantity: by its name in the case, by this program's, or by words.
+
+    Raises:
+        ValueError: none, or several.
+    """
+    columns = table.columns
+    if name is not None:
+        plain = " ".join(name.split()).casefold()
+        ways = [
+            [i for i, column in enumerate(columns) if column == name],
+            [i for i, column in enumerate(columns) if column.casefold() == plain],
+            [i for i, column in enumerate(columns) if _stem(column, wanted) == plain],
+        ]
+    else:
+        ways = [
+            [i for i, column in enumerate(columns) if column == wanted.name],
+            [i for i, column in enumerate(columns) if _stem(column, wanted) in wanted.words],
+        ]
+    places: Sequence[int] = next((found for found in ways if found), [])
+    if len(places) == 1:
+        return places[0]
+    if places:
+        several = " and ".join(repr(columns[i]) for i in places)
+        raise ValueError(
+            f"{table.source}: {several}, expected one column of {wanted.kind}s, or its name as "
+            f"{wanted.kind} in output.measured"
+        )
+    what = wanted.name if name is None else repr(name)
+    hint = (
+        ""
+        if name is not None
+        else (
+            f", expected {wanted.name}, a name such as {wanted.example!r}, or the column's name as "
+            f"{wanted.kind} in output.measured"
+        )
+    )
+    expected = hint or ", expected one of them"
+    raise ValueError(f"{table.source}: no column {what}, found {table.found}{expected}")
+
+
+def _stem(column: str, wanted: _Wanted) -> str:
+    """A column's name without its unit, in small letters."""
+    return _cut(column, wanted)[0].casefold()
+
+
+def _cut(column: str, wanted: _Wanted) -> tuple[str, str]:
+    """A column's name and the unit that it says, or nothing."""
+    for pattern in _UNITS:
+        match = pattern.fullmatch(column)
+        if match is not None:
+            return match["stem"], match["unit"]
+    for pattern in _PERHAPS:
+        match = pattern.fullmatch(column)
+        if match is not None and _is_unit(match["unit"], wanted.kind):
+            return match["stem"], match["unit"]
+    return column, ""
+
+
+def _is_unit(text: str, kind: str) -> bool:
+    try:
+        factor(text, kind)
+    except ValueError:
+        return False
+    return True
+
+
+def _unit(table: Table, wanted: _Wanted, column: str, given: str | None) -> str:
+    """The unit of a column, by its name or by the case.
+
+    Raises:
+        ValueError: none, an unknown one, or two that differ.
+    """
+    _, said = _cut(column, wanted)
+    key = f"{wanted.kind}_unit"
+    if said and not _is_unit(said, wanted.kind):
+        raise ValueError(
+            f"{table.source}: column {column!r} in {said!r}, expected a unit of {wanted.kind} such "
+            f"as in {wanted.example!r}"
+        )
+    if not (said or given):
+        raise ValueError(
+            f"{table.source}: column {column!r} has no unit, expected a name such as "
+            f"{wanted.example!r}, or {key} in output.measured"
+        )
+    if said and given:
+        one, other = factor(said, wanted.kind), factor(given, wanted.kind)
+        if not math.isclose(one, other, rel_tol=1e-9):
+            raise ValueError(
+                f"{table.source}: column {column!r} is in {said}, {key} says {given}, expected one "
+                "of them"
+            )
+    return said or str(given)

@@ -197,7 +197,8 @@ def crosscheck(
         points = (Points(f"measured ({measured.source})", *measured.shown()),)
         comparison, outside = _beside_measured(rows, columns, points[0], blocked)
         comparisons += [comparison] if comparison is not None else []
-        found = [text for text in (outside, unit_remark(rows, points[0], blocked)) if text]
+        odd = unit_remark(rows, points[0], blocked, measured.units)
+        found = [text for text in (outside, odd) if text]
         remarks += found
         doubtful += found
     doubtful += _no_paper(case)

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import numpy.typing as npt
-
-from analytic.inverse import ROUND_OFF
-
-Floats = npt.NDArray[np.float64]
+if TYPE_CHECKING:
+    from geometry.mesh.data import Floats
 
 
 @dataclasses.dataclass(frozen=True)
@@ -55,6 +51,10 @@ class Curve:
 
     def reaches(self, angle: float) -> bool:
         """Whether it rises from rest to an angle, rad."""
+        import numpy as np
+
+        from analytic.inverse import ROUND_OFF
+
         slack = ROUND_OFF * self.angle[-1]
         rises = np.all(np.diff(self.angle) > 0)
         return bool(rises and -slack <= angle <= self.angle[-1] + slack)

@@ -20,7 +20,7 @@ PAPER_SHAPE = "hemicircle"
 _INDENT = 13
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, repr=False)
 class Plan:
     """What a run would do.
 
@@ -31,6 +31,9 @@ class Plan:
         unknowns: displacements and pressures, before any are fixed.
         steps: load steps, where they can be predicted.
         refusal: why a run would be refused here and now; empty where it would not.
+        seconds: of the run with compiled kernels on one rank, without pictures; None where its
+            steps cannot be predicted.
+        memory_mb: greatest memory on one rank, MB; None of a closed form.
     """
 
     model: str
@@ -39,6 +42,12 @@ class Plan:
     unknowns: int = 0
     steps: int | None = None
     refusal: str = ""
+    seconds: float | None = None
+    memory_mb: float | None = None
+
+    def __repr__(self) -> str:
+        """The lines, as `fiberbend plan` prints them."""
+        return "\n".join(self.lines())
 
     def lines(self) -> list[str]:
         """The plan as lines of text, none longer than `WIDTH`."""
@@ -115,6 +124,8 @@ def _finite_elements(
         size.unknowns,
         cost.steps,
         "" if short is None else f"memory: {short}",
+        cost.seconds(),
+        cost.memory_mb,
     )
 
 

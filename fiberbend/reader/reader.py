@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,7 @@ from fiberbend.reader.yaml_file import (
     root_paths,
     setting_path,
 )
+from fiberbend.schema.paths import put
 from fiberbend.schema.problems import CaseError, Problem, found
 from fiberbend.schema.validation import from_pydantic
 
@@ -42,13 +44,14 @@ _SWEEP = frozenset({"vary", "zip", "points"})
 """Keys by which a file with a key `case` is a sweep's."""
 
 
-def read_case(path: Path | str, settings: Iterable[str] = ()) -> Case:
+def read_case(path: Path | str, settings: Iterable[str] | Mapping[str, Any] = ()) -> Case:
     """Read a case file.
 
     Args:
         path: the YAML file.
-        settings: changes to it, `effects.0.pressure.to=150 kPa`, any path of the case. A file that
-            the case file names is relative to it, one in a setting to the working folder.
+        settings: changes to it, `effects.0.pressure.to=150 kPa` each, or values by their dotted
+            paths; any path of the case. A file that the case file names is relative to it, one in
+            a setting to the working folder.
 
     Returns:
         The checked case.
@@ -56,38 +59,66 @@ def read_case(path: Path | str, settings: Iterable[str] = ()) -> Case:
     Raises:
         CaseError: everything that is wrong with file, settings and case.
     """
-    source, settings = read_yaml(Path(path)), list(settings)
+    source = read_yaml(Path(path))
+    settings = settings if isinstance(settings, Mapping) else list(settings)
     data = source.data
     if "case" in data and not _SWEEP.isdisjoint(data):
         raise CaseError([Problem(str(path), f"this is a sweep: fiberbend sweep {path}")])
     root_paths(data, Path(path).parent)
-    problems: list[Problem] = []
-    for setting in settings:
-        try:
-            apply_setting(data, setting)
-        except CaseError as error:
-            problems += error.problems
-    if problems:
-        raise CaseError(problems)
+    _change(data, settings)
     root_paths(data, Path())
     with line_numbers(source.lines, [setting_path(setting) for setting in settings]):
         return parse_case(data)
 
 
-def as_case(case: Case | Mapping[str, Any] | Path | str) -> Case:
+def as_case(
+    case: Case | Mapping[str, Any] | Path | str,
+    settings: Iterable[str] | Mapping[str, Any] = (),
+) -> Case:
     """A case from any form of it: checked already, a mapping, or a file.
+
+    Args:
+        case: the case; of one that is checked already, every default is a given value. Files that
+            a mapping names are relative to the working folder.
+        settings: changes to it, `actuator.wall=3 mm` each, or values by their dotted paths.
 
     Raises:
         CaseError: everything that is wrong with it.
     """
+    if isinstance(settings, str):
+        text = f"{found(settings)}, expected a list of path=value, or a mapping"
+        raise CaseError([Problem("settings", text)])
     if isinstance(case, Case):
-        return case
+        if not settings:
+            return case
+        case = case.resolved()
     if isinstance(case, Mapping):
-        return parse_case(dict(case))
+        data = copy.deepcopy(dict(case))
+        _change(data, settings)
+        root_paths(data, Path())
+        return parse_case(data)
     if isinstance(case, (str, Path)):
-        return read_case(case)
+        return read_case(case, settings)
     wanted = "expected a Case, a mapping or the path of a case file"
     raise CaseError([Problem("case", f"{found(case)}, {wanted}")])
+
+
+def _change(data: dict[str, Any], settings: Iterable[str] | Mapping[str, Any]) -> None:
+    """Change values of a case that is not yet checked, or say all that is wrong with the paths."""
+    problems: list[Problem] = []
+    pairs = settings.items() if isinstance(settings, Mapping) else [(s, None) for s in settings]
+    for setting, value in pairs:
+        try:
+            if not isinstance(setting, str):
+                raise CaseError([Problem("settings", f"{found(setting)}, expected a dotted path")])
+            if isinstance(settings, Mapping):
+                put(data, setting, copy.deepcopy(value))
+            else:
+                apply_setting(data, setting)
+        except CaseError as error:
+            problems += error.problems
+    if problems:
+        raise CaseError(problems)
 
 
 def parse_case(data: Mapping[str, Any]) -> Case:

@@ -217,8 +217,13 @@ def root_paths(data: dict[str, Any], folder: Path) -> None:
         folder: that of the case file.
     """
     output = data.get("output")
-    if isinstance(output, dict) and isinstance(output.get("measured"), str):
-        output["measured"] = str(folder.resolve() / output["measured"])
+    if not isinstance(output, dict):
+        return
+    measured = output.get("measured")
+    if isinstance(measured, str):
+        output["measured"] = str(folder.resolve() / measured)
+    elif isinstance(measured, dict) and isinstance(measured.get("file"), str):
+        measured["file"] = str(folder.resolve() / measured["file"])
 
 
 def setting_path(setting: str) -> str:

@@ -88,16 +88,23 @@ class RunFolder:
         path: the folder.
         writes: this rank writes.
         lock: on the folder, or None.
+        durable: a file that is written stays also where the power goes out.
 
     Attributes:
         path: the folder.
         writes: True on the rank that writes.
     """
 
-    def __init__(self, path: Path, writes: bool = True, lock: FolderLock | None = None) -> None:
+    def __init__(
+        self,
+        path: Path,
+        writes: bool = True,
+        lock: FolderLock | None = None,
+        durable: bool = True,
+    ) -> None:
         self.path = path
         self.writes = writes
-        self._lock = lock
+        self._lock, self._durable = lock, durable
 
     def __enter__(self) -> RunFolder:
         return self
@@ -183,6 +190,8 @@ class RunFolder:
     def write_history(self, rows: Sequence[Mapping[str, Any]]) -> None:
         """Write history.csv: one row per step, columns beyond `HISTORY_COLUMNS` in row order.
 
+        Numbers have ten significant digits.
+
         Args:
             rows: all steps so far; what a row does not have stays empty.
 
@@ -249,8 +258,9 @@ class RunFolder:
             with os.fdopen(handle, "wb") as file:
                 with whole:
                     fill(file)
-                file.flush()
-                os.fsync(file.fileno())
+                if self._durable:
+                    file.flush()
+                    os.fsync(file.fileno())
             # mkstemp makes files that only their owner can read.
             os.chmod(part, 0o666 & ~_umask())
             os.replace(part, target)
@@ -260,12 +270,41 @@ class RunFolder:
 
 
 def read_history(path: Path) -> list[dict[str, float | None]]:
-    """The rows of a history.csv; empty cells are None."""
+    """The rows of a history.csv; empty cells are None, counts are integers.
+
+    Columns of older versions have their present names.
+
+    Raises:
+        CaseError: a column that no version has written, a cell that is no number, or a row that is
+            cut off.
+    """
     with path.open(newline="", encoding="utf-8") as file:
-        return [
-            {key: float(value) if value else None for key, value in row.items()}
-            for row in csv.DictReader(file)
-        ]
+        reader = csv.DictReader(file)
+        try:
+            names = {key: col.present_name(key) for key in reader.fieldnames or ()}
+        except KeyError as error:
+            wanted = "expected columns of history.csv, or a run of this version of fiberbend"
+            raise CaseError([Problem(str(path), f"{error.args[0]}, {wanted}")]) from None
+        rows = []
+        for row in reader:
+            where = f"{path}, line {reader.line_num}"
+            if None in row or None in row.values():
+                text = f"not as many cells as the {len(names)} columns, expected a whole row"
+                raise CaseError([Problem(where, text)])
+            rows.append(
+                {name: _number(row[key], name, where) for key, name in names.items() if name}
+            )
+        return rows
+
+
+def _number(text: str, name: str, where: str) -> float | None:
+    if not text:
+        return None
+    try:
+        value = float(text)
+    except ValueError:
+        raise CaseError([Problem(where, f"{name} is {text!r}, expected a number")]) from None
+    return int(value) if name in col.COUNTS and value.is_integer() else value
 
 
 def _make(path: Path, case: Case, overwrite: bool) -> FolderLock:
@@ -347,8 +386,8 @@ def _same_case(path: Path, case: Case) -> FolderLock:
     return lock
 
 
-def _cell(value: Any) -> Any:
-    return "" if value is None else value
+def _cell(value: Any) -> str:
+    return "" if value is None else f"{value:.10g}"
 
 
 def _plain(value: Any) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -48,6 +49,8 @@ class Recorder:
         self._scene, self._model = scene, model
         self._gauge = gauge
         self._factor = scene.body.symmetry_factor
+        self._energies = col.energy_columns(scene.keys)
+        self._loads = _load_columns(scene)
         self._volume = VolumeProbe.of(scene)
         self.rows = rows if rows is not None else [self._row(0, rest, None)]
 
@@ -93,16 +96,15 @@ class Recorder:
         if forces is not None:
             row[col.FIBER_MIN], row[col.FIBER_MAX] = forces
         energies = scene.energies()
-        names = [name for name in state.scalars if name not in scene.body.natural]
-        loads = {name: state.measures[f"conjugate {name}"] for name in names}
+        loads = {name: state.measures[f"conjugate {name}"] for name in self._loads}
         stored = sum(energies.values()) + sum(state.scalars[n] * v for n, v in loads.items())
         row[col.WORK] = 0.0
         row[col.STORED] = self._factor * stored
         for key, energy in energies.items():
-            row[f"energy {key} mJ"] = self._factor * energy
-        for name, value in loads.items():
-            row[f"load {name}"] = state.scalars[name]
-            row[f"conjugate {name}"] = self._factor * value
+            row[self._energies[key]] = self._factor * energy
+        for name, load in self._loads.items():
+            row[load.value] = load.shown * state.scalars[name]
+            row[load.conjugate] = self._factor * loads[name]
         if outcome is not None:
             row[col.MODES] = int(state.measures[MODES])
             row |= self._gauge.last_columns(state)
@@ -112,12 +114,45 @@ class Recorder:
 
     def _work(self) -> tuple[Floats, Floats]:
         """Work of the loads in the step to every row, and its uncertainty, N mm; see `work_of`."""
-        names = [n for n in self._scene.body.scalars if n not in self._scene.body.natural]
-        if len(self.rows) < 2 or not names:
+        loads = self._loads.values()
+        if len(self.rows) < 2 or not loads:
             return np.zeros(len(self.rows)), np.zeros(len(self.rows))
-        values = np.array([[row[f"load {name}"] for name in names] for row in self.rows])
-        conjugates = np.array([[row[f"conjugate {name}"] for name in names] for row in self.rows])
+        values = np.array([[row[load.value] / load.shown for load in loads] for row in self.rows])
+        conjugates = np.array([[row[load.conjugate] for load in loads] for row in self.rows])
         return work_of(values, conjugates)
+
+
+@dataclasses.dataclass(frozen=True)
+class _Load:
+    """Columns of a load and of its work-conjugate.
+
+    Attributes:
+        value: column of its value.
+        conjugate: column of its work-conjugate.
+        shown: what the column has of a value of one.
+    """
+
+    value: str
+    conjugate: str
+    shown: float = 1.0
+
+
+def _load_columns(scene: Scene) -> dict[str, _Load]:
+    """The columns of the loads of a scene, by name.
+
+    Raises:
+        KeyError: an effect does not say the units of a load that it brings.
+    """
+    units = {name: pair for effect in scene.effects.values() for name, pair in effect.units.items()}
+    loads: dict[str, _Load] = {}
+    for name in scene.body.scalars:
+        if name == "pressure":
+            loads[name] = _Load(col.PRESSURE, col.VOLUME, 1e3)
+        elif name not in scene.body.natural:
+            if name not in units:
+                raise KeyError(f"load {name!r} without a unit, expected one in `Effect.units`")
+            loads[name] = _Load(*col.load_columns(name, *units[name]))
+    return loads
 
 
 def work_of(values: Floats, conjugates: Floats) -> tuple[Floats, Floats]:

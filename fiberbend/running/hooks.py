@@ -37,9 +37,10 @@ class Recording(Hook):
         assembly: its scene.
         archive: moves states to rank 0.
         recorder: the rows.
-        folder: where snapshots and the checkpoint go, or None.
+        folder: where the checkpoint goes, or None.
         progress: reports to the user.
         model: says whether a checkpoint is left after every step.
+        states: where snapshots go, or None.
         snapshots: those of a run that is resumed.
 
     Attributes:
@@ -58,11 +59,13 @@ class Recording(Hook):
         folder: RunFolder | None,
         progress: Progress,
         model: MeshedModel,
+        states: RunFolder | None = None,
         snapshots: Sequence[Snapshot] = (),
     ) -> None:
         self._case, self._assembly, self._archive = case, assembly, archive
         self._recorder, self._folder, self._progress = recorder, folder, progress
         self._model, self._resumes = model.name, model.resumes
+        self._states, self._room = states, True
         self.rows = recorder.rows
         self.kept = int(self.rows[-1][col.STEP]) if model.resumes else 0
         self.snapshots = list(snapshots)
@@ -121,7 +124,7 @@ class Recording(Hook):
 
     def keep(self, label: str) -> None:
         """Keep the present state for fields, pictures and the report; collective."""
-        if self._folder is None or not shows_states(self._case.output):
+        if self._states is None:
             return
         row = self._recorder.rows[-1]
         if label == LAST and any(s.step == row[col.STEP] for s in self.snapshots):
@@ -144,7 +147,15 @@ class Recording(Hook):
         if not label.startswith(STEP):
             self.snapshots.append(shot)
         arrays = {k: v for k, v in vars(shot).items() if v is not None}
-        self._folder.write_arrays(f"{SNAPSHOTS}/{label}.npz", **arrays)
+        try:
+            if self._room:
+                self._states.write_arrays(f"{SNAPSHOTS}/{label}.npz", **arrays)
+        except OSError as error:
+            if self._folder is not None:
+                raise
+            # of a run without a folder the rows are the result: a full disk costs its states
+            self._room = False
+            self.warn([f"states are kept up to step {shot.step - 1} only: {error.strerror}"])
 
     @property
     def last(self) -> Snapshot | None:

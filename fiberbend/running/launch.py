@@ -6,6 +6,7 @@ import os
 import sys
 import time
 import traceback
+from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 from typing import Any, TextIO
@@ -129,6 +130,20 @@ def refuse(text: str, code: int) -> int:
         print(f"rank {rank()}: {text}", file=sys.stderr, flush=True)
         end_all(code)
     return code
+
+
+def on_rank_0(comm: Any, action: Callable[[], Any]) -> Any:
+    """Result of an action of rank 0 on every rank, or its error on every rank; collective."""
+    outcome: tuple[Any, Exception | None] = (None, None)
+    if comm.rank == 0:
+        try:
+            outcome = (action(), None)
+        except Exception as error:
+            outcome = (None, error)
+    value, problem = comm.bcast(outcome)
+    if problem is not None:
+        raise problem
+    return value
 
 
 def let_rank_0_speak() -> None:

@@ -72,10 +72,10 @@ def load(folder: RunFolder, archive: Archive, say: Callable[[str], None]) -> Sav
     arrays = comm.bcast(arrays)
     if arrays is None:
         return None
-    if "rows" not in arrays:
+    rows = json.loads(str(arrays.pop("rows", "[]")))
+    if not rows or not all(map(col.is_column, rows[-1])):
         text = "of another version of fiberbend, cannot be resumed: expected --overwrite"
         raise CaseError([Problem(str(folder.path / CHECKPOINT), text)])
-    rows = json.loads(str(arrays.pop("rows")))
     snapshots = []
     asked = (p for p in snapshot_paths(folder.path) if not p.stem.startswith(STEP))
     for shot in asked:

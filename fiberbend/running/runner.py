@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +32,7 @@ from fiberbend.results.states import LAST, write_fibers
 from fiberbend.running import launch, messages, record, restart
 from fiberbend.running.assembly import Assembly, assemble
 from fiberbend.running.history import Recorder
-from fiberbend.running.hooks import Recording, ended, unmet
+from fiberbend.running.hooks import Recording, ended, shows_states, unmet
 from fiberbend.running.progress import Progress
 from fiberbend.running.warm import SectionStates, section_guides, section_states
 from fiberbend.schema.problems import CaseError
@@ -48,6 +48,7 @@ def run_case(
     progress: Progress | None = None,
     resume: bool = False,
     force: bool = False,
+    states: Path | None = None,
 ) -> RunResult:
     """Solve a case; collective over MPI.COMM_WORLD.
 
@@ -58,6 +59,7 @@ def run_case(
         progress: reports to the user; none by default.
         resume: go on from the checkpoint in the folder.
         force: run whether its memory is free or not.
+        states: folder for mesh, winding and states of a run without `out`; none by default.
 
     Raises:
         CaseError: the folder cannot be used, or there is not enough memory for the run.
@@ -68,7 +70,8 @@ def run_case(
     if not force:
         refuse_shortage(case, comm, out is not None)
     if out is None:
-        return _solve(case, None, progress, comm, False, force)
+        scratch = None if states is None else RunFolder(states, comm.rank == 0, durable=False)
+        return _solve(case, None, progress, comm, False, force, scratch)
     if resume:
         folder = RunFolder.resume(out, case, comm)
     else:
@@ -99,26 +102,29 @@ def _solve(
     comm: MPI.Comm,
     resume: bool,
     force: bool,
+    scratch: RunFolder | None = None,
 ) -> RunResult:
     model = choose_model(case)[0].elements()
     if model is None:
         from fiberbend.running.analytic import run_analytic
 
-        return _on_rank_0(comm, lambda: run_analytic(case, folder, progress))  # type: ignore[no-any-return]
+        return launch.on_rank_0(comm, lambda: run_analytic(case, folder, progress))  # type: ignore[no-any-return]
     if model.shared:
         whole = _whole(case)
         # asked now: later the half body takes of the memory that is free
         leaves = case.mesh.symmetry == "auto" and model.half(case)[0]
         leaves = leaves and (force or _fits(whole, comm, folder))
         try:
-            return _Run(case, model, folder, progress, comm, may_leave=leaves).go(resume)
+            run = _Run(case, model, folder, progress, comm, scratch, may_leave=leaves)
+            return run.go(resume)
         except _AcrossError:
-            if folder is not None:
-                restart.discard(folder)
-            return _Run(whole, model, folder, progress, comm, (messages.WHOLE,)).go(False)
+            if run.states is not None:
+                restart.discard(run.states)
+            run = _Run(whole, model, folder, progress, comm, scratch, (messages.WHOLE,))
+            return run.go(False)
     # too small to share: one rank solves it
-    alone = _Run(case, model, folder, progress, MPI.COMM_SELF)
-    return _on_rank_0(comm, lambda: alone.go(False))  # type: ignore[no-any-return]
+    alone = _Run(case, model, folder, progress, MPI.COMM_SELF, scratch)
+    return launch.on_rank_0(comm, lambda: alone.go(False))  # type: ignore[no-any-return]
 
 
 def _whole(case: Case) -> Case:
@@ -135,20 +141,6 @@ def _fits(case: Case, comm: MPI.Comm, folder: RunFolder | None) -> bool:
     return True
 
 
-def _on_rank_0(comm: MPI.Comm, action: Callable[[], Any]) -> Any:
-    """Result of an action of rank 0 on every rank, or its error on every rank."""
-    outcome: tuple[Any, Exception | None] = (None, None)
-    if comm.rank == 0:
-        try:
-            outcome = (action(), None)
-        except Exception as error:
-            outcome = (None, error)
-    value, problem = comm.bcast(outcome)
-    if problem is not None:
-        raise problem
-    return value
-
-
 class _Run:
     """The steps of one run of finite elements, and what they share."""
 
@@ -159,10 +151,12 @@ class _Run:
         folder: RunFolder | None,
         progress: Progress,
         comm: MPI.Comm,
+        scratch: RunFolder | None = None,
         remarks: Sequence[str] = (),
         may_leave: bool = False,
     ) -> None:
         self.case, self.model, self.folder = case, model, folder
+        self.states = folder or scratch
         self.progress, self.comm = progress, comm
         self.remarks, self.may_leave = remarks, may_leave
         self.recording: Recording | None = None
@@ -177,7 +171,7 @@ class _Run:
         # before this run takes of the memory that is free
         known = doubts(case)
         progress.phase("mesh")
-        mesh = _on_rank_0(self.comm, lambda: self._mesh(again))
+        mesh = launch.on_rank_0(self.comm, lambda: self._mesh(again))
         section = self._section()
         progress.phase("compile")
 
@@ -187,8 +181,8 @@ class _Run:
         assembly = assemble(case, mesh, self.comm, make_guide, watch=True)
         recorder, recording = self._recording(assembly, again)
         self.recording = recording
-        if self.folder is not None and assembly.parts.fibers is not None:
-            write_fibers(self.folder, assembly.parts.fibers, assembly.parts.smeared)
+        if self.states is not None and assembly.parts.fibers is not None:
+            write_fibers(self.states, assembly.parts.fibers, assembly.parts.smeared)
         recording.warn(self.remarks, silent=True)
         recording.warn(known)
         if again and not mesh.half and case.mesh.symmetry == "auto" and self.model.half(case)[0]:
@@ -270,11 +264,12 @@ class _Run:
     def _mesh(self, again: bool) -> MeshData:
         folder = self.folder
         if folder is None:
-            return self.model.mesh(self.case, None)
-        if again:
-            mesh = restart.mesh(folder)
-            if mesh is not None:
-                return mesh
+            mesh = self.model.mesh(self.case, None)
+            if self.states is not None:
+                self.states.write(MESH, mesh.save)
+            return mesh
+        if again and (kept := restart.mesh(folder)) is not None:
+            return kept
         with tempfile.TemporaryDirectory() as scratch:
             # where a mesher whose run is killed may go on
             own = Path(scratch) / GMSH_FILE
@@ -290,7 +285,9 @@ class _Run:
         if not (self.model.ends and section_guides(self.case)):
             return None
         self.progress.phase("section")
-        states: SectionStates | None = _on_rank_0(self.comm, lambda: section_states(self.case))
+        states: SectionStates | None = launch.on_rank_0(
+            self.comm, lambda: section_states(self.case)
+        )
         return states
 
     def _recording(self, assembly: Assembly, again: bool) -> tuple[Recorder, Recording]:
@@ -312,6 +309,7 @@ class _Run:
             self.folder,
             self.progress,
             self.model,
+            self.states if self.folder is None or shows_states(self.case.output) else None,
             () if saved is None else saved.snapshots,
         )
         if again:
@@ -351,7 +349,7 @@ class _Run:
             assert model is not None
             return _Run(beside, model, None, Progress(quiet=True), MPI.COMM_SELF).go(False)
 
-        check: Check = _on_rank_0(
+        check: Check = launch.on_rank_0(
             self.comm,
             lambda: check_run(self.case, self.model, rows, solve, known),
         )

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaH
 from pydantic_core import PydanticCustomError, core_schema
 
 from fiberbend.schema.slips import DIMENSION, LENGTH, LIMITS, Limits
-from fiberbend.schema.units import KINDS, parse, show
+from fiberbend.schema.units import KINDS, factor, parse, show
 
 Sign = Literal["above zero", "zero or above", "other than zero", "any"]
 
@@ -83,6 +83,30 @@ class Quantity:
             if refusal is not None:
                 raise PydanticCustomError("quantity", "{message}", {"message": refusal})
         return value
+
+
+@dataclasses.dataclass(frozen=True)
+class UnitName:
+    """Annotation of a text that names a unit.
+
+    Attributes:
+        kind: a key of `fiberbend.schema.units.KINDS`.
+    """
+
+    kind: str
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        """The text as it is, where it is a unit of the kind."""
+        return core_schema.no_info_after_validator_function(self._read, handler(source))
+
+    def _read(self, text: str) -> str:
+        try:
+            factor(text, self.kind)
+        except ValueError as error:
+            raise PydanticCustomError("unit", "{message}", {"message": str(error)}) from None
+        return text
 
 
 Length = Annotated[float, Quantity("length")]

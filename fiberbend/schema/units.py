@@ -142,6 +142,23 @@ def parse(text: Any, kind: str) -> float:
     return value
 
 
+def factor(unit: str, kind: str) -> float:
+    """What one of a unit is in the internal unit of a kind.
+
+    Args:
+        unit: such as "psi".
+        kind: a key of `KINDS`.
+
+    Raises:
+        ValueError: no unit of that kind.
+    """
+    what = KINDS[kind]
+    try:
+        return parse(f"1 {unit}", kind)
+    except ValueError:
+        raise ValueError(f"expected a unit of {what.name} such as {what.shown}") from None
+
+
 def show(value: float, kind: str) -> str:
     """Write a value so that `parse` returns exactly it, in the usual unit if that is possible."""
     what = KINDS[kind]

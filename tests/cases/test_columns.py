@@ -3,13 +3,26 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from pathlib import Path
 
 import pytest
 
 from bench import columns as pages
 from fiberbend import columns
-from fiberbend.columns import BODY, COLUMNS, RUN, UNIFORM, Column, check, column
+from fiberbend.columns import (
+    BODY,
+    COLUMNS,
+    RUN,
+    UNIFORM,
+    Column,
+    check,
+    column,
+    energy_columns,
+    is_column,
+    load_columns,
+    present_name,
+)
 from fiberbend.models.choice import MODELS
 from fiberbend.models.model import ModelKind
 from fiberbend.results.folder import RunFolder
@@ -31,12 +44,59 @@ def test_every_column_is_said_once_and_in_full() -> None:
     assert all(known.meaning and not known.meaning.endswith(".") for known in COLUMNS)
     # no row's key is another column's too
     for name in names:
-        assert [known.name for known in COLUMNS if known.names(name)] == [name]
+        key = re.sub(r"[{}]", "", name)
+        assert [known.name for known in COLUMNS if known.names(key)] == [name]
+
+
+def test_names_have_one_style() -> None:
+    """Lower case and underscores, then the unit as it is written."""
+    units = {"°": "deg", "mm²": "mm2", "mm³": "mm3", "N mm": "Nmm"}
+    for known in COLUMNS:
+        name = known.name.replace("min_det_F", "min_det_f")
+        unit = units.get(known.unit, known.unit)
+        assert name.endswith(f"_{unit}" if unit and name != "chamber_mm3" else unit), name
+        stem = name.removesuffix(unit) if unit else name
+        assert re.fullmatch(r"[a-z0-9_{}]+", stem), name
+
+
+def test_energies_have_names_of_their_own() -> None:
+    keys = ["ChamberPressure", "Contact[left-post]", "Contact[left_post]", "Elastic[neo-hookean]"]
+    assert list(energy_columns(keys).values()) == [
+        "energy_chamber_pressure_mJ",
+        "energy_contact_left_post_mJ",
+        "energy_contact_left_post_2_mJ",
+        "energy_elastic_neo_hookean_mJ",
+    ]
+    assert all(is_column(name) for name in energy_columns(keys).values())
+    assert not is_column("energy_left-post_mJ")
+
+
+def test_loads_have_their_units() -> None:
+    assert load_columns("gravity", "", "mJ") == ("load_gravity", "conjugate_gravity_mJ")
+    assert load_columns("tip-load", "N", "mm") == ("load_tip_load_N", "conjugate_tip_load_mm")
+    assert all(map(is_column, load_columns("tip-load", "N", "mm")))
+
+
+@pytest.mark.parametrize(
+    ("old", "now"),
+    [
+        ("angle_deg", "angle_deg"),
+        ("load pressure", None),
+        ("conjugate pressure", None),
+        ("load gravity", "load_gravity"),
+        ("conjugate gravity", "conjugate_gravity_mJ"),
+        ("energy SmearedWinding mJ", "energy_smeared_winding_mJ"),
+        ("energy Elastic[yeoh] mJ", "energy_elastic_yeoh_mJ"),
+    ],
+)
+def test_columns_of_older_runs_have_their_present_names(old: str, now: str | None) -> None:
+    assert present_name(old) == now
+    assert now is None or present_name(now) == now
 
 
 def test_a_part_in_braces_stands_for_a_name() -> None:
     assert column("contact_roof_area_mm2").unit == "mm²"
-    assert column("energy Elastic[yeoh] mJ").name == "energy {effect} mJ"
+    assert column("energy_elastic_yeoh_mJ").name == "energy_{effect}_mJ"
 
 
 @pytest.mark.parametrize(

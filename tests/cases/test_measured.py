@@ -25,7 +25,7 @@ ANGLES = "trial,pressure_kPa,angle_deg\n1,45,90\n1,91,180\n"
 FORCES = "pressure_kPa,tip_force_N\n50,1.8\n100,3.6\n"
 
 
-def case_file(folder: Path, source: Path, measured: str) -> Path:
+def case_file(folder: Path, source: Path, measured: Any) -> Path:
     """An example case that names a measurement."""
     data: dict[str, Any] = yaml.safe_load(source.read_text(encoding="utf-8"))
     data["output"]["measured"] = measured
@@ -87,17 +87,35 @@ def test_setting_on_the_command_line_is_relative_to_the_working_folder(
     (tmp_path / "angles.csv").write_text(ANGLES, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     case = read_case(FREE, ["output.measured=angles.csv"])
-    assert case.output.measured == str(tmp_path / "angles.csv")
+    assert case.output.measured is not None
+    assert case.output.measured.file == str(tmp_path / "angles.csv")
+    assert case.resolved()["output"]["measured"] == str(tmp_path / "angles.csv")
 
 
 @pytest.mark.parametrize(
     ("content", "message"),
     [
         (None, "no such file, expected a CSV file with columns pressure_kPa and angle_deg"),
-        ("", "no column pressure_kPa or angle_deg, expected columns pressure_kPa and angle_deg"),
-        (FORCES, "points.csv: no column angle_deg, expected"),
+        ("", "points.csv: no rows, expected a line of names and lines of numbers"),
+        (
+            FORCES,
+            "points.csv: no column angle_deg, found columns 'pressure_kPa', 'tip_force_N' between "
+            "commas, expected angle_deg, a name such as 'theta [deg]', or the column's name as "
+            "angle in output.measured",
+        ),
         ("pressure_kPa,angle_deg\n", "points.csv: no rows, expected"),
-        ("pressure_kPa,angle_deg\n45,90\n91,far\n", "line 3: angle_deg expected, not 'far'"),
+        (
+            "pressure_kPa,angle_deg\n45,90\n91,far\n",
+            "points.csv, line 3: 'angle_deg' is 'far', expected a number",
+        ),
+        ("P;theta [deg]\n45;90\n", "column 'P' has no unit, expected a name such as 'P [kPa]'"),
+        ("P [kPa];theta\n45;90\n", "column 'theta' has no unit, expected a name such as"),
+        ("P [psig];theta [deg]\n4;90\n", "column 'P [psig]' in 'psig', expected a unit of press"),
+        ("P [mm];theta [deg]\n4;90\n", "column 'P [mm]' in 'mm', expected a unit of pressure"),
+        ("P [kPa];theta [%]\n4;90\n", "column 'theta [%]' in '%', expected a unit of angle"),
+        ("pressure_max;angle_deg\n4;9\n", "no column pressure_kPa, found columns 'pressure_max'"),
+        ("P [kPa];pressure (psi);theta [deg]\n4;4;9\n", "'P [kPa]' and 'pressure (psi)', expecte"),
+        ("P [kPa];theta [deg]\n101,325;90\n", "'101,325' is 101.325 or 101325, expected a point"),
         ("\x00\x01", "expected columns pressure_kPa and angle_deg"),
     ],
 )
@@ -127,4 +145,92 @@ def test_path_must_be_text(tmp_path: Path) -> None:
     data = yaml.safe_load(path.read_text(encoding="utf-8"))
     data["output"]["measured"] = 3
     path.write_text(yaml.safe_dump(data), encoding="utf-8")
-    assert complaint(path).startswith("output.measured: 3, expected text (line ")
+    assert complaint(path).startswith(
+        "output.measured: 3, expected the name of a file, or a mapping (line "
+    )
+
+
+PSI = 6.894757293168361e-3
+"""MPa."""
+
+
+@pytest.mark.parametrize(
+    ("head", "rows", "pressure", "angle"),
+    [
+        ("P [kPa];theta [deg]", "45;90", 0.045, math.pi / 2),
+        ("pressure (psi);theta (deg)", "6,5;90", 6.5 * PSI, math.pi / 2),
+        ("Pressure [bar],Angle [rad]", "0.45,1.5", 0.045, 1.5),
+        ("p / kPa\tθ / °", "45,5\t90", 0.0455, math.pi / 2),
+        ("pressure_psi angle_rad", "6.5 1.5", 6.5 * PSI, 1.5),
+        ("pressure in mmHg;bending angle in deg", "300;90", 300 * 133.322387415e-6, math.pi / 2),
+        # this program's own names come first
+        ("pressure_kPa,pressure_psi,angle_deg,angle_rad", "45,1,90,1", 0.045, math.pi / 2),
+    ],
+)
+def test_units_in_the_names(
+    head: str, rows: str, pressure: float, angle: float, tmp_path: Path
+) -> None:
+    (tmp_path / "points.csv").write_text(f"{head}\n{rows}\n", encoding="utf-8")
+    measured = measured_of(case_file(tmp_path, FREE, "points.csv"))
+    assert measured.pressure == pytest.approx([pressure], rel=1e-9)
+    assert measured.value == pytest.approx([angle], rel=1e-12)
+
+
+def test_columns_and_units_that_a_case_names(tmp_path: Path) -> None:
+    text = "t;supply [psi];P [psi];camera;load\n0;30;6,5;1,5;250\n1;30;7;1,75;300\n"
+    (tmp_path / "points.csv").write_text(text, encoding="utf-8")
+    spec = {"file": "points.csv", "pressure": "P [psi]", "angle": "camera", "angle_unit": "rad"}
+    path = case_file(tmp_path, FREE, spec)
+    measured = measured_of(path)
+    assert measured.pressure == pytest.approx([6.5 * PSI, 7 * PSI])
+    assert measured.value == pytest.approx([1.5, 1.75])
+    assert measured.units == ("psi", "rad")
+    # a name without its unit will do, and the resolved case says the same from anywhere
+    assert measured_of(case_file(tmp_path, FREE, spec | {"pressure": "p"})).units == ("psi", "rad")
+    case = read_case(path)
+    assert parse_case(yaml.safe_load(yaml.safe_dump(case.resolved()))) == case
+    force = {"pressure": "P [psi]", "force": "load", "force_unit": "mN"}
+    blocked = measured_of(case_file(tmp_path, BLOCKED, spec | force))
+    assert blocked.value == pytest.approx([0.25, 0.3])
+
+
+def test_delimiter_and_decimal_that_a_case_names(tmp_path: Path) -> None:
+    (tmp_path / "points.csv").write_text("P [kPa];theta [deg]\n10,325;90\n", encoding="utf-8")
+    path = case_file(
+        tmp_path, FREE, {"file": "points.csv", "decimal": ",", "delimiter": "semicolon"}
+    )
+    assert measured_of(path).pressure == pytest.approx([0.010325])
+
+
+@pytest.mark.parametrize(
+    ("spec", "message"),
+    [
+        ({"pressure": "Q"}, "no column 'Q', found columns 'P', 'P [psi]', 'theta', 'theta [rad]'"),
+        (
+            {"pressure": "P", "angle": "theta"},
+            "column 'P' has no unit, expected a name such as 'P [",
+        ),
+        (
+            {"pressure": "P [psi]", "angle": "theta [rad]", "pressure_unit": "kPa"},
+            "is in psi, pressure_unit says kPa",
+        ),
+        ({"pressure": "theta", "angle": "theta"}, "'theta' given twice, expected two columns"),
+        ({"pressure_unit": "psig"}, 'pressure_unit: "psig", expected a unit of a pressure such as'),
+        ({"pressure_unit": "mm"}, 'pressure_unit: "mm", expected a unit of a pressure such as kPa'),
+        ({"columns": "P"}, "output.measured.columns: "),
+        ({"decimal": "x"}, "output.measured.decimal: "),
+        ({"delimiter": "comma"}, "one column 'P;P [psi];theta;theta [rad]', expected two"),
+    ],
+)
+def test_what_a_case_says_of_a_file_is_checked(
+    spec: dict[str, str], message: str, tmp_path: Path
+) -> None:
+    text = "P;P [psi];theta;theta [rad]\n45;6,5;90;1,5\n"
+    (tmp_path / "points.csv").write_text(text, encoding="utf-8")
+    text = complaint(case_file(tmp_path, FREE, {"file": "points.csv", **spec}))
+    assert text.startswith("output.measured")
+    assert message in text
+
+
+def test_a_file_must_be_named(tmp_path: Path) -> None:
+    assert "output.measured.file: " in complaint(case_file(tmp_path, FREE, {"pressure": "P"}))

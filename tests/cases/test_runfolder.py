@@ -42,15 +42,51 @@ def test_new_folder_has_the_case(folder: RunFolder) -> None:
 
 
 def test_history(folder: RunFolder) -> None:
-    rows: list[dict[str, float | None]] = [{"step": 1, "pressure_kPa": 2.5, "energy wall mJ": 1.0}]
+    rows: list[dict[str, float | None]] = [{"step": 1, "pressure_kPa": 2.5, "energy_wall_mJ": 1.0}]
     folder.write_history(rows)
     rows.append({"step": 2, "angle_deg": None, "fiber_max_N": 3.0, "roof_force_N": 4.0})
     folder.write_history(rows)
     lines = (folder.path / "history.csv").read_text(encoding="utf-8").splitlines()
-    assert lines[0] == ",".join([*HISTORY_COLUMNS, "energy wall mJ", "roof_force_N"])
-    assert lines[2] == "2,,,,,,,,,,3.0,,4.0"
+    assert lines[0] == ",".join([*HISTORY_COLUMNS, "energy_wall_mJ", "roof_force_N"])
+    assert lines[2] == "2,,,,,,,,,,3,,4"
     read = read_history(folder.path / "history.csv")
     assert (read[0]["pressure_kPa"], read[1]["pressure_kPa"]) == (2.5, None)
+
+
+def test_history_has_ten_digits_and_whole_numbers(folder: RunFolder) -> None:
+    folder.write_history([{"step": 3, "pressure_kPa": 100 / 3, "newton_iterations": 7}])
+    row = (folder.path / "history.csv").read_text(encoding="utf-8").splitlines()[1]
+    assert row.startswith("3,33.33333333,,")
+    (read,) = read_history(folder.path / "history.csv")
+    assert (read["step"], read["newton_iterations"]) == (3, 7)
+    assert isinstance(read["step"], int)
+    assert isinstance(read["newton_iterations"], int)
+
+
+def test_history_of_an_older_version(tmp_path: Path) -> None:
+    path = tmp_path / "history.csv"
+    old = "step,pressure_kPa,energy Winding mJ,load pressure,load gravity\n1,20.0,1.5,0.02,1.0\n"
+    path.write_text(old, encoding="utf-8")
+    assert read_history(path) == [
+        {"step": 1, "pressure_kPa": 20.0, "energy_winding_mJ": 1.5, "load_gravity": 1.0}
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("step,colour\n0,1\n", "column 'colour' is not in the table"),
+        ("step,angle_deg\n0,0\n1,ninety\n", "line 3: angle_deg is 'ninety', expected a number"),
+        ("step,angle_deg\n0,0\n1\n", "line 3: not as many cells as the 2 columns"),
+        ("step,angle_deg\n0,0,1\n", "line 2: not as many cells as the 2 columns"),
+    ],
+)
+def test_history_that_cannot_be_read_is_refused(text: str, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "history.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(CaseError) as error:
+        read_history(path)
+    assert message in str(error.value)
 
 
 def test_run_json_always_has_its_keys(folder: RunFolder) -> None:

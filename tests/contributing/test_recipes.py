@@ -149,13 +149,13 @@ assert "a tip load along x pulls to one side" in told(
     for answer in (said, light):
         assert end(answer, "angle_deg") > 0
         way = answer["rows"][0]["tip_y_mm"] - answer["rows"][-1]["tip_y_mm"]
-        assert end(answer, "conjugate tip-load") == pytest.approx(way, rel=1e-3)
+        assert end(answer, "conjugate_tip_load_mm") == pytest.approx(way, rel=1e-3)
         assert end(answer, "unstable_modes") == 0
     # the limit of small forces, and how a large one, which keeps its direction, falls behind it
     bent, stretched = compliance(64.0, 8.0, 3.0, 5.0, 0.3)
-    assert end(light, "conjugate tip-load") == pytest.approx(1e-3 * bent, rel=0.02)
+    assert end(light, "conjugate_tip_load_mm") == pytest.approx(1e-3 * bent, rel=0.02)
     assert end(light, "stored_mJ") == pytest.approx(1e-6 * bent / 2, rel=0.02)
-    ratio = end(said, "conjugate tip-load") / end(light, "conjugate tip-load") / 50
+    ratio = end(said, "conjugate_tip_load_mm") / end(light, "conjugate_tip_load_mm") / 50
     assert 0.9 < ratio < 0.96
     # along the axis: by EA, no bend
     assert end(along, "tip_z_mm") - along["rows"][0]["tip_z_mm"] == pytest.approx(

@@ -41,12 +41,10 @@ def test_twist(tmp_path: Path) -> None:
 
 
 def test_sweep(tmp_path: Path) -> None:
-    rows = sweep.main(tmp_path)
-    assert len(rows) == 9
-    at = {
-        (float(r["radius_mm"]), float(r["wall_mm"])): float(r["pressure_90deg_kPa"]) for r in rows
-    }
+    found = sweep.main(tmp_path)
+    assert len(found) == 9
+    at = found.frame.set_index(["radius_mm", "wall_mm"])["pressure_90deg_kPa"]
     # Table II of Polygerinos et al. 2015: a thicker wall needs more pressure
     for radius in (6, 8, 10):
         assert at[radius, 1.5] < at[radius, 2] < at[radius, 2.5]
-    assert list((tmp_path / "points" / "maps").glob("*.png"))
+    assert list((tmp_path / "maps").glob("*.png"))

@@ -87,3 +87,18 @@ def test_points_that_tell_different_things_tell_nothing() -> None:
     assert unit_remark(FREE, Points("p", np.array([1e5]), np.array([90.0])), False) == ""
     assert unit_remark(FREE[:1], Points("p", KPA[1:] * 1e3, ANGLE[1:]), False) == ""
     assert unit_remark(FREE, Points("p", np.zeros(3), np.zeros(3)), False) == ""
+
+
+def test_another_unit_than_the_file_is_said_to_have() -> None:
+    """Numbers in kPa under a head that says psi are 6.9 times too large once they are read."""
+    psi = 6.894757
+    kpa = np.interp(AT, ANGLE, KPA) * SCATTER
+    for factor, text in ((psi, "like kPa"), (psi / 100, "like bar"), (psi * 10, "like mbar")):
+        points = Points("p", factor * kpa, AT)
+        found = unit_remark(FREE, points, False, ("psi", "deg"))
+        assert found.startswith(f"p: pressures look {text} ")
+        assert found.endswith(" beside the run, expected psi and degrees")
+    assert unit_remark(FREE, Points("p", kpa, AT), False, ("psi", "rad")) == ""
+    degrees_as_radians = Points("p", kpa, np.degrees(AT))
+    found = unit_remark(FREE, degrees_as_radians, False, ("kPa", "rad"))
+    assert found == "p: angles look like degrees beside the run, expected kPa and rad"
