@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.renderer import Drawable, View
+from fiberbend.drawing.panel import Panel
+from fiberbend.drawing.renderer import Drawable, View, frame
 from fiberbend.states.labels import short_number
 from fiberbend.states.obstacles import Shape
 from fiberbend.states.snapshot import Snapshot
@@ -20,11 +21,16 @@ from geometry.mesh.data import Floats
 COLOR = "#d9d9d9"
 _THICK = 0.012
 """Thickness of a plane in a picture, as a part of its own extent."""
-_LINE = 0.0012
-"""Radius of the lines along its edges, likewise."""
+_LINE = 0.001
+"""Radius of the lines along edges, as a part of the body's extent."""
 _SEEN_THROUGH = 0.25
 _TOUCHES = 0.3
 """Distance in mm from the nearest point of the body up to which others count as its touch, too."""
+_MOST = 4000
+"""Points of the body that are asked for their distance from an obstacle."""
+_ROOM = 0.07
+_NO_FORCE = 1e-6
+"""Part of the greatest force in a run that is round-off."""
 _STRAIGHT = 0.05
 """Bending angle in degrees up to which a body is straight for who looks at it."""
 
@@ -41,11 +47,15 @@ class Scenery:
         forces: by the number of a load step, the force of each obstacle on the body, N.
         tip_forces: by the number of a load step, the tip force in N of a body that is kept
             straight; empty for others.
+        lengths: dimensions in mm that a picture at rest states: "chamber", "whole", "height" and
+            "width", and the thickness of each region; what is missing is measured on the mesh or
+            left out.
     """
 
     shapes: Mapping[str, Shape] = dataclasses.field(default_factory=dict)
     forces: Mapping[int, Mapping[str, Force]] = dataclasses.field(default_factory=dict)
     tip_forces: Mapping[int, float] = dataclasses.field(default_factory=dict)
+    lengths: Mapping[str, float] = dataclasses.field(default_factory=dict)
 
     def caption(self, state: Snapshot) -> str:
         """Pressure and angle of a state; where the body is kept straight its force comes first."""
@@ -72,6 +82,7 @@ class Obstacles:
 
     def __init__(self, scenery: Scenery, around: Floats) -> None:
         self.scenery = scenery
+        self._line = _LINE * float(np.linalg.norm(np.ptp(around, axis=0)))
         self.solids = {
             name: _solid(shape.surface(around)) for name, shape in scenery.shapes.items()
         }
@@ -83,8 +94,20 @@ class Obstacles:
             [np.zeros((0, 3)), *(np.asarray(solid.points) for solid in self.solids.values())]
         )
 
+    def frame(self, body: Floats, toward: tuple[float, float, float], aspect: float) -> View:
+        """The least view of the body and all obstacles, with room for what is written beside them.
+
+        Args:
+            body: its points in the states that are shown, (n, 3), mm.
+            toward: direction to the viewer.
+            aspect: width over height of the picture.
+        """
+        if not self.solids:
+            return frame(body, toward, aspect)
+        return frame(np.concatenate([body, self.points]), toward, aspect, _ROOM)
+
     def behind(self, view: View) -> list[Drawable]:
-        """Obstacles that never hide or tint the body: moved away from the viewer, along the view."""
+        """Obstacles that never hide or tint the body: moved away from the viewer."""
         away = -view.axes[2] * 4 * view.width
         return [
             Drawable(solid.translate(away), color=COLOR, flat=True)
@@ -95,12 +118,11 @@ class Obstacles:
         """Obstacles where they are, with their edges, through which the body is seen."""
         layers = []
         for solid in self.solids.values():
-            size = float(np.linalg.norm(np.ptp(solid.points, axis=0)))
             edges = solid.extract_feature_edges(
                 feature_angle=30, boundary_edges=True, manifold_edges=False
             )
-            layers.append(Drawable(solid, color=COLOR, opacity=_SEEN_THROUGH, flat=True))
-            layers.append(Drawable(edges, color="#707070", radius=_LINE * size, flat=True))
+            layers.append(Drawable(solid, color=COLOR, opacity=_SEEN_THROUGH))
+            layers.append(Drawable(edges, color="#707070", radius=self._line, flat=True))
         return layers
 
     def touch(self, name: str, body: Floats) -> Floats:
@@ -112,28 +134,41 @@ class Obstacles:
         """
         import pyvista as pv
 
-        solid = self.solids[name]
+        solid, body = self.solids[name], body[:: max(1, len(body) // _MOST)]
         cloud = pv.PolyData(np.asarray(body, dtype=float))
         distance = np.asarray(cloud.compute_implicit_distance(solid)["implicit_distance"])
         near = distance <= distance.min() + _TOUCHES
-        middle: Floats = np.asarray(body)[near].mean(axis=0)
+        middle: Floats = body[near].mean(axis=0)
         return middle
 
 
-def labels(scenery: Scenery, step: int | None) -> dict[str, str]:
-    """What is written beside each obstacle: its name, and its force in a state.
+def write_forces(
+    panel: Panel,
+    obstacles: Obstacles,
+    body: Floats,
+    state: Snapshot | None = None,
+    fontsize: float = 11,
+) -> None:
+    """Name each obstacle beside it, with its force on the body and an arrow where that is known.
 
     Args:
-        scenery: names and forces.
-        step: number of the load step; None: the name only.
+        panel: where.
+        obstacles: of the run.
+        body: points of the body in the state, (n, 3), mm.
+        state: the state; None: names only.
+        fontsize: in points.
     """
-    forces = {} if step is None else scenery.forces.get(step, {})
-    texts = {}
-    for name in scenery.shapes:
-        texts[name] = name
-        if name in forces:
-            texts[name] += f" {short_number(float(np.linalg.norm(forces[name])))} N"
-    return texts
+    scenery = obstacles.scenery
+    forces = {} if state is None else scenery.forces.get(state.step, {})
+    greatest = scenery.greatest()
+    for name, solid in obstacles.solids.items():
+        force = np.array(forces.get(name, (0.0, 0.0, 0.0)))
+        size = float(np.linalg.norm(force))
+        text = f"{name} {short_number(size)} N" if name in forces else name
+        if size > _NO_FORCE * greatest:
+            panel.force(text, obstacles.touch(name, body), force, greatest, fontsize)
+        else:
+            panel.name(text, np.asarray(solid.center), fontsize)
 
 
 def _solid(surface: Any) -> Any:
@@ -144,5 +179,4 @@ def _solid(surface: Any) -> Any:
         return surface.triangulate()
     normal = np.asarray(surface.face_normals)[0]
     down = -normal * _THICK * float(np.linalg.norm(np.ptp(points, axis=0)))
-    del axes
     return surface.extrude(down, capping=True).triangulate()

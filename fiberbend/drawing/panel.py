@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fiberbend.drawing.page import Image, nice_above
-from fiberbend.drawing.renderer import View
+from fiberbend.drawing.renderer import Image, View
 from geometry.mesh.data import Floats
 
 STRIP = 62
@@ -20,6 +18,7 @@ _AWAY = 0.16
 """Length of an axis in the picture, of 1, under which it points to the viewer or away from him."""
 _INK = "#222222"
 _FORCE = "#b01818"
+_TRIED = 4000
 _ARROW = 0.09
 """Length of the greatest force's arrow, as a part of the image's width."""
 
@@ -57,12 +56,18 @@ class Panel:
         shown = self.image.shape
         return float(min(box.width * width / shown[1], box.height * height / shown[0]))
 
-    def scale(self, left: float, bottom: float) -> None:
-        """The axes x, y and z as the viewer sees them, and beside them a bar of a round length.
+    @property
+    def per_mm(self) -> float:
+        """Pixels of the page per mm."""
+        return self.zoom * self.size[0] / self.view.width
+
+    def scale(self, left: float, bottom: float, length: float) -> None:
+        """The axes x, y and z as the viewer sees them, and beside them a bar of some length.
 
         Args:
             left: of the drawing, pixels of the page.
             bottom: of it; it is `STRIP` high.
+            length: of the bar, mm.
         """
         width, height = self.figure.get_size_inches() * self.figure.dpi
         axes = self.figure.add_axes((0, 0, 1, 1))
@@ -75,13 +80,27 @@ class Panel:
         for name, end, depth in zip("xyz", ends, toward, strict=True):
             _axis(axes, name, origin, end, depth > 0)
         start = left + 28 + np.ptp(np.r_[ends[:, 0], 0.0]) + 26
-        per_mm = self.zoom * self.size[0] / self.view.width
-        length = nice_above(70 / per_mm)
         line = bottom + 26
-        bar = [start, start + length * per_mm]
+        bar = [start, start + length * self.per_mm]
         axes.plot(bar, [line, line], color="black", linewidth=3, solid_capstyle="butt")
         axes.text(
             sum(bar) / 2, line - 8, f"{length:g} mm", ha="center", va="top", fontsize=11, color=_INK
+        )
+
+    def length(self, text: str, ends: Floats, fontsize: float = 11) -> None:
+        """A dimension: a line with two arrow heads and a text in its middle.
+
+        Args:
+            text: one line.
+            ends: (2, 3), mm.
+            fontsize: in points.
+        """
+        start, end = self.at(ends)
+        style = {"arrowstyle": "<|-|>", "color": "0.3", "shrinkA": 0, "shrinkB": 0, "lw": 0.9}
+        self.axes.annotate("", tuple(start), tuple(end), arrowprops=style, annotation_clip=False)
+        box = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}
+        self.axes.text(
+            *(start + end) / 2, text, ha="center", va="center", fontsize=fontsize, bbox=box
         )
 
     def name(self, text: str, point: Floats, fontsize: float = 11, color: str = _INK) -> None:
@@ -103,45 +122,46 @@ class Panel:
         greatest: float,
         fontsize: float = 11,
     ) -> None:
-        """An arrow that ends where a force acts on the body, and its text at the other end.
+        """An arrow that ends where a force acts on the body, and its text beyond the other end.
 
         Args:
             text: one line.
             point: where it acts, (3,), mm.
             force: (3,), N.
-            greatest: the force in N whose arrow has the full length.
+            greatest: the force in N whose arrow has the full length, above zero.
             fontsize: in points.
         """
         right, up, _ = self.view.axes
         flat = np.array([force @ right, -(force @ up)])
         size = float(np.linalg.norm(flat))
+        along = flat / size if size else np.zeros(2)
         head = self.at(point[None])[0]
-        if size <= 1e-6 * greatest or not greatest:
-            self._write(text, head, fontsize, _INK)
-            return
-        length = _ARROW * self.size[0] * (0.35 + 0.65 * size / greatest)
-        tail = head - flat / size * length
+        tail = head - _ARROW * self.size[0] * (0.35 + 0.65 * size / greatest) * along
         style = {"arrowstyle": "-|>", "color": _FORCE, "shrinkA": 0, "shrinkB": 0, "lw": 1.8}
         self.axes.annotate("", tuple(head), tuple(tail), arrowprops=style, annotation_clip=False)
-        self._write(text, tail, fontsize, _FORCE)
+        # far enough from its end for the text's own size
+        room = np.abs(along) @ (np.array(self._extent(text, fontsize)) / 2 + 2)
+        self._write(text, tail - room * along, fontsize, _FORCE)
+
+    def _extent(self, text: str, fontsize: float) -> tuple[float, float]:
+        """Width and height of a text in pixels of the image."""
+        pixel = fontsize * self.figure.dpi / 72 / self.zoom
+        return (0.62 * len(text) + 0.4) * pixel, 1.4 * pixel
 
     def _write(self, text: str, near: Floats, fontsize: float, color: str) -> None:
         """A text at the nearest place where no body is drawn, with a line to its point if far."""
-        zoom = self.zoom
-        wide = (0.62 * fontsize * len(text) * self.figure.dpi / 72 + 6) / zoom
-        tall = (1.5 * fontsize * self.figure.dpi / 72) / zoom
+        wide, tall = self._extent(text, fontsize)
         place = free_place(_body(self.image), near, (wide, tall))
+        apart = np.abs(place - near) - [wide / 2, tall / 2]
+        if apart.max() > tall / 2:
+            ends = zip(near, place - np.sign(place - near) * [0, tall / 2], strict=True)
+            self.axes.plot(*ends, color=color, linewidth=0.6)
         style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": fontsize}
-        if np.linalg.norm(place - near) > 1.2 * max(wide / 2, tall):
-            gap = np.abs(place - near) - [wide / 2, tall / 2]
-            if gap.max() > 0:
-                self.axes.plot(*zip(near, place, strict=True), color="0.6", linewidth=0.7, zorder=1)
-                style["backgroundcolor"] = "white"
-        self.axes.text(*place, text, color=color, zorder=4, **style)
+        self.axes.text(*place, text, color=color, **style)
 
 
 def free_place(taken: NDArray[np.bool_], near: Floats, size: tuple[float, float]) -> Floats:
-    """Middle of the nearest box in an image that covers nothing.
+    """Middle of the nearest box in an image that covers nothing, and is not beyond the body.
 
     Args:
         taken: pixels that must not be covered, (height, width).
@@ -156,56 +176,34 @@ def free_place(taken: NDArray[np.bool_], near: Floats, size: tuple[float, float]
     low, high = half, np.array([columns, rows]) - half
     if (low > high).any():
         return near
+    step = max(4.0, min(size) / 3)
+    grid = np.meshgrid(np.arange(low[0], high[0], step), np.arange(low[1], high[1], step))
+    places = np.concatenate([np.clip(near, low, high)[None], np.stack(grid, -1).reshape(-1, 2)])
     sums = np.zeros((rows + 1, columns + 1), dtype=np.int64)
     sums[1:, 1:] = taken.cumsum(axis=0).cumsum(axis=1)
-    step = max(4.0, min(size) / 3)
-    x = np.arange(low[0], high[0] + 1, step)
-    y = np.arange(low[1], high[1] + 1, step)
-    places = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-    corner = np.floor(places - half).astype(int).clip(0)
-    end = np.ceil(places + half).astype(int).clip(None, [columns, rows])
-    covered = (
-        sums[end[:, 1], end[:, 0]]
-        - sums[corner[:, 1], end[:, 0]]
-        - sums[end[:, 1], corner[:, 0]]
-        + sums[corner[:, 1], corner[:, 0]]
-    )
+    left, top = np.floor(places - half).astype(int).clip(0).T
+    right, below = np.ceil(places + half).astype(int).clip(None, [columns, rows]).T
+    covered = sums[below, right] - sums[top, right] - sums[below, left] + sums[top, left]
     free = places[covered == 0]
     if not len(free):
-        return np.clip(near, low, high)
-    # a little more willing to go up or down than aside, as texts are wide
-    distance = np.linalg.norm((free - near) / [1.0, 1.0], axis=1)
-    best: Floats = free[distance.argmin()]
+        return places[0]
+    free = free[np.argsort(np.linalg.norm(free - near, axis=1), kind="stable")[:_TRIED]]
+    # a line from the point to its text that crosses the body would be taken for a part of it
+    share = np.linspace(0.0, 1.0, 24)[:, None, None]
+    x, y = np.moveaxis((near + share * (free - near)).astype(int), -1, 0)
+    crossed = taken[y.clip(0, rows - 1), x.clip(0, columns - 1)].sum(axis=0)
+    best: Floats = free[np.argmin(crossed * max(columns, rows) + np.arange(len(free)))]
     return best
 
 
-def write_obstacles(
-    panel: Panel,
-    texts: Mapping[str, str],
-    places: Mapping[str, Floats],
-    forces: Mapping[str, tuple[float, float, float]],
-    greatest: float,
-    fontsize: float = 11,
-) -> None:
-    """Names of obstacles and their forces on the body.
-
-    Args:
-        panel: where.
-        texts: beside each obstacle.
-        places: where the body touches each, or is nearest to it, mm.
-        forces: of those that are known, N.
-        greatest: the force in N whose arrow has the full length.
-        fontsize: in points.
-    """
-    for name, text in texts.items():
-        force = np.array(forces.get(name, (0.0, 0.0, 0.0)))
-        panel.force(text, places[name], force, greatest, fontsize)
-
-
 def _body(image: Image) -> NDArray[np.bool_]:
-    """Pixels that show more than white or an obstacle's grey."""
-    spread = np.ptp(image.astype(np.int16), axis=2)
+    """Pixels that show more than white, an obstacle's grey, or a line."""
+    spread = image.max(axis=2) - image.min(axis=2)
     body: NDArray[np.bool_] = (image.min(axis=2) < 200) | (spread > 8)
+    for joined in (np.logical_and, np.logical_or):
+        # what is thinner than three pixels goes first
+        middle = joined(joined(body[1:-1], body[:-2]), body[2:])
+        body[1:-1, 1:-1] = joined(joined(middle[:, 1:-1], middle[:, :-2]), middle[:, 2:])
     return body
 
 

@@ -19,8 +19,8 @@ _FAR = 1000.0
 """Distance of the camera from the middle of its view, mm, beside twice the width of that."""
 _EDGE, _EDGE_GREY = 0.75, 40
 """How much of the grey of a line covers what is under it, and that grey."""
-_CREASE = 1.2
-"""Change of slope across a pixel that is drawn as a line."""
+_CREASE, _STEP = 1.2, 4.0
+"""Change of slope across a pixel that is drawn as a line, and how many of them are a step."""
 
 FROM_THE_SIDE = (-1.0, 0.0, 0.0)
 """Where the viewer stands: z points to the right, y up."""
@@ -101,28 +101,10 @@ def frame(
 
 
 class Renderer:
-    """An off-screen window that is used again for every picture.
-
-    Raises:
-        PictureError: pyvista cannot be imported.
-    """
+    """An off-screen window that is opened for the first picture and used again for others."""
 
     def __init__(self) -> None:
-        try:
-            import pyvista as pv
-            from vtkmodules.vtkCommonCore import vtkLogger
-        except ImportError as error:
-            raise PictureError(f"pictures need pyvista and OpenGL: {error}") from error
-        # VTK tries a display first and complains before it draws without one.
-        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
-        self._plotter = pv.Plotter(
-            off_screen=True, window_size=(400, 300), lighting="none", theme=pv.themes.DocumentTheme()
-        )
-        self._plotter.enable_anti_aliasing("msaa", multi_samples=4)
-        for position, strength in (((-0.5, 0.8, 0.9), 0.75), ((0.3, -0.2, 1.0), 0.35)):
-            self._plotter.add_light(
-                pv.Light(position=position, intensity=strength, light_type="camera light")
-            )
+        self._window: Any = None
 
     def __enter__(self) -> Renderer:
         return self
@@ -151,6 +133,9 @@ class Renderer:
 
         Returns:
             Pixels (height, width, 3).
+
+        Raises:
+            PictureError: pyvista cannot be imported.
         """
         plotter = self._plotter
         plotter.clear_actors()
@@ -188,7 +173,14 @@ class Renderer:
 
     def close(self) -> None:
         """Release the window."""
-        self._plotter.close()
+        if self._window is not None:
+            self._window.close()
+
+    @property
+    def _plotter(self) -> Any:
+        if self._window is None:
+            self._window = _window()
+        return self._window
 
     def _look(self, view: View, size: tuple[int, int]) -> None:
         _, up, toward = view.axes
@@ -214,6 +206,26 @@ class Renderer:
         return depth
 
 
+def _window() -> Any:
+    """An empty pyvista.Plotter with two lights that go with the camera."""
+    try:
+        import pyvista as pv
+        from vtkmodules.vtkCommonCore import vtkLogger
+    except ImportError as error:
+        raise PictureError(f"pictures need pyvista and OpenGL: {error}") from error
+    # VTK tries a display first and complains before it draws without one.
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
+    plotter = pv.Plotter(
+        off_screen=True, window_size=(400, 300), lighting="none", theme=pv.themes.DocumentTheme()
+    )
+    plotter.enable_anti_aliasing("msaa", multi_samples=4)
+    for position, strength in (((-0.5, 0.8, 0.9), 0.75), ((0.3, -0.2, 1.0), 0.35)):
+        plotter.add_light(
+            pv.Light(position=position, intensity=strength, light_type="camera light")
+        )
+    return plotter
+
+
 def _edges(depth: Floats, pixel: float) -> NDArray[np.bool_]:
     """Pixels at which a surface ends before what is behind it, or turns away from the viewer.
 
@@ -228,7 +240,9 @@ def _edges(depth: Floats, pixel: float) -> NDArray[np.bool_]:
         (depth[:-2, 1:-1], depth[2:, 1:-1]),
         (depth[1:-1, :-2], depth[1:-1, 2:]),
     ):
-        edges[1:-1, 1:-1] |= one + other - 2 * inner > least
+        bend = one + other - 2 * inner
+        # a corner that is seen from within is no step: the step's far side has no line
+        edges[1:-1, 1:-1] |= (bend > least) | ((bend < -least) & (bend > -_STEP * least))
     return edges
 
 

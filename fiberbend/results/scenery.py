@@ -9,6 +9,7 @@ from fiberbend import columns as col
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.drawing.obstacles import Scenery
+from fiberbend.states.obstacles import Shape
 
 
 def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
@@ -19,7 +20,8 @@ def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
         rows: of its history; none for a case that has not been run.
     """
     actuator = convert.dimensions(case.actuator)
-    shapes, forces, tips = {}, {}, {}
+    shapes: dict[str, Shape] = {}
+    forces, tips = {}, {}
     for effect in case.effects:
         shapes.update(effect.obstacle_shapes(actuator))
     for row in rows:
@@ -31,4 +33,14 @@ def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
         }
         if case.straight and row.get(col.TIP_FORCE) is not None:
             tips[step] = float(row[col.TIP_FORCE])
-    return Scenery(shapes, forces, tips)
+    lengths = {
+        "chamber": actuator.length,
+        "whole": actuator.total_length,
+        "height": actuator.outer_top - actuator.outer_bottom,
+        "width": 2 * actuator.outer_half_width,
+    }
+    for region in convert.site(case).materials:
+        thickness = getattr(actuator, region, None)
+        if thickness is not None:
+            lengths[region] = thickness
+    return Scenery(shapes, forces, tips, lengths)
