@@ -28,7 +28,7 @@ _TOUCHES = 0.3
 """Distance in mm from the nearest point of the body up to which others count as its touch, too."""
 _MOST = 4000
 """Points of the body that are asked for their distance from an obstacle."""
-_ROOM = 0.07
+_ROOM = 0.085
 _NO_FORCE = 1e-6
 """Part of the greatest force in a run that is round-off."""
 _STRAIGHT = 0.05

@@ -225,6 +225,8 @@ class Page:
         axes = self._figure.add_axes(box)
         axes.imshow(image[shown])
         axes.set_axis_off()
+        # lines that are drawn on it later leave it as it is
+        axes.autoscale(False)
         corner = (shown[1].start or 0, shown[0].start or 0)
         size = (image.shape[1], image.shape[0])
         self.panels.append(Panel(self._figure, axes, image[shown], view, size, corner))

@@ -19,7 +19,7 @@ _AWAY = 0.16
 _INK = "#222222"
 _FORCE = "#b01818"
 _TRIED = 4000
-_ARROW = 0.09
+_ARROW = 0.06
 """Length of the greatest force's arrow, as a part of the image's width."""
 
 
@@ -191,8 +191,9 @@ def free_place(taken: NDArray[np.bool_], near: Floats, size: tuple[float, float]
     # a line from the point to its text that crosses the body would be taken for a part of it
     share = np.linspace(0.0, 1.0, 24)[:, None, None]
     x, y = np.moveaxis((near + share * (free - near)).astype(int), -1, 0)
-    crossed = taken[y.clip(0, rows - 1), x.clip(0, columns - 1)].sum(axis=0)
-    best: Floats = free[np.argmin(crossed * max(columns, rows) + np.arange(len(free)))]
+    on_it = taken[y.clip(0, rows - 1), x.clip(0, columns - 1)]
+    crosses = (on_it[1:] & ~on_it[:-1]).any(axis=0)
+    best: Floats = free[np.argmin(crosses)]
     return best
 
 

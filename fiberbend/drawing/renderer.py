@@ -92,11 +92,12 @@ def frame(
         points: (n, 3), mm.
         toward: direction to the viewer.
         aspect: width over height of the picture.
-        margin: what is left free on each side, as a part of the view.
+        margin: what is left free on every side, as a part of the view's width.
     """
     axes = _axes(toward)
     low, high = (points @ axes.T).min(axis=0), (points @ axes.T).max(axis=0)
-    width = max(high[0] - low[0], (high[1] - low[1]) * aspect) * (1 + 2 * margin)
+    wide, tall = high[:2] - low[:2]
+    width = max(wide / (1 - 2 * margin), tall * aspect / (1 - 2 * margin * aspect))
     return View(toward, (low + high) / 2 @ axes, float(width))
 
 
@@ -145,6 +146,8 @@ class Renderer:
             data = layer.data
             if layer.radius is not None:
                 data = data.tube(radius=layer.radius, n_sides=8)
+            # colours that are read off a bar must not be shaded
+            unlit = bool(layer.scalars) or layer.flat
             actor = plotter.add_mesh(
                 data,
                 color=None if layer.scalars else layer.color,
@@ -156,11 +159,11 @@ class Renderer:
                 reset_camera=False,
                 render=False,
                 copy_mesh=False,
-                ambient=0.35,
-                diffuse=0.7,
+                # their sum is what VTK multiplies a colour with, also without light
+                ambient=1.0 if unlit else 0.35,
+                diffuse=0.0 if unlit else 0.7,
+                lighting=not unlit,
                 opacity=layer.opacity,
-                # colours that are read off a bar must not be shaded
-                lighting=not (layer.scalars or layer.flat),
             )
             actor.prop.interpolation = "Phong"
         self._look(view, size)

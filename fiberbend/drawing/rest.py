@@ -64,11 +64,11 @@ def rest_image(
     obstacles = Obstacles(scenery or Scenery(), points)
     lengths = _lengths(surfaces, points, {} if scenery is None else scenery.lengths)
     every = np.concatenate([points, obstacles.points, *(ends for _, ends in lengths)])
-    view = frame(every, _FROM, 1e-6, margin=0.0)
+    view = frame(every, _FROM, 1.0, margin=0.0)
     right, up, _ = view.axes
     wide, tall = np.ptp(every @ right), np.ptp(every @ up)
-    shape = min(tall / wide, _TALLEST / WIDTH)
-    view = frame(every, _FROM, 1 / shape, margin=0.05)
+    shape = min(tall / wide + 0.03, _TALLEST / WIDTH)
+    view = frame(every, _FROM, 1 / shape, margin=0.04)
     size = (width, round(width * shape))
     layers = [*_layers(surfaces), *obstacles.seen_through()]
     return Rest(renderer.draw(layers, view, size), view, surfaces.names, lengths)

@@ -64,7 +64,7 @@ def draw_in_space(
     Raises:
         fiberbend.drawing.renderer.PictureError: nothing can be drawn on this machine.
     """
-    _draw_bent(space, snapshots, fields, write, renderer, beside)
+    draw_bent(space, snapshots, fields, write, renderer, beside)
     turns = case.turns
     if turns is not None and space.own.lines is not None:
         from fiberbend.drawing.cell import draw_cell
@@ -73,7 +73,7 @@ def draw_in_space(
         draw_cell(space.own, snapshots, write, actuator, turns.stiffness, renderer, beside)
 
 
-def _draw_bent(
+def draw_bent(
     space: Space,
     snapshots: Sequence[Snapshot],
     fields: Sequence[NodalFields],
@@ -81,6 +81,19 @@ def _draw_bent(
     renderer: Renderer,
     beside: Scenery,
 ) -> None:
+    """Draw bent.png: the length between the caps in space in every state.
+
+    Args:
+        space: the section or cell in space.
+        snapshots: the states, at least one.
+        fields: recovered fields of the states.
+        write: writes a picture.
+        renderer: draws.
+        beside: captions.
+
+    Raises:
+        fiberbend.drawing.renderer.PictureError: nothing can be drawn on this machine.
+    """
     from fiberbend.drawing.page import nice_above
     from fiberbend.drawing.renderer import FROM_THE_SIDE
     from fiberbend.drawing.side_by_side import SideBySide
