@@ -8,6 +8,7 @@ from typing import IO
 
 import numpy as np
 
+from fiberbend.drawing.obstacles import Obstacles, Scenery, write_forces
 from fiberbend.drawing.page import Page, colormap, nice_above
 from fiberbend.drawing.renderer import (
     FROM_THE_SIDE,
@@ -27,13 +28,16 @@ from fiberbend.states.snapshot import (
 )
 from geometry.mesh.data import Floats
 
-SIZE = (1400, 900)
+SIZE = (1400, 960)
 """Width and height of a picture in pixels."""
 
 _BAND = 730
+_BOX = (0.0, 124 / SIZE[1], 1.0, _BAND / SIZE[1])
+_WHOLE = (-1.0, 0.35, -0.25)
 _OBLIQUE = (-0.62, 0.42, -0.66)
+_PIECE = 500
 _PEELED = 0.6
-"""Fraction of the chamber over which the undeformed actuator shows its fibers."""
+"""Fraction of the chamber over which the undeformed actuator shows its winding."""
 
 
 class BodyPictures:
@@ -42,7 +46,9 @@ class BodyPictures:
     Args:
         model_mesh: mesh, materials and fibers.
         snapshots: the states, at least one.
+        renderer: draws.
         fields: their recovered fields, if at hand.
+        scenery: obstacles and captions.
 
     Raises:
         ValueError: no state.
@@ -53,22 +59,28 @@ class BodyPictures:
         self,
         model_mesh: ModelMesh,
         snapshots: Sequence[Snapshot],
+        renderer: Renderer,
         fields: Sequence[NodalFields] | None = None,
+        scenery: Scenery | None = None,
     ) -> None:
         if not snapshots:
             raise ValueError("no state to draw")
         self.model_mesh, self.snapshots = model_mesh, snapshots
+        self._scenery = scenery or Scenery()
         self._surfaces = BodySurfaces(model_mesh)
         mesh = model_mesh.mesh
         self._nodes = split_nodes(mesh)
         fields = fields or [recover(model_mesh, state, self._nodes) for state in snapshots]
         self._strain = [field.log_strain[self._nodes.cells] for field in fields]
-        self._skin = Tessellation(mesh, self._surfaces.outside(self._surfaces.bare))
+        self._skin = Tessellation(mesh, self._surfaces.outside(self._surfaces.bare, chamber=False))
         self._limits = (0.0, nice_above(max(self._peak(strain) for strain in self._strain)))
-        moved = [mesh.nodes + state.displacement for state in snapshots]
-        self._view = frame(np.concatenate(moved), FROM_THE_SIDE, SIZE[0] / _BAND)
+        moved = np.concatenate([self._surfaces.points(state) for state in (None, *snapshots)])
+        self._renderer = renderer
+        self._obstacles = Obstacles(self._scenery, moved)
+        rest = self._surfaces.points(None)
+        states = moved[len(rest) :]
+        self._view = self._obstacles.frame(states, FROM_THE_SIDE, SIZE[0] / _BAND)
         self._images: dict[int, Image] = {}
-        self._renderer = Renderer((SIZE[0], _BAND))
 
     def undeformed(self, target: Target) -> None:
         """The actuator at rest: whole, its sheath partly removed, and a piece cut out of it."""
@@ -76,24 +88,36 @@ class BodyPictures:
         z = surfaces.middle[:, 2]
         length = float(mesh.nodes[mesh.facet_nodes("section_tip"), 2].mean())
         peeled = z > _PEELED * length
-        whole = surfaces.parts(surfaces.bare | peeled) + surfaces.fiber_tubes()
-        high = SIZE[0] / _BAND
-        both = np.concatenate([mesh.nodes, mesh.nodes * [-1, 1, 1]])
-        top = self._renderer.draw(whole, frame(both, (-1.0, 0.35, -0.25), high))
+        rest = surfaces.points(None)
+        view = self._obstacles.frame(rest, _WHOLE, SIZE[0] / _BAND)
+        top = self._renderer.draw(
+            surfaces.parts(surfaces.peeled | peeled)
+            + surfaces.smeared_winding(z < _PEELED * length)
+            + surfaces.fiber_tubes()
+            + self._obstacles.seen_through(),
+            view,
+            (SIZE[0], _BAND),
+        )
         start, end = 0.45 * length, 0.45 * length + 32
         inside = (z > start) & (z < end)
-        shown = inside & (surfaces.bare | (z > start + 20))
+        bare = z < start + 20
         points = mesh.nodes[mesh.cells[inside]].reshape(-1, 3)
         both = np.concatenate([points, points * [-1, 1, 1]])
+        close = frame(both, _OBLIQUE, SIZE[0] / _BAND)
         piece = self._renderer.draw(
-            surfaces.parts(shown, level=6)
+            surfaces.parts(inside & (surfaces.peeled | ~bare), level=6)
+            + surfaces.smeared_winding(inside & bare)
             + surfaces.fiber_tubes(low=start, high=float(points[:, 2].max())),
-            frame(both, _OBLIQUE, high),
+            close,
+            (SIZE[0], _BAND),
         )
-        page = Page(SIZE, f"{self.model_mesh.title}: undeformed")
-        page.image(top, (0.0, 0.66, 1.0, 0.26), crop=True)
-        page.image(piece, (0.12, 0.07, 0.76, 0.58), crop=True)
-        page.legend(self._surfaces.names)
+        page = Page.stacked(
+            SIZE[0],
+            f"{self.model_mesh.title}: undeformed",
+            [(top, view, 560), (piece, close, _PIECE)],
+        )
+        write_forces(page.panels[0], self._obstacles, rest)
+        page.legend(surfaces.names)
         page.save(target)
 
     def cut(self, target: Target, snapshot: Snapshot | None = None) -> None:
@@ -101,14 +125,20 @@ class BodyPictures:
         state = snapshot or self.snapshots[-1]
         surfaces = self._surfaces
         far = surfaces.middle[:, 0] > 0
-        layers = surfaces.parts(far, state, open_at_mirror=True) + surfaces.fiber_tubes(state)
-        moved = self.model_mesh.mesh.nodes + state.displacement
-        view = frame(moved, FROM_THE_SIDE, SIZE[0] / _BAND)
-        image = self._renderer.draw(layers, view)
-        page = Page(SIZE, f"{self.model_mesh.title}: cut at x = 0,  {state.caption}")
-        page.image(image, (0.0, 0.09, 1.0, _BAND / SIZE[1]))
-        page.legend(self._surfaces.names)
-        page.scale_bar(view.width)
+        view = self._obstacles.frame(surfaces.points(state), FROM_THE_SIDE, SIZE[0] / _BAND)
+        layers = surfaces.parts(far, state, open_at_mirror=True)
+        layers += surfaces.fiber_tubes(state) + surfaces.winding_line(state)
+        image = self._renderer.draw(layers + self._obstacles.behind(view), view, (SIZE[0], _BAND))
+        page = Page(
+            SIZE,
+            f"{self.model_mesh.title}: cut at x = 0",
+            self._scenery.caption(state),
+            state.remark,
+        )
+        panel = page.image(image, _BOX, view)
+        write_forces(panel, self._obstacles, surfaces.points(state), state)
+        page.legend(surfaces.names)
+        page.scale(panel)
         page.save(target)
 
     def bent(self, target: Target, number: int) -> None:
@@ -118,23 +148,29 @@ class BodyPictures:
             target: a path, or a file open for writing bytes.
             number: place of the state within `snapshots`.
         """
-        page = Page(SIZE, f"{self.model_mesh.title}:  {self.snapshots[number].caption}")
-        page.image(self._image(number), (0.0, 0.115, 1.0, _BAND / SIZE[1]))
+        state = self.snapshots[number]
+        page = Page(SIZE, self.model_mesh.title, self._scenery.caption(state), state.remark)
+        panel = page.image(self._image(number), _BOX, self._view)
+        write_forces(panel, self._obstacles, self._surfaces.points(state), state)
         page.color_bar(self._limits, self._strain_label())
-        page.scale_bar(self._view.width)
+        page.scale(panel)
         page.save(target)
 
     def montage(self, target: Target) -> None:
         """All states side by side, in one colour range and at one scale."""
-        captions = [state.caption for state in self.snapshots]
-        images = [self._image(i) for i in range(len(captions))]
-        page = Page.of_panels(SIZE[0], self.model_mesh.title, images, captions)
+        states = self.snapshots
+        page = Page.of_panels(
+            SIZE[0],
+            self.model_mesh.title,
+            [self._image(i) for i in range(len(states))],
+            [self._scenery.caption(state) for state in states],
+            [self._view] * len(states),
+            [state.remark for state in states],
+        )
+        for panel, state in zip(page.panels, states, strict=True):
+            write_forces(panel, self._obstacles, self._surfaces.points(state), state, 9)
         page.color_bar(self._limits, self._strain_label())
         page.save(target)
-
-    def close(self) -> None:
-        """Release the window."""
-        self._renderer.close()
 
     # --- what is drawn -----------------------------------------------------------------------
 
@@ -145,7 +181,10 @@ class BodyPictures:
             values = self._skin.interpolate(self._strain[number])
             skin["strain"] = np.resize(values, skin.n_points)
             layers = [Drawable(skin, scalars="strain"), *self._surfaces.fiber_tubes(state)]
-            self._images[number] = self._renderer.draw(layers, self._view, self._limits, colormap())
+            layers += self._obstacles.behind(self._view)
+            self._images[number] = self._renderer.draw(
+                layers, self._view, (SIZE[0], _BAND), self._limits, colormap()
+            )
         return self._images[number]
 
     def _peak(self, strain: Floats) -> float:
@@ -153,15 +192,16 @@ class BodyPictures:
         return float(np.quantile(self._skin.interpolate(strain), 0.998))
 
     def _strain_label(self) -> str:
-        label = "maximum principal logarithmic strain"
-        return label if self._surfaces.bare.all() else f"{label}, sheath not drawn"
+        return "maximum principal logarithmic strain" + self._surfaces.remark
 
 
 def draw_pictures(
     model_mesh: ModelMesh,
     snapshots: Sequence[Snapshot],
     write: Write,
+    renderer: Renderer,
     fields: Sequence[NodalFields] | None = None,
+    scenery: Scenery | None = None,
 ) -> list[str]:
     """Draw undeformed.png, cut.png, bent_LABEL.png of every state, and montage.png of several.
 
@@ -169,7 +209,9 @@ def draw_pictures(
         model_mesh: mesh, materials and fibers.
         snapshots: the states; cut.png shows the last one.
         write: writes a file, such as `RunFolder.write`.
+        renderer: draws.
         fields: recovered fields of the states, if at hand.
+        scenery: obstacles and captions.
 
     Returns:
         The names written.
@@ -178,7 +220,7 @@ def draw_pictures(
         ValueError: no state.
         fiberbend.drawing.renderer.PictureError: nothing can be drawn on this machine.
     """
-    pictures = BodyPictures(model_mesh, snapshots, fields)
+    pictures = BodyPictures(model_mesh, snapshots, renderer, fields, scenery)
     jobs: dict[str, Callable[[IO[bytes]], object]] = {
         "undeformed.png": pictures.undeformed,
         "cut.png": pictures.cut,
@@ -187,9 +229,6 @@ def draw_pictures(
         jobs[f"bent_{state.label}.png"] = functools.partial(pictures.bent, number=number)
     if len(snapshots) > 1:
         jobs["montage.png"] = pictures.montage
-    try:
-        for name, fill in jobs.items():
-            write(name, fill)
-    finally:
-        pictures.close()
+    for name, fill in jobs.items():
+        write(name, fill)
     return list(jobs)

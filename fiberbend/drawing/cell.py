@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.page import figure, literal, nice_above, save
+from fiberbend.drawing.obstacles import Scenery
+from fiberbend.drawing.page import figure, literal, nice_above, save, wrap
+from fiberbend.drawing.renderer import Renderer
 from fiberbend.drawing.side_by_side import SideBySide
 from fiberbend.states.bend import in_frame
 from fiberbend.states.snapshot import (
@@ -35,19 +37,28 @@ class Slices:
     Args:
         model_mesh: of the cell, with fibers that form lines.
         snapshots: the states, at least one.
+        renderer: draws.
+        scenery: captions.
 
     Raises:
         ValueError: no state.
     """
 
-    def __init__(self, model_mesh: ModelMesh, snapshots: Sequence[Snapshot]) -> None:
+    def __init__(
+        self,
+        model_mesh: ModelMesh,
+        snapshots: Sequence[Snapshot],
+        renderer: Renderer,
+        scenery: Scenery | None = None,
+    ) -> None:
         if not snapshots:
             raise ValueError("no state to draw")
         self._cell, self._snapshots = model_mesh, snapshots
+        self._scenery = scenery or Scenery()
         self._section = len(root_section(model_mesh.mesh).nodes)
         self._stack: Stack = repeated(model_mesh, (2 if model_mesh.mesh.half else 1) * _PITCHES)
         moved = [self._stack.snapshot(model_mesh, state) for state in snapshots]
-        self._side_by_side = SideBySide(self._stack.model_mesh, moved, level=6)
+        self._side_by_side = SideBySide(self._stack.model_mesh, moved, 5, renderer, True)
 
     def bulge(self, target: Target) -> None:
         """Every state in space, coloured by how far its surface lies outside its own mean.
@@ -60,7 +71,8 @@ class Slices:
         values = [self._outward(state) for state in self._snapshots]
         high = nice_above(max(float(np.quantile(np.abs(v), 0.995)) for v in values))
         captions = [
-            f"{state.caption}\nbulge at the crown {float(np.ptp(self.crown(state)[1])):.2f} mm"
+            f"{self._scenery.caption(state)}\n"
+            f"bulge at the crown {float(np.ptp(self.crown(state)[1])):.2f} mm"
             for state in self._snapshots
         ]
         page = self._side_by_side.page(
@@ -70,7 +82,7 @@ class Slices:
             limits=(-high, high),
             label="surface outside its mean along the axis (mm); true to scale",
             toward=_VIEW,
-            colors="RdBu_r",
+            colors="coolwarm",
         )
         page.save(target)
 
@@ -108,6 +120,7 @@ def plot_tension(
     target: Target,
     actuator: Actuator,
     stiffness: float,
+    scenery: Scenery | None = None,
 ) -> None:
     """Tension of the fiber along the outline, once around or, by symmetry, half of that.
 
@@ -119,6 +132,7 @@ def plot_tension(
         target: a path, or a file open for writing bytes.
         actuator: dimensions.
         stiffness: axial stiffness EA of a fiber, N.
+        scenery: captions.
 
     Raises:
         ValueError: no state, or one without fiber forces.
@@ -128,6 +142,7 @@ def plot_tension(
 
     if not snapshots:
         raise ValueError("no state to draw")
+    scenery = scenery or Scenery()
     page = figure(_PLOT)
     rows = (len(snapshots) + 4) // 4
     axes = page.add_axes((0.09, 0.12, 0.81, 0.77 - 0.04 * rows))
@@ -135,9 +150,12 @@ def plot_tension(
     is_ribbon = False
     for state, color in zip(snapshots, shades, strict=True):
         s, tension = tension_along(model_mesh, state, actuator)
+        label = scenery.caption(state) + (
+            f"\n{wrap(state.remark, 330, 10)}" if state.remark else ""
+        )
         is_ribbon = len(tension) > 1
         axes.fill_between(s, tension.min(axis=0), tension.max(axis=0), color=color, **_BAND)
-        axes.plot(s, tension.mean(axis=0), color=color, linewidth=2.2, label=state.caption)
+        axes.plot(s, tension.mean(axis=0), color=color, linewidth=2.2, label=label)
     axes.set_xlim(0.0, float(s[-1]))
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, 0.0), high + 0.06 * (high - low))
@@ -238,6 +256,8 @@ def draw_cell(
     write: Write,
     actuator: Actuator,
     stiffness: float,
+    renderer: Renderer,
+    scenery: Scenery | None = None,
 ) -> list[str]:
     """Draw fiber_stretch.png and cell_bulge.png.
 
@@ -247,6 +267,8 @@ def draw_cell(
         write: writes a file, such as `RunFolder.write`.
         actuator: dimensions.
         stiffness: axial stiffness EA of a fiber, N.
+        renderer: draws.
+        scenery: captions.
 
     Returns:
         The names written.
@@ -257,7 +279,7 @@ def draw_cell(
     """
     write(
         "fiber_stretch.png",
-        lambda file: plot_tension(model_mesh, snapshots, file, actuator, stiffness),
+        lambda file: plot_tension(model_mesh, snapshots, file, actuator, stiffness, scenery),
     )
-    write("cell_bulge.png", Slices(model_mesh, snapshots).bulge)
+    write("cell_bulge.png", Slices(model_mesh, snapshots, renderer, scenery).bulge)
     return ["fiber_stretch.png", "cell_bulge.png"]

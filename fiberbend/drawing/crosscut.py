@@ -89,6 +89,11 @@ class Crosscut:
         lines = self._along @ self.nodes(state)[edges]
         return np.concatenate([lines, lines * _MIRROR]) if mesh.half else lines
 
+    def winding(self, state: Snapshot | None) -> Floats:
+        """The line on which the winding lies, as polylines, (k, level + 1, 2), mm."""
+        lines: Floats = self._along @ self.nodes(state)[self.mesh.facet_nodes("winding")]
+        return np.concatenate([lines, lines * _MIRROR]) if self.mesh.half else lines
+
     def bulge(self, state: Snapshot) -> float | None:
         """How far the middle of a flat floor's lower face lies below its edges, mm.
 

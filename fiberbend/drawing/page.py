@@ -7,16 +7,18 @@ from __future__ import annotations
 
 import contextlib
 import math
+import textwrap
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fiberbend.drawing.panel import STRIP, Panel
+from fiberbend.drawing.renderer import Image, View
 from fiberbend.states.snapshot import Target
 
-Image = NDArray[np.uint8]
 Box = tuple[float, float, float, float]
 
 COLORS = {
@@ -25,11 +27,16 @@ COLORS = {
     "layer": "#7a4a8c",
     "sheath": "#dcdcd4",
     "fiber": "#1a1a1a",
+    "winding": "#566573",
 }
 """Colour of each region and of the fibers."""
 
-NAMES = {"layer": "strain-limiting layer", "fiber": "fibers"}
+SMEARED = "winding smeared over its surface"
+NAMES = {"layer": "strain-limiting layer", "fiber": "fibers", "winding": SMEARED}
 """Names in a legend that are not those of the regions."""
+WARN = "#b01818"
+"""Colour of what has to be said of a state."""
+_HEADING, _REMARK = 17, 11.5
 _DPI = 100
 _LONGEST = 120
 """Characters of a line of text; the end of a title, which tells pictures apart, is kept."""
@@ -63,6 +70,21 @@ def figure(size: tuple[int, int]) -> Any:
     return page
 
 
+def heading(page: Any, title: str) -> None:
+    """A title at the top of a figure, in smaller letters where it is long."""
+    width, height = page.get_size_inches() * page.dpi
+    style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": _HEADING}
+    text = page.text(0.5, 1 - 28 / height, literal(title), **style)
+    share = text.get_window_extent().width / (0.96 * width)
+    if share > 1:
+        text.set_fontsize(_HEADING / share)
+
+
+def wrap(text: str, width: float, fontsize: float) -> str:
+    """A text in lines of a width in pixels."""
+    return "\n".join(textwrap.wrap(text, max(12, int(width / (0.55 * fontsize * _DPI / 72)))))
+
+
 def colormap() -> Any:
     """Viridis without its darkest part, on which dark fibers would not show."""
     from matplotlib import colormaps
@@ -86,58 +108,133 @@ class Page:
     Args:
         size: width and height in pixels.
         title: text at the top.
+        caption: of the state that it shows, below the title.
+        remark: what has to be said of the state, below the caption.
+
+    Attributes:
+        panels: the images on it.
     """
 
-    def __init__(self, size: tuple[int, int], title: str) -> None:
+    def __init__(
+        self, size: tuple[int, int], title: str, caption: str = "", remark: str = ""
+    ) -> None:
         self._size = size
+        self.panels: list[Panel] = []
         self._figure = figure(size)
-        heading: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 17}
-        text = self._figure.text(0.5, 1 - 28 / size[1], literal(title), **heading)
-        width = text.get_window_extent().width / (0.96 * size[0])
-        if width > 1:  # a long one in smaller letters
-            text.set_fontsize(heading["fontsize"] / width)
+        heading(self._figure, title)
+        middle: dict[str, Any] = {"ha": "center", "va": "center"}
+        self._figure.text(0.5, 1 - 58 / size[1], caption, fontsize=14, **middle)
+        self._figure.text(0.5, 1 - 82 / size[1], remark, fontsize=12, color=WARN, **middle)
 
     @classmethod
     def of_panels(
-        cls, width: int, title: str, images: Sequence[Image], captions: Sequence[str]
+        cls,
+        width: int,
+        title: str,
+        images: Sequence[Image],
+        captions: Sequence[str],
+        views: Sequence[View],
+        remarks: Sequence[str] = (),
     ) -> Page:
-        """Images of one view in up to four columns, cropped alike, each with its caption.
+        """Images of one scale in up to four columns, cropped alike, each with caption and scale.
 
         Args:
             width: width of the page, pixels.
             title: text at the top.
             images: pixels of each, (height, width, 3).
-            captions: text below each.
+            captions: text above each panel.
+            views: from where each is seen.
+            remarks: what has to be said of each, in red below its caption.
         """
-        filled = np.any([_filled(image) for image in images], axis=0)
         columns = columns_of(len(images))
         rows = math.ceil(len(images) / columns)
-        cropped = [_crop(image, filled) for image in images]
         across = width / columns
-        tall = 0.94 * across * cropped[0].shape[0] / cropped[0].shape[1] + 46
-        height = round(70 + rows * tall + 90)
+        wrapped = [wrap(remark, 0.96 * across, _REMARK) for remark in remarks]
+        wrapped = wrapped or [""] * len(images)
+        lines = max(text.count("\n") + 1 for text in captions)
+        noted = max(text.count("\n") + 1 if text else 0 for text in wrapped)
+        head = 12 + 24 * lines + 19 * noted
+        filled = np.any([_filled(image) for image in images], axis=0)
+        box = _bounds(filled)
+        shown = images[0][box].shape
+        room = 0.94 * across * shown[0] / shown[1]
+        tall = head + room + STRIP + 8
+        height = round(56 + rows * tall + 84)
         page = cls((width, height), title)
-        for i, (image, caption) in enumerate(zip(cropped, captions, strict=True)):
-            left = (i % columns + 0.03) / columns
-            bottom = 1 - (60 + (i // columns + 1) * tall) / height
-            box = (left, bottom, 0.94 / columns, (tall - 46) / height)
-            page.image(image, box)
+        for i, (image, caption, remark, view) in enumerate(
+            zip(images, captions, wrapped, views, strict=True)
+        ):
+            row, column = divmod(i, columns)
+            left, top = (column + 0.03) * across, height - 56 - row * tall
+            middle = (left + 0.47 * across) / width
             page._figure.text(
-                left + box[2] / 2, bottom + box[3] + 18 / height, caption, ha="center", fontsize=13
+                middle, (top - 10) / height, caption, ha="center", va="top", fontsize=13
             )
+            page._figure.text(
+                middle,
+                (top - 12 - 24 * lines) / height,
+                remark,
+                ha="center",
+                va="top",
+                fontsize=_REMARK,
+                color=WARN,
+            )
+            low = top - head - room
+            place = (left / width, low / height, 0.94 * across / width, room / height)
+            page.scale(page._place(image, place, box, view), left, low - STRIP)
         return page
 
-    def image(self, image: Image, box: Box, crop: bool = False) -> None:
+    @classmethod
+    def stacked(cls, width: int, title: str, parts: Sequence[tuple[Image, View, float]]) -> Page:
+        """Images below each other, without their white margins, each with its own scale.
+
+        Args:
+            width: width of the page, pixels.
+            title: text at the top.
+            parts: pixels, view, and greatest height on the page, of each.
+        """
+        boxes = [_bounds(_filled(image)) for image, _, _ in parts]
+        heights = []
+        for (image, _, most), box in zip(parts, boxes, strict=True):
+            shown = image[box].shape
+            heights.append(min(most, 0.96 * width * shown[0] / shown[1]))
+        height = round(56 + sum(heights) + (STRIP + 10) * len(parts) + 40)
+        page, top = cls((width, height), title), height - 56.0
+        for (image, view, _), box, tall in zip(parts, boxes, heights, strict=True):
+            place = (0.02, (top - tall) / height, 0.96, tall / height)
+            page.scale(page._place(image, place, box, view), bottom=top - tall - STRIP)
+            top -= tall + STRIP + 10
+        return page
+
+    def image(self, image: Image, box: Box, view: View, crop: bool = False) -> Panel:
         """Place an image on the page.
 
         Args:
             image: pixels, (height, width, 3).
             box: left, bottom, width and height in fractions of the page.
+            view: from where it is seen.
             crop: leave out white margins.
+
+        Returns:
+            What can be written on.
         """
+        whole = (slice(None), slice(None))
+        return self._place(image, box, _bounds(_filled(image)) if crop else whole, view)
+
+    def _place(self, image: Image, box: Box, shown: tuple[slice, slice], view: View) -> Panel:
         axes = self._figure.add_axes(box)
-        axes.imshow(_crop(image, _filled(image)) if crop else image)
+        axes.imshow(image[shown])
         axes.set_axis_off()
+        # lines that are drawn on it later leave it as it is
+        axes.autoscale(False)
+        corner = (shown[1].start or 0, shown[0].start or 0)
+        size = (image.shape[1], image.shape[0])
+        self.panels.append(Panel(self._figure, axes, image[shown], view, size, corner))
+        return self.panels[-1]
+
+    def scale(self, panel: Panel, left: float = 24, bottom: float = 24) -> None:
+        """A bar of a round length and the axes of a panel, at a place of the page in pixels."""
+        panel.scale(left, bottom, nice_above(70 / panel.per_mm))
 
     def color_bar(self, limits: tuple[float, float], label: str, colors: Any = None) -> None:
         """A colour bar below the images.
@@ -158,46 +255,29 @@ class Page:
         bar.ax.tick_params(labelsize=12)
         bar.set_label(label, fontsize=13)
 
-    def legend(self, names: Sequence[str]) -> None:
-        """Names of the colours, below the images."""
+    def legend(self, names: Sequence[str], more: Mapping[str, str] | None = None) -> None:
+        """Names of the colours, below the images.
+
+        Args:
+            names: regions, "fiber" or "winding".
+            more: what is added to a name.
+        """
         from matplotlib.patches import Patch
 
+        labels = {name: f"{NAMES.get(name, name)} {(more or {}).get(name, '')}" for name in names}
         patches = [
-            Patch(
-                facecolor=COLORS.get(name, "#999999"), edgecolor="0.4", label=NAMES.get(name, name)
-            )
-            for name in names
+            Patch(facecolor=COLORS.get(name, "#999999"), edgecolor="0.4", label=label.strip())
+            for name, label in labels.items()
         ]
         self._figure.legend(
             handles=patches, loc="lower center", ncols=len(patches), frameon=False, fontsize=13
         )
 
-    def scale_bar(self, width: float) -> None:
-        """A bar of a round length and the axes z and y, at the lower left.
-
-        Args:
-            width: width in mm of what the page shows.
-        """
-        length = nice_above(width / 12)
-        axes = self._figure.add_axes((0, 0, 1, 1))
-        axes.set(xlim=(0, self._size[0]), ylim=(0, self._size[1]))
-        axes.set_axis_off()
-        end = 40 + length / width * self._size[0]
-        axes.plot([40, end], [40, 40], color="black", linewidth=3, solid_capstyle="butt")
-        axes.text((40 + end) / 2, 22, f"{length:g} mm", ha="center", va="center", fontsize=12)
-        for tip, name in (((80, 70), "z"), ((40, 110), "y")):
-            axes.annotate(
-                "", tip, (40, 70), arrowprops={"arrowstyle": "-|>", "color": "black", "shrinkA": 0}
-            )
-            axes.text(
-                tip[0] + 9 * (name == "z"),
-                tip[1] + 9 * (name == "y"),
-                name,
-                ha="center",
-                va="center",
-                fontsize=12,
-                style="italic",
-            )
+    def pixels(self) -> Image:
+        """The page as pixels, (height, width, 3)."""
+        canvas = self._figure.canvas
+        canvas.draw()
+        return np.asarray(canvas.buffer_rgba())[..., :3].copy()
 
     def save(self, target: Target) -> None:
         """Write the page as PNG to a path or to a file open for writing bytes."""
@@ -222,11 +302,13 @@ def _filled(image: Image) -> NDArray[np.bool_]:
     return filled
 
 
-def _crop(image: Image, filled: NDArray[np.bool_], margin: int = 6) -> Image:
+def _bounds(filled: NDArray[np.bool_], margin: int = 6) -> tuple[slice, slice]:
+    """Rows and columns of an image outside which it is white."""
     if not filled.any():
-        return image
-    bounds = []
-    for axis in (1, 0):
-        inside = np.flatnonzero(filled.any(axis=axis))
-        bounds.append(slice(max(inside[0] - margin, 0), inside[-1] + margin + 1))
-    return image[bounds[0], bounds[1]]
+        return slice(None), slice(None)
+    rows, columns = (np.flatnonzero(filled.any(axis=axis)) for axis in (1, 0))
+    first, second = (
+        slice(max(int(inside[0]) - margin, 0), int(inside[-1]) + margin + 1)
+        for inside in (rows, columns)
+    )
+    return first, second

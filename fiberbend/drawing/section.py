@@ -9,15 +9,19 @@ from typing import IO, Any
 import numpy as np
 
 from fiberbend.drawing.crosscut import Crosscut
+from fiberbend.drawing.obstacles import Scenery
 from fiberbend.drawing.page import (
     COLORS,
     NAMES,
+    SMEARED,
+    WARN,
     colormap,
     columns_of,
     figure,
-    literal,
+    heading,
     nice_above,
     save,
+    wrap,
 )
 from fiberbend.states.recovery import NodalFields, recover
 from fiberbend.states.snapshot import (
@@ -31,9 +35,11 @@ from geometry.mesh.data import Floats
 
 _WIDTH = 1400
 _TALLEST = 640
-_ABOVE, _TEXT_LINE, _BELOW = 60, 26, 96
+_ABOVE, _TEXT_LINE, _NOTE_LINE, _BELOW = 60, 26, 19, 96
+_SMALL = 11.5
 _MARGIN = 0.06
 _LINE = "#303030"
+_WINDING: dict[str, Any] = {"color": COLORS["winding"], "linewidth": 2.4}
 _AT_REST: dict[str, Any] = {"color": "#777777", "linewidth": 0.9, "linestyle": (0, (4, 3))}
 
 
@@ -44,28 +50,37 @@ class SectionPage:
         title: text at the top.
         clouds: points that each panel has to show, (n, 2), mm.
         captions: text above each panel.
+        remarks: what has to be said of each, in red below its caption.
 
     Attributes:
         panels: matplotlib axes in mm.
         height: height of the page in pixels.
     """
 
-    def __init__(self, title: str, clouds: Sequence[Floats], captions: Sequence[str]) -> None:
+    def __init__(
+        self,
+        title: str,
+        clouds: Sequence[Floats],
+        captions: Sequence[str],
+        remarks: Sequence[str] = (),
+    ) -> None:
         every = np.concatenate(clouds)
         low, high = every.min(axis=0), every.max(axis=0)
         size = (high - low).max() * _MARGIN
         low, high = low - size, high + size
-        lines = 1 + max(caption.count("\n") for caption in captions)
-        head = 14 + _TEXT_LINE * lines
         columns = columns_of(len(clouds))
         rows = math.ceil(len(clouds) / columns)
         slope = (high[1] - low[1]) / (high[0] - low[0])
         across = min(_WIDTH / columns, _TALLEST / slope)
         tall = across * slope
+        notes = [wrap(remark, max(across, 240), _SMALL) for remark in remarks]
+        notes = notes or [""] * len(captions)
+        lines = 1 + max(caption.count("\n") for caption in captions)
+        noted = max(note.count("\n") + 1 if note else 0 for note in notes)
+        head = 14 + _TEXT_LINE * lines + _NOTE_LINE * noted
         self.height = round(_ABOVE + rows * (tall + head) + _BELOW)
         self._figure = figure((_WIDTH, self.height))
-        heading = {"ha": "center", "va": "center", "fontsize": 17}
-        self._figure.text(0.5, 1 - 30 / self.height, literal(title), **heading)
+        heading(self._figure, title)
         self.panels = []
         self._mm = across / (high[0] - low[0])
         for i, caption in enumerate(captions):
@@ -73,14 +88,13 @@ class SectionPage:
             here = min(columns, len(captions) - row * columns)
             left = _WIDTH / 2 + (column - here / 2) * across
             top = self.height - _ABOVE - row * (tall + head)
+            centre = {"x": (left + across / 2) / _WIDTH, "ha": "center", "va": "top"}
             self._figure.text(
-                (left + across / 2) / _WIDTH,
-                (top - head / 2) / self.height,
-                caption,
-                ha="center",
-                va="center",
-                fontsize=13,
-                linespacing=1.5,
+                y=(top - 7) / self.height, s=caption, fontsize=13, linespacing=1.5, **centre
+            )
+            below = top - 7 - _TEXT_LINE * lines
+            self._figure.text(
+                y=below / self.height, s=notes[i], fontsize=_SMALL, color=WARN, **centre
             )
             box = (left, top - head - tall, across, tall)
             axes = self._figure.add_axes(self._share(box))
@@ -145,6 +159,7 @@ class Sections:
         snapshots: the states, at least one.
         fields: their recovered fields, if at hand.
         name: what the section is, for the titles.
+        scenery: captions.
 
     Raises:
         ValueError: no state.
@@ -156,10 +171,14 @@ class Sections:
         snapshots: Sequence[Snapshot],
         fields: Sequence[NodalFields] | None = None,
         name: str = "section",
+        scenery: Scenery | None = None,
     ) -> None:
         if not snapshots:
             raise ValueError("no state to draw")
         self._cut, self._snapshots = Crosscut(model_mesh), snapshots
+        self._smeared = model_mesh.smeared
+        self._scenery = scenery or Scenery()
+        self._remarks = [state.remark for state in snapshots]
         self._nodes = split_alike(model_mesh.mesh)
         self._fields = fields or [recover(model_mesh, state, self._nodes) for state in snapshots]
         self._title = f"{model_mesh.title}: {name}" if model_mesh.title else name
@@ -178,7 +197,8 @@ class Sections:
         shifts = [self._shift(state) for state in self._snapshots]
         points = [cut.points(s) + up for s, up in zip(self._snapshots, shifts, strict=True)]
         clouds = [np.concatenate([moved, cut.points(None)]) for moved in points]
-        page = SectionPage(self._title, clouds, [self._caption(s) for s in self._snapshots])
+        captions = [self._caption(state) for state in self._snapshots]
+        page = SectionPage(self._title, clouds, captions, self._remarks)
         names = sorted(cut.mesh.regions, key=cut.mesh.regions.__getitem__)
         colors = [COLORS.get(name, "#999999") for name in names]
         place = np.searchsorted([cut.mesh.regions[name] for name in names], cut.region) * 1.0
@@ -189,13 +209,16 @@ class Sections:
             self._paint(axes, moved, place, scale, ListedColormap(colors))
             _draw_lines(axes, cut.outlines(state) + up, color=_LINE, linewidth=1.0)
             _draw_lines(axes, rest, **_AT_REST)
+            if self._smeared:
+                _draw_lines(axes, cut.winding(state) + up, **_WINDING)
             self._mark_bulge(axes, state, up)
         handles: list[Any] = [
             Patch(facecolor=color, edgecolor="0.4", label=NAMES.get(name, name))
             for name, color in zip(names, colors, strict=True)
         ]
-        dashes = Line2D([], [], label="at rest", **_AT_REST)
-        page.legend([*handles, dashes])
+        if self._smeared:
+            handles.append(Line2D([], [], label=SMEARED, **_WINDING))
+        page.legend([*handles, Line2D([], [], label="at rest", **_AT_REST)])
         page.scale()
         page.save(target)
 
@@ -230,7 +253,8 @@ class Sections:
     ) -> None:
         cut = self._cut
         points = [cut.points(state) for state in self._snapshots]
-        page = SectionPage(self._title, points, [state.caption for state in self._snapshots])
+        captions = [self._scenery.caption(state) for state in self._snapshots]
+        page = SectionPage(self._title, points, captions, self._remarks)
         for axes, state, moved, value in zip(
             page.panels, self._snapshots, points, values, strict=True
         ):
@@ -257,12 +281,12 @@ class Sections:
         return np.array([0.0, self._cut.chord(None)[0][1] - self._cut.chord(state)[0][1]])
 
     def _caption(self, state: Snapshot) -> str:
-        bulge = self._cut.bulge(state)
+        bulge, caption = self._cut.bulge(state), self._scenery.caption(state)
         if bulge is not None:
-            return f"{state.caption}\nfloor bulge {bulge:.2f} mm"
+            return f"{caption}\nfloor bulge {bulge:.2f} mm"
         change = np.round(np.subtract(self._cut.size(state), self._cut.size(None)), 2) + 0.0
         wider, higher = (f"{value:+.2f}".replace("-", "−") for value in change)
-        return f"{state.caption}\nwidth {wider},  height {higher} mm"
+        return f"{caption}\nwidth {wider},  height {higher} mm"
 
     def _mark_bulge(self, axes: Any, state: Snapshot, up: Floats) -> None:
         if self._cut.bulge(state) is None:
@@ -287,6 +311,7 @@ def draw_sections(
     write: Write,
     fields: Sequence[NodalFields] | None = None,
     name: str = "section",
+    scenery: Scenery | None = None,
 ) -> list[str]:
     """Draw section_shape.png, section_stress.png and section_strain.png.
 
@@ -296,6 +321,7 @@ def draw_sections(
         write: writes a file, such as `RunFolder.write`.
         fields: recovered fields of the states, if at hand.
         name: what the section is, for the titles.
+        scenery: captions.
 
     Returns:
         The names written.
@@ -303,7 +329,7 @@ def draw_sections(
     Raises:
         ValueError: no state.
     """
-    sections = Sections(model_mesh, snapshots, fields, name)
+    sections = Sections(model_mesh, snapshots, fields, name, scenery)
     jobs: dict[str, Callable[[IO[bytes]], object]] = {
         "section_shape.png": sections.shape,
         "section_stress.png": sections.stress,

@@ -21,9 +21,9 @@ from fiberbend.drawing.tessellation import Tessellation
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.mesh.data import Floats
 
-_ALONE, _BAND = (1400, 900), 730
-_PANEL = (1000, 1000)
-_MIRROR = np.array([-1.0, 1.0, 1.0])
+_ALONE, _BAND = (1400, 960), 730
+_BOX = (0.0, 124 / _ALONE[1], 1.0, _BAND / _ALONE[1])
+_PANEL = (700, 700)
 
 
 class SideBySide:
@@ -33,22 +33,29 @@ class SideBySide:
         model_mesh: the body in space.
         states: at least one.
         level: pieces along an element's edge.
+        renderer: draws.
+        open_ends: the viewer sees the chamber through the ends.
 
     Attributes:
-        skin: the surface that is drawn, the chamber's too.
+        skin: the surface that is drawn.
         outside: the part of it that is seen from outside.
-        sheathed: what to add to a label: whether a sheath was left out.
     """
 
-    def __init__(self, model_mesh: ModelMesh, states: Sequence[Snapshot], level: int) -> None:
-        self._mesh, self._states = model_mesh.mesh, states
+    def __init__(
+        self,
+        model_mesh: ModelMesh,
+        states: Sequence[Snapshot],
+        level: int,
+        renderer: Renderer,
+        open_ends: bool = False,
+    ) -> None:
+        self._mesh, self._states, self._renderer = model_mesh.mesh, states, renderer
         self._surfaces = BodySurfaces(model_mesh)
         self.skin = Tessellation(
-            model_mesh.mesh, self._surfaces.outside(self._surfaces.bare), level
+            model_mesh.mesh, self._surfaces.outside(self._surfaces.bare, open_ends), level
         )
         name = "outer" if self._surfaces.bare.all() else "winding"
         self.outside = Tessellation(model_mesh.mesh, model_mesh.mesh.facets[name], level)
-        self.sheathed = "" if self._surfaces.bare.all() else ", sheath not drawn"
 
     def page(
         self,
@@ -78,28 +85,22 @@ class SideBySide:
         size = (_ALONE[0], _BAND) if is_alone else _PANEL
         views = [self._view(state, toward, size[0] / size[1]) for state in self._states]
         width = max(view.width for view in views)
-        renderer = Renderer(size)
+        views = [dataclasses.replace(view, width=width) for view in views]
         images: list[Image] = []
-        try:
-            for state, value, view in zip(self._states, values, views, strict=True):
-                surface = self._surfaces.surface(self.skin, state, self._mesh.half)
-                surface["value"] = np.tile(value, 2 if self._mesh.half else 1)
-                layers = [Drawable(surface, scalars="value"), *self._surfaces.fiber_tubes(state)]
-                view = dataclasses.replace(view, width=width)
-                images.append(renderer.draw(layers, view, limits, colors or colormap()))
-        finally:
-            renderer.close()
+        for state, value, view in zip(self._states, values, views, strict=True):
+            surface = self._surfaces.surface(self.skin, state, self._mesh.half)
+            surface["value"] = np.tile(value, 2 if self._mesh.half else 1)
+            layers = [Drawable(surface, scalars="value"), *self._surfaces.fiber_tubes(state)]
+            images.append(self._renderer.draw(layers, view, size, limits, colors or colormap()))
         if is_alone:
-            caption = captions[0].replace("\n", ",  ")
-            page = Page(_ALONE, f"{title};  {caption}")
-            page.image(images[0], (0.0, 0.115, 1.0, _BAND / _ALONE[1]))
+            state = self._states[0]
+            page = Page(_ALONE, title, captions[0].replace("\n", ",  "), state.remark)
+            page.scale(page.image(images[0], _BOX, views[0]))
         else:
-            page = Page.of_panels(_ALONE[0], title, images, captions)
-        page.color_bar(limits, label + self.sheathed, colors)
+            remarks = [state.remark for state in self._states]
+            page = Page.of_panels(_ALONE[0], title, images, captions, views, remarks)
+        page.color_bar(limits, label + self._surfaces.remark, colors)
         return page
 
     def _view(self, state: Snapshot, toward: tuple[float, float, float], aspect: float) -> View:
-        nodes = self._mesh.nodes + state.displacement
-        if self._mesh.half:
-            nodes = np.concatenate([nodes, nodes * _MIRROR])
-        return frame(nodes, toward, aspect)
+        return frame(self._surfaces.points(state), toward, aspect)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fiberbend.drawing.page import COLORS
+from fiberbend.drawing.page import COLORS, SMEARED
 from fiberbend.drawing.renderer import Drawable
 from fiberbend.drawing.tessellation import Tessellation, boundary_facets, on_mirror
 from fiberbend.states.fiber_lines import fiber_lines
@@ -20,6 +20,13 @@ from geometry.mesh.data import Floats, Ints
 from geometry.winding.segments import EmbeddedFibers
 
 _FIBER_RADIUS = 0.2
+_LIFT = 0.08
+"""Distance in mm of a smeared winding from the rubber in a picture."""
+_ON_PLANE = 1e-9
+"""Part of its width by which a body may miss the plane x = 0."""
+_MIRROR = np.array([-1.0, 1.0, 1.0])
+_TO_VIEWER = np.array([0.1, 0.0, 0.0])
+"""So far a line stands out of the cut in which it lies, mm."""
 
 Mask = NDArray[np.bool_]
 
@@ -35,7 +42,9 @@ class BodySurfaces:
         fibers: the middle line of every fiber, or None without lines.
         middle: centre of every cell, (m, 3), mm.
         bare: True for the cells that do not hide the fibers: all but the sheath, (m,).
-        names: the regions, and "fiber" where there are lines.
+        peeled: the same where a winding is smeared, whose surface the sheath hides.
+        smeared: the winding is smeared over its surface.
+        names: the regions, and "fiber" where there are lines, "winding" where they are smeared.
     """
 
     def __init__(self, model_mesh: ModelMesh) -> None:
@@ -44,12 +53,41 @@ class BodySurfaces:
         self.middle: Floats = self.mesh.nodes[self.mesh.cells].mean(axis=1)
         everything = np.ones(len(self.mesh.cells), dtype=bool)
         self.bare: Mask = everything if self.fibers is None else ~self._region("sheath")
-        self.names = [*self.mesh.regions, *([] if self.fibers is None else ["fiber"])]
+        self.smeared = model_mesh.smeared
+        self.peeled: Mask = ~self._region("sheath") if self.smeared else self.bare
+        wound = ["winding"] if self.smeared else ["fiber"] if self.fibers is not None else []
+        self.names = [*self.mesh.regions, *wound]
 
-    def outside(self, cells: Mask) -> Ints:
-        """Facets (cell, local facet) around some cells, without the mirror plane of a half."""
+    @property
+    def remark(self) -> str:
+        """What a colour bar has to say of winding and sheath, after a comma; may be empty."""
+        if self.smeared:
+            return f", {SMEARED}"
+        return "" if self.bare.all() else ", sheath not drawn"
+
+    def points(self, state: Snapshot | None) -> Floats:
+        """Nodes of the body, also of a half's mirror image, mm, (n, 3).
+
+        Args:
+            state: the state; None: undeformed.
+        """
+        nodes = self.mesh.nodes if state is None else self.mesh.nodes + state.displacement
+        return np.concatenate([nodes, nodes * _MIRROR]) if self.mesh.half else nodes
+
+    def outside(self, cells: Mask, chamber: bool = True) -> Ints:
+        """Facets (cell, local facet) around some cells, without the mirror plane of a half.
+
+        Args:
+            cells: True for the cells, (m,).
+            chamber: with the surface of the chamber.
+        """
         pairs = boundary_facets(self.mesh, cells)
-        return pairs[~on_mirror(self.mesh, pairs)] if self.mesh.half else pairs
+        if self.mesh.half:
+            pairs = pairs[~on_mirror(self.mesh, pairs)]
+        if chamber:
+            return pairs
+        key, inner = (each @ [8, 1] for each in (pairs, self.mesh.facets["chamber"]))
+        return pairs[~np.isin(key, inner)]
 
     def parts(
         self,
@@ -76,6 +114,53 @@ class BodySurfaces:
                 layers.append(Drawable(data, color=COLORS.get(name, "#999999")))
         return layers
 
+    def smeared_winding(
+        self, cells: Mask, state: Snapshot | None = None, mirror: bool = True
+    ) -> list[Drawable]:
+        """The surface over which a winding is smeared, where it has no sheath over it.
+
+        Args:
+            cells: True for the cells inside it that are drawn, (m,).
+            state: the state; None: undeformed.
+            mirror: with its mirror image in x = 0, of a half body.
+        """
+        pairs = self.mesh.facets.get("winding", np.zeros((0, 2), dtype=np.int64))
+        pairs = pairs[cells[pairs[:, 0]]]
+        if not self.smeared or not len(pairs):
+            return []
+        skin = Tessellation(self.mesh, pairs)
+        data = self.surface(skin, state, self.mesh.half and mirror)
+        # a little outside of the rubber on which it lies
+        data.points += _LIFT * data.point_data.active_normals
+        return [Drawable(data, color=COLORS["winding"])]
+
+    def winding_line(self, state: Snapshot | None = None) -> list[Drawable]:
+        """The line in which a smeared winding meets the plane x = 0.
+
+        Args:
+            state: the state; None: undeformed.
+        """
+        import pyvista as pv
+
+        if not self.smeared:
+            return []
+        mesh = self.mesh
+        nodes = mesh.facet_nodes("winding")
+        flat = np.abs(mesh.nodes[nodes, 0]) < _ON_PLANE * np.ptp(mesh.nodes[:, 0])
+        # an edge has three nodes in the plane, sorted here along the axis
+        edges = [
+            row[on][np.argsort(mesh.nodes[row[on], 2])]
+            for row, on in zip(nodes, flat, strict=True)
+            if on.sum() == 3
+        ]
+        if not edges:
+            return []
+        moved = mesh.nodes if state is None else mesh.nodes + state.displacement
+        points = moved[np.array(edges)].reshape(-1, 3)
+        lines = np.insert(np.arange(len(points)).reshape(-1, 3), 0, 3, axis=1)
+        data = pv.PolyData(points - _TO_VIEWER, lines=lines.ravel())
+        return [Drawable(data, color=COLORS["winding"], radius=_FIBER_RADIUS, flat=True)]
+
     def surface(self, skin: Tessellation, state: Snapshot | None, mirror: bool) -> Any:
         """A tessellation as pyvista.PolyData.
 
@@ -92,10 +177,9 @@ class BodySurfaces:
         points, normals = skin.interpolate(at_cells), skin.normals(at_cells)
         pieces = skin.pieces
         if mirror:
-            flip = np.array([-1.0, 1.0, 1.0])
             pieces = np.concatenate([pieces, pieces[:, ::-1] + len(points)])
-            points = np.concatenate([points, points * flip])
-            normals = np.concatenate([normals, normals * flip])
+            points = np.concatenate([points, points * _MIRROR])
+            normals = np.concatenate([normals, normals * _MIRROR])
         data = pv.PolyData.from_regular_faces(points, pieces)
         data.point_data.active_normals = normals
         return data
@@ -105,6 +189,7 @@ class BodySurfaces:
         state: Snapshot | None = None,
         low: float = -np.inf,
         high: float = np.inf,
+        near: float = np.inf,
     ) -> list[Drawable]:
         """The fibers as tubes, all around the body.
 
@@ -112,6 +197,7 @@ class BodySurfaces:
             state: the state; None: undeformed.
             low: least z at rest, mm.
             high: greatest z at rest, mm.
+            near: greatest z at rest of those at x < 0, mm.
         """
         mesh, fibers = self.mesh, self.fibers
         if fibers is None:
@@ -120,9 +206,12 @@ class BodySurfaces:
         if not kept.any():
             return []
         moved = None if state is None else state.displacement
+        if not mesh.half:
+            kept &= (fibers.z < near) | (self.middle[fibers.cell, 0] > 0)
         lines = [fiber_lines(mesh, _select(fibers, kept), moved)]
-        if mesh.half:
-            lines.append(lines[0].reflect((1, 0, 0)))
+        if mesh.half and (kept & (fibers.z < near)).any():
+            image = fiber_lines(mesh, _select(fibers, kept & (fibers.z < near)), moved)
+            lines.append(image.reflect((1, 0, 0)))
         return [Drawable(data, color=COLORS["fiber"], radius=_FIBER_RADIUS) for data in lines]
 
     def _region(self, name: str) -> Mask:

@@ -59,6 +59,15 @@ class BlockedTipEffect(Effect):
             "post": post_shape(actuator, self.post_length),
         }
 
+    def obstacle_forces(self, row: Mapping[str, Any]) -> dict[str, tuple[float, float, float]]:
+        """The roof's presses down, the post's up."""
+        known = (("roof", col.ROOF_FORCE, -1.0), ("post", col.TIP_FORCE, 1.0))
+        return {
+            name: (0.0, sign * float(row[column]), 0.0)
+            for name, column, sign in known
+            if row.get(column) is not None
+        }
+
     def uncertainties(self, straight: bool) -> Iterator[str]:
         """The strips' widths."""
         yield "strips: other roofs and posts move it by up to 12 % (docs/accuracy_blocked.md)"

@@ -151,6 +151,15 @@ class ContactEffect(Effect):
         """All that the case names."""
         return {name: item.shape(actuator) for name, item in self.obstacles.items()}
 
+    def obstacle_forces(self, row: Mapping[str, Any]) -> dict[str, tuple[float, float, float]]:
+        """Those along y and z, which the history has."""
+        forces = {}
+        for name in self.obstacles:
+            up, along = (row.get(f"contact_{name}_{axis}_N") for axis in "yz")
+            if up is not None and along is not None:
+                forces[name] = (0.0, float(up), float(along))
+        return forces
+
     def uncertainties(self, straight: bool) -> Iterator[str]:
         """The obstacles' softness."""
         if straight:

@@ -252,6 +252,13 @@ class Effect(Spec):
         """Rigid obstacles that it places, by their names, as pictures show them."""
         return {}
 
+    def obstacle_forces(self, row: Mapping[str, Any]) -> dict[str, tuple[float, float, float]]:
+        """Forces of its obstacles on the body, x, y and z in N, from a row of the history.
+
+        Obstacles are named as in `obstacle_shapes`; those whose force is not known are left out.
+        """
+        return {}
+
     def curves(self, actuator: Actuator) -> list[Floats]:
         """Polylines in space, (n, 3), mm, that are to be seen in the mesh file."""
         return []

@@ -133,7 +133,7 @@ class Recording(Hook):
         if displacement is None or multiplier is None:
             multiplier = np.zeros((0, 0))
             displacement = np.zeros((0, 3))
-        scene = self._assembly.scene
+        scene, walls = self._assembly.scene, self._assembly.walls
         shot = Snapshot(
             label=label,
             step=row[col.STEP],
@@ -142,6 +142,9 @@ class Recording(Hook):
             displacement=displacement,
             multiplier=multiplier,
             fiber_force=self._archive.fiber_force(),
+            remark=messages.on_state(
+                self._assembly.march.report, None if walls is None else walls.passed, row[col.ANGLE]
+            ),
             **{name: scene.scalar(name) for name in scene.body.natural},
         )
         if not label.startswith(STEP):

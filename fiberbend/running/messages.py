@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from fem.march.records import Critical, Ramp, Report
 from fiberbend import columns as col
+from fiberbend.states.labels import short_number
 
 UNSTABLE_END = (
     "the end is unstable where every load is kept at its value: given the pressure, no actuator "
@@ -238,6 +239,28 @@ def walls_passed(measures: dict[str, float]) -> str:
         f"at {where} opposite walls of the chamber have passed through each other: contact with "
         "itself is not modelled, and from there on no actuator looks like this"
     )
+
+
+def on_state(report: Report, walls: Mapping[str, float] | None, angle_deg: float) -> str:
+    """What every picture of a state has to say; empty where there is nothing.
+
+    Args:
+        report: of the march so far.
+        walls: measures where walls of the chamber have passed through each other; None: they have
+            not.
+        angle_deg: bending angle of the state, °.
+    """
+    if walls is not None:
+        where = short_number(float(np.rad2deg(walls["control"])))
+        return f"chamber walls pass through each other from {where}° on: not modelled"
+    contact = report.self_contact
+    if contact is None:
+        return ""
+    begin = float(np.rad2deg(contact["control"]))
+    # a body that is bent back no longer passes through itself
+    if begin * (angle_deg - begin) < -_SAME * abs(begin):
+        return ""
+    return f"passes through itself from {short_number(begin)}° on: not modelled"
 
 
 def _vacuum(point: Critical) -> bool:

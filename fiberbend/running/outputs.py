@@ -4,15 +4,22 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
 from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
 from fiberbend.results.folder import RunFolder
-from fiberbend.states.recovery import recover
+from fiberbend.results.states import States
+from fiberbend.states.recovery import NodalFields
 from fiberbend.states.snapshot import ModelMesh, Snapshot
+from geometry.mesh.data import Floats
+
+if TYPE_CHECKING:
+    from fiberbend.drawing.obstacles import Scenery
+    from fiberbend.drawing.renderer import Renderer
+    from fiberbend.results.space import Space
 
 
 def draw(
@@ -26,10 +33,10 @@ def draw(
     check: Check | None = None,
     model: str = "body",
 ) -> None:
-    """Write fields/*.vtu, pictures/*.png and the plots of a run folder; on rank 0.
+    """Write fields/*.vtu, pictures/* and the plots of a run folder; on rank 0.
 
     Args:
-        folder: where to write.
+        folder: where to write; the animation reads the states of all load steps from it.
         case: has the outputs that are wanted, and the requested angles.
         model_mesh: mesh, materials and fibers.
         snapshots: the states to show; none for a run that never converged a step.
@@ -40,29 +47,84 @@ def draw(
         model: the run's own model.
     """
     output = case.output
-
-    def into(sub: str) -> Callable[[str, Callable[[IO[bytes]], object]], None]:
-        return lambda name, fill: folder.write(f"{sub}/{name}", fill)
-
     if output.pictures:
         draw_curves(folder, case, rows, reason, check, model, say)
-    if not (snapshots and (output.fields or output.pictures)):
+    if not (output.fields or output.pictures or output.animation):
         return
-    if model_mesh.uniform:
-        from fiberbend.running.uniform_outputs import draw_states
+    from fiberbend.results.space import Space
 
-        draw_states(folder, case, model_mesh, snapshots, say)
-        return
-    fields = [recover(model_mesh, snapshot) for snapshot in snapshots]
-    if output.fields:
-        from fiberbend.states.paraview import write_fields
+    space = Space(case, model_mesh)
+    fields = [space.recovered(state) for state in snapshots]
+    if output.fields and snapshots:
+        _write_fields(folder, space, snapshots, fields)
+    if output.pictures or output.animation:
+        _draw_states(folder, case, space, snapshots, fields, rows, say)
 
-        write_fields(model_mesh, snapshots, into("fields"), fields)
-    if output.pictures:
-        from fiberbend.drawing.body import draw_pictures
 
+def _write_fields(
+    folder: RunFolder, space: Space, snapshots: Sequence[Snapshot], fields: Sequence[NodalFields]
+) -> None:
+    from fiberbend.states.paraview import write_fields
+
+    moved = [space.snapshot(state) for state in snapshots]
+    spread = [space.fields(state, own) for state, own in zip(snapshots, fields, strict=True)]
+    write_fields(
+        space.model_mesh, moved, lambda name, fill: folder.write(f"fields/{name}", fill), spread
+    )
+
+
+def _draw_states(
+    folder: RunFolder,
+    case: Case,
+    space: Space,
+    snapshots: Sequence[Snapshot],
+    fields: Sequence[NodalFields],
+    rows: Sequence[dict[str, Any]],
+    say: Callable[[str], None],
+) -> None:
+    """Pictures of states in one window: at rest, as they were asked for, and all in motion."""
+    from fiberbend.drawing.renderer import Renderer
+    from fiberbend.drawing.rest import draw_rest
+    from fiberbend.results.scenery import scenery
+    from fiberbend.running import uniform_outputs
+
+    def write(name: str, fill: Callable[[IO[bytes]], object]) -> None:
+        folder.write(f"pictures/{name}", fill)
+
+    beside, uniform = scenery(case, rows), space.own.uniform
+    if case.output.pictures and uniform and snapshots:
         with pictures(say):
-            draw_pictures(model_mesh, snapshots, into("pictures"), fields)
+            uniform_outputs.draw_in_plane(space.own, snapshots, fields, write, beside)
+    with Renderer() as renderer:
+        if case.output.pictures:
+            with pictures(say, "no pictures in space" if uniform else "no pictures"):
+                write("rest.png", lambda file: draw_rest(space.model_mesh, file, renderer, beside))
+                if snapshots and uniform:
+                    uniform_outputs.draw_in_space(
+                        case, space, snapshots, fields, write, renderer, beside
+                    )
+                elif snapshots:
+                    from fiberbend.drawing.body import draw_pictures
+
+                    draw_pictures(space.own, snapshots, write, renderer, fields, beside)
+        if case.output.animation:
+            with pictures(say, "no animation"):
+                states = States(folder.path, case, list(rows), say)
+                write("animation.gif", lambda file: _animate(file, states, space, renderer, beside))
+
+
+def _animate(
+    file: IO[bytes], states: States, space: Space, renderer: Renderer, beside: Scenery
+) -> None:
+    from fiberbend.drawing.animation import Animation
+
+    def strained() -> Iterator[tuple[Snapshot, Floats]]:
+        for state in states:
+            yield space.snapshot(state), space.at_cells(state)
+
+    Animation(space.model_mesh, renderer, beside).write(
+        file, strained(), lambda: (space.snapshot(state) for state in states)
+    )
 
 
 def draw_curves(

@@ -1,100 +1,95 @@
-"""Fields and pictures of a section or a cell: in its own plane, and put together in space."""
+"""Pictures of a section or a cell: in its own plane, and put together in space."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.results.folder import RunFolder
 from fiberbend.results.space import Space, is_section
 from fiberbend.states.bend import Bend
 from fiberbend.states.recovery import NodalFields
 from fiberbend.states.snapshot import ModelMesh, Snapshot, Write
-from fiberbend.states.stack import (
-    Stack,
-    split_alike,
-)
+
+if TYPE_CHECKING:
+    from fiberbend.drawing.obstacles import Scenery
+    from fiberbend.drawing.renderer import Renderer
 
 
-def draw_states(
-    folder: RunFolder,
-    case: Case,
-    model_mesh: ModelMesh,
-    snapshots: Sequence[Snapshot],
-    say: Callable[[str], None],
-) -> None:
-    """Write fields/*.vtu and pictures/*.png of a section or cell, as the case wants them.
-
-    Fields are those of the whole length between the caps.
-
-    Args:
-        folder: where to write.
-        case: the case.
-        model_mesh: of the section or cell.
-        snapshots: the states, at least one.
-        say: takes a line for the user where nothing can be drawn.
-    """
-
-    def into(sub: str) -> Write:
-        return lambda name, fill: folder.write(f"{sub}/{name}", fill)
-
-    space = Space(case, model_mesh)
-    fields = [space.recovered(state) for state in snapshots]
-    if case.output.fields:
-        from fiberbend.states.paraview import write_fields
-
-        moved = [space.snapshot(state) for state in snapshots]
-        pairs = zip(snapshots, fields, strict=True)
-        spread = [space.fields(state, own) for state, own in pairs]
-        write_fields(space.model_mesh, moved, into("fields"), spread)
-    if case.output.pictures:
-        _draw(case, model_mesh, snapshots, fields, space, into("pictures"), say)
-
-
-def _draw(
-    case: Case,
+def draw_in_plane(
     model_mesh: ModelMesh,
     snapshots: Sequence[Snapshot],
     fields: Sequence[NodalFields],
-    space: Space,
     write: Write,
-    say: Callable[[str], None],
+    beside: Scenery,
 ) -> None:
+    """Draw section_*.png: shape, stress and strain of the section.
+
+    Args:
+        model_mesh: of the section or cell.
+        snapshots: the states, at least one.
+        fields: recovered fields of the states.
+        write: writes a picture.
+        beside: captions.
+    """
     from fiberbend.drawing.section import draw_sections
-    from fiberbend.running.outputs import pictures
 
     name = "section" if is_section(model_mesh) else "section where a fiber passes the crown"
-    with pictures(say):
-        draw_sections(model_mesh, snapshots, write, fields, name)
-    with pictures(say, "no pictures in space"):
-        assert space.stack is not None
-        draw_bent(space.stack, model_mesh, snapshots, write, fields)
-        turns = case.turns
-        if turns is not None and model_mesh.lines is not None:
-            from fiberbend.drawing.cell import draw_cell
+    draw_sections(model_mesh, snapshots, write, fields, name, beside)
 
-            actuator = convert.dimensions(case.actuator)
-            draw_cell(model_mesh, snapshots, write, actuator, turns.stiffness)
+
+def draw_in_space(
+    case: Case,
+    space: Space,
+    snapshots: Sequence[Snapshot],
+    fields: Sequence[NodalFields],
+    write: Write,
+    renderer: Renderer,
+    beside: Scenery,
+) -> None:
+    """Draw bent.png, the length between the caps in every state, and what only a cell shows.
+
+    Args:
+        case: the case.
+        space: the section or cell in space.
+        snapshots: the states, at least one.
+        fields: recovered fields of the states.
+        write: writes a picture.
+        renderer: draws.
+        beside: captions.
+
+    Raises:
+        fiberbend.drawing.renderer.PictureError: nothing can be drawn on this machine.
+    """
+    draw_bent(space, snapshots, fields, write, renderer, beside)
+    turns = case.turns
+    if turns is not None and space.own.lines is not None:
+        from fiberbend.drawing.cell import draw_cell
+
+        actuator = convert.dimensions(case.actuator)
+        draw_cell(space.own, snapshots, write, actuator, turns.stiffness, renderer, beside)
 
 
 def draw_bent(
-    stack: Stack,
-    model_mesh: ModelMesh,
+    space: Space,
     snapshots: Sequence[Snapshot],
-    write: Write,
     fields: Sequence[NodalFields],
+    write: Write,
+    renderer: Renderer,
+    beside: Scenery,
 ) -> None:
     """Draw bent.png: the length between the caps in space in every state.
 
     Args:
-        stack: the sections or slices of the whole length.
-        model_mesh: of the section or cell.
+        space: the section or cell in space.
         snapshots: the states, at least one.
-        write: writes a file, such as `RunFolder.write`.
         fields: recovered fields of the states.
+        write: writes a picture.
+        renderer: draws.
+        beside: captions.
 
     Raises:
         fiberbend.drawing.renderer.PictureError: nothing can be drawn on this machine.
@@ -103,16 +98,14 @@ def draw_bent(
     from fiberbend.drawing.renderer import FROM_THE_SIDE
     from fiberbend.drawing.side_by_side import SideBySide
 
-    nodes = split_alike(model_mesh.mesh)
-    side_by_side = SideBySide(
-        stack.model_mesh, [stack.snapshot(model_mesh, s) for s in snapshots], level=3
-    )
-    strains = [stack.at_cells(field.log_strain[nodes.cells]) for field in fields]
+    moved = [space.snapshot(state) for state in snapshots]
+    side_by_side = SideBySide(space.model_mesh, moved, 3, renderer)
+    strains = [space.at_cells(s, own) for s, own in zip(snapshots, fields, strict=True)]
     high = max(float(np.quantile(side_by_side.outside.interpolate(s), 0.998)) for s in strains)
-    model = "section" if is_section(model_mesh) else "cell"
+    model = "section" if is_section(space.own) else "cell"
     page = side_by_side.page(
-        title=f"{model_mesh.title}: {model} model, caps not modelled",
-        captions=[_caption(state, model_mesh, stack) for state in snapshots],
+        title=f"{space.own.title}: {model} model, caps not modelled",
+        captions=[_caption(state, space, beside) for state in snapshots],
         values=[side_by_side.skin.interpolate(strain) for strain in strains],
         limits=(0.0, nice_above(high)),
         label="maximum principal logarithmic strain",
@@ -121,13 +114,10 @@ def draw_bent(
     write("bent.png", page.save)
 
 
-def _caption(state: Snapshot, model_mesh: ModelMesh, stack: Stack) -> str:
+def _caption(state: Snapshot, space: Space, beside: Scenery) -> str:
+    caption = beside.caption(state)
     if state.twist == 0:
-        return state.caption
-    rate = Bend.of(state, model_mesh.mesh).line.rates[2]
-    twist = np.rad2deg(rate * stack.model_mesh.mesh.nodes[-1, 2])
-    return f"{state.caption},  twist {twist:.0f}°".replace("-", "−")
-
-
-def _slices_a_pitch(model_mesh: ModelMesh) -> int:
-    return 2 if model_mesh.mesh.half else 1
+        return caption
+    rate = Bend.of(state, space.own.mesh).line.rates[2]
+    twist = np.rad2deg(rate * space.model_mesh.mesh.nodes[-1, 2])
+    return f"{caption},  twist {twist:.0f}°".replace("-", "−")

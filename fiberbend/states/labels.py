@@ -7,6 +7,8 @@ from collections.abc import Collection, Sequence
 
 _DIGITS = 9
 """Decimals beyond which two angles are one."""
+_NOTHING = 5e-3
+"""Degrees, kPa or newtons that are round-off to who looks at a picture."""
 
 
 def angle_labels(angles: Sequence[float]) -> dict[float, str]:
@@ -42,3 +44,11 @@ def unused(label: str, taken: Collection[str]) -> str:
         times += 1
         found = f"{label}-{times}"
     return found
+
+
+def short_number(value: float) -> str:
+    """A number for a caption: to a tenth, below ten to three digits; 0 for less than 0.005."""
+    if abs(value) < _NOTHING:
+        return "0"
+    text = f"{value:.1f}".removesuffix(".0") if abs(value) >= 9.995 else f"{value:.3g}"
+    return text.replace("-", "−")

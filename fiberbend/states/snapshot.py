@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import IO
 
+from fiberbend.states.labels import short_number
 from geometry.mesh.data import Floats, MeshData
 from geometry.winding.segments import EmbeddedFibers
 from materials.material import Material
@@ -71,6 +72,8 @@ class Snapshot:
             components in the frame that turns with the section.
         stretch: λ0 of the axis there.
         twist: τ there, rad/mm.
+        remark: what every picture of it has to say, such as that the body passes through itself;
+            empty where there is nothing.
 
     Raises:
         ValueError: a label that no file can bear.
@@ -86,6 +89,7 @@ class Snapshot:
     curvature: float = 0.0
     stretch: float = 1.0
     twist: float = 0.0
+    remark: str = ""
 
     def __post_init__(self) -> None:
         if not self.label or not all(c.isalnum() or c in ".-_" for c in self.label):
@@ -94,4 +98,4 @@ class Snapshot:
     @property
     def caption(self) -> str:
         """Pressure and angle in words."""
-        return f"P = {self.pressure_kpa:.1f} kPa,  θ = {self.angle_deg:.0f}°"
+        return f"P = {short_number(self.pressure_kpa)} kPa,  θ = {short_number(self.angle_deg)}°"

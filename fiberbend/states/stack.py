@@ -60,6 +60,7 @@ class Stack:
             displacement=Bend.of(state, base.mesh).place(position, mesh.nodes[:, 2]) - mesh.nodes,
             multiplier=self.at_cells(state.multiplier),
             fiber_force=None if force is None or self.segment is None else force[self.segment],
+            remark=state.remark,
         )
 
     def fields(

@@ -92,7 +92,8 @@ def test_mirror_image_doubles_the_body() -> None:
 def test_pictures(tmp_path: Path) -> None:
     scene = model_mesh()
     states = [snapshot(scene, angle) for angle in (30.0, 90.0)]
-    names = draw_pictures(scene, states, into(tmp_path))
+    with Renderer() as renderer:
+        names = draw_pictures(scene, states, into(tmp_path), renderer)
     assert names == [
         "undeformed.png",
         "cut.png",
@@ -120,22 +121,21 @@ def test_pictures_of_every_kind_of_body(
 ) -> None:
     scene = model_mesh(half=half, element=element)
     scene = dataclasses.replace(scene, smeared=smeared)
-    names = draw_pictures(scene, [snapshot(scene, 45.0)], into(tmp_path))
+    with Renderer() as renderer:
+        names = draw_pictures(scene, [snapshot(scene, 45.0)], into(tmp_path), renderer)
     assert names == ["undeformed.png", "cut.png", "bent_45deg.png"]
     assert all(is_drawn(tmp_path / name) for name in names)
 
 
 def test_every_picture_is_drawn_anew() -> None:
     surfaces = BodySurfaces(model_mesh())
-    renderer = Renderer((200, 120))
     parts = surfaces.parts(np.ones(len(surfaces.middle), dtype=bool))
-    try:
-        view = frame(surfaces.mesh.nodes, FROM_THE_SIDE, 200 / 120)
-        empty = renderer.draw([], view)
-        image = renderer.draw(parts, view)
-        red = renderer.draw([Drawable(layer.data, color="red") for layer in parts], view)
-    finally:
-        renderer.close()
+    size = (200, 120)
+    view = frame(surfaces.mesh.nodes, FROM_THE_SIDE, 200 / 120)
+    with Renderer() as renderer:
+        empty = renderer.draw([], view, size)
+        image = renderer.draw(parts, view, size)
+        red = renderer.draw([Drawable(layer.data, color="red") for layer in parts], view, size)
     assert empty.std() == 0
     assert image.std() > 10
     drawn = (red != 255).any(axis=2)
@@ -144,8 +144,9 @@ def test_every_picture_is_drawn_anew() -> None:
 
 def test_no_pyvista_is_said_plainly(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyvista", None)
+    view = frame(np.eye(3), FROM_THE_SIDE, 1.0)
     with pytest.raises(PictureError, match="pictures need pyvista"):
-        Renderer((100, 100))
+        Renderer().draw([], view, (100, 100))
 
 
 def history(angles: Sequence[float]) -> list[col.Row]:

@@ -15,10 +15,11 @@ from analytic.path import tip
 from fiberbend.case.case import Case
 from fiberbend.drawing.cell import Slices, plot_tension, tension_along
 from fiberbend.drawing.crosscut import Crosscut
+from fiberbend.drawing.renderer import Renderer
 from fiberbend.drawing.section import Sections
 from fiberbend.reader.reader import parse_case
 from fiberbend.results.folder import RunFolder
-from fiberbend.running.uniform_outputs import draw_states
+from fiberbend.running.outputs import draw
 from fiberbend.states.bend import Bend
 from fiberbend.states.recovery import cauchy_stress, recover
 from fiberbend.states.snapshot import ModelMesh
@@ -132,9 +133,10 @@ def test_wrong_shapes_are_refused() -> None:
         recover(scene, dataclasses.replace(bent, multiplier=bent.multiplier[:, :4]))
     with pytest.raises(ValueError, match="expected a solid"):
         dataclasses.replace(scene, uniform=False)
-    for draw in (Sections, Slices):
-        with pytest.raises(ValueError, match="no state"):
-            draw(cell(), [])
+    with pytest.raises(ValueError, match="no state"):
+        Sections(cell(), [])
+    with pytest.raises(ValueError, match="no state"):
+        Slices(cell(), [], Renderer())
 
 
 # --- stacks ----------------------------------------------------------------------------------
@@ -240,9 +242,9 @@ def test_pictures_and_fields(
     move = None if model == "section" else wave
     states = [state(scene, angle, move=move) for angle in degrees]
     said: list[str] = []
-    draw_states(RunFolder(tmp_path), case_of(model), scene, states, said.append)
+    draw(RunFolder(tmp_path), case_of(model), scene, states, [], None, said.append)
     assert not said
-    names = {"section_shape", "section_stress", "section_strain", "bent"}
+    names = {"rest", "section_shape", "section_stress", "section_strain", "bent"}
     if model == "cell":
         names |= {"cell_bulge", "fiber_stretch"}
     assert {path.stem for path in (tmp_path / "pictures").iterdir()} == names
@@ -256,7 +258,7 @@ def test_fields_in_space_end_on_the_arc(tmp_path: Path) -> None:
     import pyvista as pv
 
     scene = section()
-    draw_states(RunFolder(tmp_path), case_of("section"), scene, [state(scene)], print)
+    draw(RunFolder(tmp_path), case_of("section"), scene, [state(scene)], [], None, print)
     grid = pv.read(tmp_path / "fields" / "90deg.vtu")
     placed = grid.points + grid.point_data["displacement_mm"]
     pin = np.flatnonzero(np.linalg.norm(grid.points - [0.0, 0.0, SHORT.length], axis=1) < 1e-6)
@@ -267,7 +269,7 @@ def test_fields_in_space_end_on_the_arc(tmp_path: Path) -> None:
 def test_twisted_section_is_drawn_whole(tmp_path: Path) -> None:
     scene = section()
     states = [state(scene, 60.0, move=warp, twist=-0.01)]
-    draw_states(RunFolder(tmp_path), case_of("section"), scene, states, print)
+    draw(RunFolder(tmp_path), case_of("section"), scene, states, [], None, print)
     assert is_drawn(tmp_path / "pictures" / "bent.png")
 
 
@@ -306,7 +308,7 @@ def test_crosscut_covers_the_section() -> None:
 
 def test_crown_bulge_is_that_of_the_state() -> None:
     scene = cell()
-    z, height = Slices(scene, [state(scene)]).crown(state(scene, move=wave))
+    z, height = Slices(scene, [state(scene)], Renderer()).crown(state(scene, move=wave))
     assert z == pytest.approx(np.linspace(0, PITCH / 2, 5))
     assert np.ptp(height) == pytest.approx(0.2)
 
@@ -344,7 +346,7 @@ def test_no_pyvista_leaves_the_sections(monkeypatch: pytest.MonkeyPatch, tmp_pat
     case = case_of("section").model_copy(
         update={"output": case_of("section").output.model_copy(update={"fields": False})}
     )
-    draw_states(RunFolder(tmp_path), case, scene, [state(scene)], said.append)
+    draw(RunFolder(tmp_path), case, scene, [state(scene)], [], None, said.append)
     assert len(said) == 1
     assert "pictures need pyvista" in said[0]
     assert (tmp_path / "pictures" / "section_shape.png").exists()

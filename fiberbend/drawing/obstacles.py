@@ -1,0 +1,182 @@
+"""Rigid obstacles in pictures: what they look like, and what is written about a state beside them.
+
+pyvista is imported where it is used: a run without pictures does without it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from fiberbend.drawing.panel import Panel
+from fiberbend.drawing.renderer import Drawable, View, frame
+from fiberbend.states.labels import short_number
+from fiberbend.states.obstacles import Shape
+from fiberbend.states.snapshot import Snapshot
+from geometry.mesh.data import Floats
+
+COLOR = "#d9d9d9"
+_THICK = 0.012
+"""Thickness of a plane in a picture, as a part of its own extent."""
+_LINE = 0.001
+"""Radius of the lines along edges, as a part of the body's extent."""
+_SEEN_THROUGH = 0.25
+_TOUCHES = 0.3
+"""Distance in mm from the nearest point of the body up to which others count as its touch, too."""
+_MOST = 4000
+"""Points of the body that are asked for their distance from an obstacle."""
+_ROOM = 0.085
+_NO_FORCE = 1e-6
+"""Part of the greatest force in a run that is round-off."""
+_STRAIGHT = 0.05
+"""Bending angle in degrees up to which a body is straight for who looks at it."""
+
+Force = tuple[float, float, float]
+"""Components along x, y and z, N."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Scenery:
+    """What pictures of a run show and say beside the body.
+
+    Attributes:
+        shapes: rigid obstacles by their names.
+        forces: by the number of a load step, the force of each obstacle on the body, N.
+        tip_forces: by the number of a load step, the tip force in N of a body that is kept
+            straight; empty for others.
+        lengths: dimensions in mm that a picture at rest states: "chamber", "whole", "height" and
+            "width", and the thickness of each region; what is missing is measured on the mesh or
+            left out.
+    """
+
+    shapes: Mapping[str, Shape] = dataclasses.field(default_factory=dict)
+    forces: Mapping[int, Mapping[str, Force]] = dataclasses.field(default_factory=dict)
+    tip_forces: Mapping[int, float] = dataclasses.field(default_factory=dict)
+    lengths: Mapping[str, float] = dataclasses.field(default_factory=dict)
+
+    def caption(self, state: Snapshot) -> str:
+        """Pressure and angle of a state; where the body is kept straight its force comes first."""
+        force = self.tip_forces.get(state.step)
+        if force is None:
+            return state.caption
+        text = f"P = {short_number(state.pressure_kpa)} kPa,  F = {short_number(force)} N"
+        angle = short_number(state.angle_deg)
+        return text if abs(state.angle_deg) < _STRAIGHT else f"{text},  θ = {angle}°"
+
+    def greatest(self) -> float:
+        """Greatest force of an obstacle in any step, N."""
+        every = [np.linalg.norm(f) for step in self.forces.values() for f in step.values()]
+        return float(max(every, default=0.0))
+
+
+class Obstacles:
+    """The obstacles of a run as things to draw.
+
+    Args:
+        scenery: their shapes.
+        around: points of the body in all states that are shown, (n, 3), mm.
+    """
+
+    def __init__(self, scenery: Scenery, around: Floats) -> None:
+        self.scenery = scenery
+        self._line = _LINE * float(np.linalg.norm(np.ptp(around, axis=0)))
+        self.solids = {
+            name: _solid(shape.surface(around)) for name, shape in scenery.shapes.items()
+        }
+
+    @property
+    def points(self) -> Floats:
+        """Points that a view of the whole contains, (n, 3), mm."""
+        return np.concatenate(
+            [np.zeros((0, 3)), *(np.asarray(solid.points) for solid in self.solids.values())]
+        )
+
+    def frame(self, body: Floats, toward: tuple[float, float, float], aspect: float) -> View:
+        """The least view of the body and all obstacles, with room for what is written beside them.
+
+        Args:
+            body: its points in the states that are shown, (n, 3), mm.
+            toward: direction to the viewer.
+            aspect: width over height of the picture.
+        """
+        if not self.solids:
+            return frame(body, toward, aspect)
+        return frame(np.concatenate([body, self.points]), toward, aspect, _ROOM)
+
+    def behind(self, view: View) -> list[Drawable]:
+        """Obstacles that never hide or tint the body: moved away from the viewer."""
+        away = -view.axes[2] * 4 * view.width
+        return [
+            Drawable(solid.translate(away), color=COLOR, flat=True)
+            for solid in self.solids.values()
+        ]
+
+    def seen_through(self) -> list[Drawable]:
+        """Obstacles where they are, with their edges, through which the body is seen."""
+        layers = []
+        for solid in self.solids.values():
+            edges = solid.extract_feature_edges(
+                feature_angle=30, boundary_edges=True, manifold_edges=False
+            )
+            layers.append(Drawable(solid, color=COLOR, opacity=_SEEN_THROUGH))
+            layers.append(Drawable(edges, color="#707070", radius=self._line, flat=True))
+        return layers
+
+    def touch(self, name: str, body: Floats) -> Floats:
+        """Middle of where the body is nearest to an obstacle, (3,), mm.
+
+        Args:
+            name: of the obstacle.
+            body: points of the body's surface, (n, 3), mm.
+        """
+        import pyvista as pv
+
+        solid, body = self.solids[name], body[:: max(1, len(body) // _MOST)]
+        cloud = pv.PolyData(np.asarray(body, dtype=float))
+        distance = np.asarray(cloud.compute_implicit_distance(solid)["implicit_distance"])
+        near = distance <= distance.min() + _TOUCHES
+        middle: Floats = body[near].mean(axis=0)
+        return middle
+
+
+def write_forces(
+    panel: Panel,
+    obstacles: Obstacles,
+    body: Floats,
+    state: Snapshot | None = None,
+    fontsize: float = 11,
+) -> None:
+    """Name each obstacle beside it, with its force on the body and an arrow where that is known.
+
+    Args:
+        panel: where.
+        obstacles: of the run.
+        body: points of the body in the state, (n, 3), mm.
+        state: the state; None: names only.
+        fontsize: in points.
+    """
+    scenery = obstacles.scenery
+    forces = {} if state is None else scenery.forces.get(state.step, {})
+    greatest = scenery.greatest()
+    for name, solid in obstacles.solids.items():
+        force = np.array(forces.get(name, (0.0, 0.0, 0.0)))
+        size = float(np.linalg.norm(force))
+        text = f"{name} {short_number(size)} N" if name in forces else name
+        if size > _NO_FORCE * greatest:
+            panel.force(text, obstacles.touch(name, body), force, greatest, fontsize)
+        else:
+            panel.name(text, np.asarray(solid.center), fontsize)
+
+
+def _solid(surface: Any) -> Any:
+    """A surface; of a flat sheet a thin plate below it, so that it is seen from its edge, too."""
+    points = np.asarray(surface.points, dtype=float)
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    if spread[2] > 1e-9 * spread[0]:
+        return surface.triangulate()
+    normal = np.asarray(surface.face_normals)[0]
+    down = -normal * _THICK * float(np.linalg.norm(np.ptp(points, axis=0)))
+    return surface.extrude(down, capping=True).triangulate()

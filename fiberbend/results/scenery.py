@@ -1,0 +1,46 @@
+"""What pictures of a run show beside the body: obstacles, their forces, and what a caption says."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fiberbend import columns as col
+from fiberbend.case import convert
+from fiberbend.case.case import Case
+from fiberbend.drawing.obstacles import Scenery
+from fiberbend.states.obstacles import Shape
+
+
+def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
+    """Obstacles of a case with their forces in every load step.
+
+    Args:
+        case: the case.
+        rows: of its history; none for a case that has not been run.
+    """
+    actuator = convert.dimensions(case.actuator)
+    shapes: dict[str, Shape] = {}
+    forces, tips = {}, {}
+    for effect in case.effects:
+        shapes.update(effect.obstacle_shapes(actuator))
+    for row in rows:
+        step = int(row[col.STEP])
+        forces[step] = {
+            name: force
+            for effect in case.effects
+            for name, force in effect.obstacle_forces(row).items()
+        }
+        if case.straight and row.get(col.TIP_FORCE) is not None:
+            tips[step] = float(row[col.TIP_FORCE])
+    lengths = {
+        "chamber": actuator.length,
+        "whole": actuator.total_length,
+        "height": actuator.outer_top - actuator.outer_bottom,
+        "width": 2 * actuator.outer_half_width,
+    }
+    for region in convert.site(case).materials:
+        thickness = getattr(actuator, region, None)
+        if thickness is not None:
+            lengths[region] = thickness
+    return Scenery(shapes, forces, tips, lengths)

@@ -1,0 +1,399 @@
+"""What pictures in space say: colours, places, axes, obstacles and their forces, remarks."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fiberbend.drawing.animation import SIZE, Animation
+from fiberbend.drawing.body import draw_pictures
+from fiberbend.drawing.obstacles import Obstacles, Scenery, write_forces
+from fiberbend.drawing.page import SMEARED, WARN, Page, colormap
+from fiberbend.drawing.panel import Panel, free_place
+from fiberbend.drawing.renderer import FROM_THE_SIDE, Drawable, Renderer, View, frame
+from fiberbend.drawing.rest import draw_rest, rest_image
+from fiberbend.drawing.surfaces import BodySurfaces
+from fiberbend.reader.reader import parse_case
+from fiberbend.results.scenery import scenery
+from fiberbend.states.labels import short_number
+from fiberbend.states.obstacles import Bar, Box, Sheet
+from fiberbend.states.recovery import recover, split_nodes
+from fiberbend.states.snapshot import ModelMesh, Snapshot
+from geometry.mesh.data import Floats
+from tests.output.bending import model_mesh, snapshot
+from tests.run.conftest import small
+
+OBLIQUE = (-0.62, 0.42, -0.66)
+SIZE_OF = (400, 300)
+
+
+@pytest.fixture(scope="module")
+def renderer() -> Iterator[Renderer]:
+    with Renderer() as window:
+        yield window
+
+
+def block(value: float) -> Any:
+    import pyvista as pv
+
+    box = pv.Box((-3.0, 3.0, -2.0, 2.0, -4.0, 4.0), quads=True)
+    box["value"] = np.full(box.n_points, value)
+    return box
+
+
+# --- colours ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("toward", [FROM_THE_SIDE, OBLIQUE, (0.3, -0.9, 0.4)])
+@pytest.mark.parametrize("value", [0.0, 0.13, 0.5, 0.77, 1.0])
+def test_colours_are_those_of_the_bar(
+    renderer: Renderer, value: float, toward: tuple[float, float, float]
+) -> None:
+    box = block(value)
+    view = frame(np.asarray(box.points), toward, 4 / 3, margin=0.1)
+    image = renderer.draw([Drawable(box, "value", "value")], view, SIZE_OF, (0.0, 1.0), colormap())
+    expected = np.rint(255 * np.array(colormap()(value)[:3]))
+    drawn = image[(image < 250).any(axis=2)].astype(float)
+    alike = np.abs(drawn - expected).max(axis=1) <= 2
+    # all but the lines at the edges
+    assert alike.mean() > 0.9
+    assert alike.mean() < 1.0
+
+
+# --- places ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("toward", [FROM_THE_SIDE, OBLIQUE])
+def test_points_are_where_the_page_takes_them_for(
+    renderer: Renderer, toward: tuple[float, float, float]
+) -> None:
+    import pyvista as pv
+
+    points = np.array([[9.0, 2.0, 30.0], [-7.0, -12.0, 4.0], [1.0, 14.0, 17.0]])
+    view = frame(points, toward, 4 / 3, margin=0.1)
+    for point, place in zip(points, view.at(points, SIZE_OF), strict=True):
+        ball = Drawable(pv.Sphere(radius=0.7, center=point), color="black", flat=True)
+        image = renderer.draw([ball], view, SIZE_OF)
+        rows, columns = np.nonzero((image < 128).all(axis=2))
+        assert [columns.mean() + 0.5, rows.mean() + 0.5] == pytest.approx(place, abs=0.7)
+
+
+def test_from_the_side_z_points_right_and_y_up() -> None:
+    view = View(FROM_THE_SIDE, np.zeros(3), 10.0)
+    assert view.axes == pytest.approx(np.array([[0, 0, 1], [0, 1, 0], [-1, 0, 0]]))
+    assert np.linalg.det(View(OBLIQUE, np.zeros(3), 1.0).axes) == pytest.approx(1.0)
+
+
+def panel_of(image: np.ndarray, view: View) -> Panel:
+    size = (image.shape[1], image.shape[0])
+    return Page(size, "").image(image, (0, 0, 1, 1), view)
+
+
+def test_scale_is_that_of_the_image(renderer: Renderer) -> None:
+    image = renderer.draw([], View(FROM_THE_SIDE, np.zeros(3), 50.0), SIZE_OF)
+    panel = panel_of(image, View(FROM_THE_SIDE, np.zeros(3), 50.0))
+    assert panel.per_mm == pytest.approx(SIZE_OF[0] / 50.0)
+    panel.scale(10, 10, 12.5)
+    drawn = panel.figure.axes[-1]
+    bar = next(line for line in drawn.lines if line.get_linewidth() == 3)
+    assert np.ptp(bar.get_xdata()) == pytest.approx(12.5 * SIZE_OF[0] / 50.0)
+    assert {text.get_text() for text in drawn.texts} == {"x", "y", "z", "12.5 mm", ""}
+    where = {text.get_text(): np.array(text.get_position()) for text in drawn.texts}
+    assert where["z"][0] > where["y"][0] + 20
+    assert where["y"][1] > where["z"][1] + 20
+
+
+# --- texts -----------------------------------------------------------------------------------
+
+
+def test_a_text_finds_the_nearest_free_place() -> None:
+    taken = np.zeros((200, 300), dtype=bool)
+    assert free_place(taken, np.array([100.0, 60.0]), (40, 10)) == pytest.approx([100, 60])
+    taken[40:80, 50:250] = True
+    place = free_place(taken, np.array([100.0, 70.0]), (40, 10))
+    assert 85 <= place[1] <= 90
+    assert abs(place[0] - 100) < 6
+    taken[:] = True
+    assert free_place(taken, np.array([100.0, 70.0]), (40, 10)) == pytest.approx([100, 70])
+
+
+def test_a_text_is_not_put_beyond_the_body() -> None:
+    taken = np.zeros((200, 300), dtype=bool)
+    taken[80:90] = True
+    taken[90:140, :] = False
+    # nearer above the body than below the block, and yet below
+    taken[90:126, 60:240] = True
+    place = free_place(taken, np.array([150.0, 128.0]), (40, 16))
+    assert place[1] > 126
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (45.13, "45.1"),
+        (90.0, "90"),
+        (306.04, "306"),
+        (8.5449, "8.54"),
+        (9.999, "10"),
+        (0.0414, "0.0414"),
+        (1e-4, "0"),
+        (-1e-9, "0"),
+        (-20.0, "−20"),
+        (-0.5, "−0.5"),
+    ],
+)
+def test_digits_of_captions(value: float, text: str) -> None:
+    assert short_number(value) == text
+
+
+# --- obstacles -------------------------------------------------------------------------------
+
+
+def test_obstacles_neither_hide_nor_tint_the_body(renderer: Renderer) -> None:
+    box = block(0.5)
+    points = np.asarray(box.points)
+    shapes = {"plane": Sheet((-5.0, 0.0, 0.0), (1.0, 0.2, 0.0)), "bar": Bar((4.0, 3.0), 3.0)}
+    obstacles = Obstacles(Scenery(shapes), points)
+    view = obstacles.frame(points, FROM_THE_SIDE, 4 / 3)
+    body = [Drawable(box, scalars="value")]
+    alone = renderer.draw(body, view, SIZE_OF)
+    both = renderer.draw(body + obstacles.behind(view), view, SIZE_OF)
+    rows, columns = np.nonzero((alone < 250).all(axis=2))
+    # its border is mixed with what is behind it
+    inside = (slice(rows.min() + 1, rows.max()), slice(columns.min() + 1, columns.max()))
+    assert (alone[inside] < 250).any(axis=2).all()
+    assert (alone[inside] == both[inside]).all()
+    outside = both[(alone == 255).all(axis=2)]
+    assert (outside < 250).any(axis=1).mean() > 0.3
+
+
+def test_a_plane_is_seen_from_its_edge(renderer: Renderer) -> None:
+    points = np.asarray(block(0.0).points)
+    obstacles = Obstacles(Scenery({"plane": Sheet((0.0, -2.0, 0.0), (0.0, 3.0, 0.0))}), points)
+    solid = obstacles.solids["plane"]
+    assert solid.bounds.y_max == pytest.approx(-2.0)
+    assert solid.bounds.y_min < -2.05
+    view = obstacles.frame(points, FROM_THE_SIDE, 4 / 3)
+    assert renderer.draw(obstacles.behind(view), view, SIZE_OF).std() > 1
+
+
+def test_touch_is_where_the_body_is_nearest() -> None:
+    scene = model_mesh()
+    points = BodySurfaces(scene).points(snapshot(scene, 60.0))
+    low = points[points[:, 1].argmin()]
+    shapes = {
+        "plane": Sheet((0.0, low[1] - 1, 0.0), (0.0, 1.0, 0.0)),
+        "roof": Box((-2.0, 20.0, -4.0), (2.0, 22.0, 4.0)),
+    }
+    obstacles = Obstacles(Scenery(shapes), points)
+    place = obstacles.touch("plane", points)
+    assert place[1:] == pytest.approx(low[1:], abs=1.0)
+    # both halves: in the middle
+    assert place[0] == pytest.approx(0.0, abs=1e-9)
+    assert obstacles.touch("roof", points)[1] == pytest.approx(points[:, 1].max(), abs=0.5)
+
+
+def test_names_and_forces_are_written_beside_the_body(renderer: Renderer) -> None:
+    scene = model_mesh()
+    state = snapshot(scene, 90.0)
+    surfaces = BodySurfaces(scene)
+    points = surfaces.points(state)
+    low = float(points[:, 1].min())
+    shapes = {"plane": Sheet((0.0, low, 0.0), (0.0, 1.0, 0.0)), "cylinder": Bar((-8.0, 4.0), 3.0)}
+    forces = {state.step: {"plane": (0.0, 1.25, 0.0), "cylinder": (0.0, 0.0, 0.0)}}
+    obstacles = Obstacles(Scenery(shapes, forces), points)
+    view = obstacles.frame(points, FROM_THE_SIDE, 4 / 3)
+    size = (800, 600)
+    body = surfaces.parts(surfaces.bare, state)
+    panel = panel_of(renderer.draw(body + obstacles.behind(view), view, size), view)
+    write_forces(panel, obstacles, points, state)
+    texts = [text for text in panel.axes.texts if text.get_text()]
+    assert [text.get_text() for text in texts] == ["plane 1.25 N", "cylinder 0 N"]
+    arrow = next(text for text in panel.axes.texts if not text.get_text())
+    # it ends on the plane, and comes from below; rows of pixels count downward
+    y, tail = arrow.xy[1], arrow.xyann[1]
+    assert tail > y + 20
+    assert y == pytest.approx(view.at(np.array([[0.0, low, 0.0]]), size)[0, 1], abs=3)
+    # the text is beyond its other end
+    assert texts[0].get_position()[1] > tail + 8
+    alone = renderer.draw(body, view, size)
+    drawn = np.flipud((alone < 250).any(axis=2))
+    for text in texts:
+        box = text.get_window_extent()
+        covered = drawn[round(box.y0) : round(box.y1), round(box.x0) : round(box.x1)]
+        assert covered.mean() < 0.01, text.get_text()
+
+
+def case(**changes: Any) -> Any:
+    return parse_case(small(**changes))
+
+
+WINDING = {"winding": {"pattern": "double-helix", "pitch": "3 mm", "fiber": "kevlar"}}
+
+
+def test_forces_of_roof_and_post_come_from_the_history() -> None:
+    blocked = case(effects=[{"pressure": {"to": "9 kPa"}}, WINDING, {"blocked-tip": {}}])
+    rows = [
+        {"step": 0, "tip_force_N": None},
+        {"step": 1, "tip_force_N": 0.5, "roof_force_N": 0.75},
+    ]
+    beside = scenery(blocked, rows)
+    assert set(beside.shapes) == {"roof", "post"}
+    assert beside.forces == {0: {}, 1: {"roof": (0.0, -0.75, 0.0), "post": (0.0, 0.5, 0.0)}}
+    assert beside.tip_forces == {1: 0.5}
+    assert beside.greatest() == 0.75
+
+
+def test_forces_of_obstacles_come_from_the_history() -> None:
+    contact = {"contact": {"cylinder": {"center": ["-30 mm", "10 mm"], "radius": "8 mm"}}}
+    touched = case(effects=[{"pressure": {"to": "9 kPa"}}, WINDING, contact])
+    rows = [
+        {"step": 0},
+        {"step": 1, "contact_cylinder_y_N": 0.3, "contact_cylinder_z_N": 0.4, "tip_force_N": None},
+    ]
+    beside = scenery(touched, rows)
+    assert set(beside.shapes) == {"cylinder"}
+    assert beside.forces == {0: {}, 1: {"cylinder": (0.0, 0.3, 0.4)}}
+    assert beside.greatest() == pytest.approx(0.5)
+    assert not beside.tip_forces
+    assert not scenery(touched).forces
+
+
+def test_a_blocked_run_leads_with_its_force() -> None:
+    state = dataclasses.replace(snapshot(model_mesh(), 30.0), pressure_kpa=50.0, step=4)
+    assert Scenery().caption(state) == "P = 50 kPa,  θ = 30°"
+    blocked = Scenery(tip_forces={4: 1.2345})
+    assert blocked.caption(state) == "P = 50 kPa,  F = 1.23 N,  θ = 30°"
+    straight = dataclasses.replace(state, angle_deg=1e-7)
+    assert blocked.caption(straight) == "P = 50 kPa,  F = 1.23 N"
+
+
+# --- remarks and windings --------------------------------------------------------------------
+
+
+def written(page: Any) -> dict[str, str]:
+    """Texts of a page with their colours."""
+    return {text.get_text(): text.get_color() for text in page._figure.texts}
+
+
+def test_what_a_state_has_to_say_is_in_its_caption(renderer: Renderer) -> None:
+    remark = "passes through itself from 306° on: not modelled"
+    assert written(Page((800, 600), "Title", "P = 1 kPa", remark))[remark] == WARN
+    view = View(FROM_THE_SIDE, np.zeros(3), 50.0)
+    image = renderer.draw([Drawable(block(0.0), color="red")], view, SIZE_OF)
+    page = Page.of_panels(1400, "", [image] * 4, ["a", "b", "c", "d"], [view] * 4, ["", remark] * 2)
+    found = [text for text, color in written(page).items() if color == WARN and text]
+    assert [text.replace("\n", " ") for text in found] == [remark]
+    for text in page._figure.texts:
+        assert text.get_window_extent().width < 0.97 * 350 or not text.get_text()
+
+
+def test_a_smeared_winding_is_shown_as_a_surface() -> None:
+    lines = model_mesh()
+    spread = dataclasses.replace(lines, smeared=True)
+    assert BodySurfaces(lines).names[-1] == "fiber"
+    assert not BodySurfaces(lines).smeared_winding(np.ones(len(lines.mesh.cells), dtype=bool))
+    surfaces = BodySurfaces(spread)
+    assert surfaces.names[-1] == "winding"
+    assert surfaces.remark == f", {SMEARED}"
+    assert not surfaces.fiber_tubes()
+    (layer,) = surfaces.smeared_winding(np.ones(len(spread.mesh.cells), dtype=bool))
+    # the winding lies at radius a + t = 10 over the chamber's length, a little lifted
+    points = np.asarray(layer.data.points)
+    assert np.abs(points[:, 0]).max() == pytest.approx(10.0, abs=0.1)
+    assert (points[:, 2].min(), points[:, 2].max()) == pytest.approx((0.0, 24.0))
+    bare = dataclasses.replace(lines, fibers=None)
+    assert "winding" not in BodySurfaces(bare).names
+
+
+# --- at rest ---------------------------------------------------------------------------------
+
+ROOF = Scenery(
+    {"roof": Box((-2.0, 13.0, 0.0), (2.0, 15.0, 24.0))}, lengths={"wall": 2.0, "chamber": 24.25}
+)
+
+
+@pytest.mark.parametrize(
+    ("half", "element", "smeared"),
+    [(True, "hexahedron", False), (False, "hexahedron", True), (True, "tetrahedron", False)],
+)
+def test_at_rest(renderer: Renderer, half: bool, element: str, smeared: bool) -> None:
+    scene = dataclasses.replace(model_mesh(half=half, element=element), smeared=smeared)
+    rest = rest_image(scene, renderer, ROOF, 800)
+    assert [text for text, _ in rest.lengths] == ["chamber 24.25 mm", "32 mm", "14 mm", "22 mm"]
+    # whatever is modelled, half of it is cut open: wall, floor and sheath are seen
+    hues = rest.image.reshape(-1, 3).astype(int)
+    orange = (hues[:, 0] > hues[:, 2] + 60).sum()
+    blue = (hues[:, 2] > hues[:, 0] + 25).sum()
+    assert orange > 500
+    assert blue > 500
+    file = io.BytesIO()
+    draw_rest(scene, file, renderer, ROOF)
+    assert file.getbuffer().nbytes > 20_000
+
+
+def test_half_and_whole_look_alike_at_rest(renderer: Renderer) -> None:
+    images = [
+        rest_image(dataclasses.replace(model_mesh(half=half), fibers=None), renderer, None, 500)
+        for half in (True, False)
+    ]
+    gap = np.abs(images[0].image.astype(int) - images[1].image.astype(int)).max(axis=2)
+    assert (gap > 40).mean() < 0.01
+
+
+# --- in motion -------------------------------------------------------------------------------
+
+
+def frames(scene: ModelMesh, states: list[Snapshot]) -> Iterator[tuple[Snapshot, Floats]]:
+    nodes = split_nodes(scene.mesh)
+    for state in states:
+        yield state, recover(scene, state, nodes).log_strain[nodes.cells]
+
+
+def test_animation_has_a_frame_for_every_state(renderer: Renderer) -> None:
+    from PIL import Image
+
+    scene = model_mesh()
+    states = [snapshot(scene, angle) for angle in (0.0, 30.0, 60.0, 90.0)]
+    file = io.BytesIO()
+    Animation(scene, renderer, ROOF).write(file, frames(scene, states), lambda: states)
+    assert file.getbuffer().nbytes < 4_000_000
+    with Image.open(file) as gif:
+        assert (gif.size, gif.n_frames, gif.info["loop"]) == (SIZE, 4, 0)
+        pages = []
+        for number in range(4):
+            gif.seek(number)
+            pages.append(np.asarray(gif.convert("RGB")).astype(int))
+    # the colour bar, the axes and the scale stay as they are
+    below = [page[SIZE[1] - 100 :] for page in pages]
+    assert all((each == below[0]).all() for each in below)
+    # the root stays where it is, and the tip goes down
+    assert all((page != pages[0]).any() for page in pages[1:])
+    lowest = [np.nonzero(np.ptp(page[:560], axis=2) > 60)[0].max() for page in pages]
+    assert lowest == sorted(lowest)
+    assert lowest[-1] > lowest[0] + 20
+    with pytest.raises(ValueError, match="no state"):
+        Animation(scene, renderer).write(io.BytesIO(), iter(()), lambda: [])
+
+
+def test_pictures_with_obstacles(renderer: Renderer) -> None:
+    scene = model_mesh()
+    states = [snapshot(scene, angle) for angle in (30.0, 90.0)]
+    beside = dataclasses.replace(
+        ROOF, forces={state.step: {"roof": (0, -1, 0)} for state in states}
+    )
+    sizes: dict[str, int] = {}
+
+    def write(name: str, fill: Any) -> None:
+        file = io.BytesIO()
+        fill(file)
+        sizes[name] = file.getbuffer().nbytes
+
+    names = draw_pictures(scene, states, write, renderer, scenery=beside)
+    assert names == list(sizes)
+    assert min(sizes.values()) > 15_000
