@@ -127,13 +127,14 @@ def fit(axes: Any, style: Style, below: float = 0.0) -> None:
         )
 
 
-def legend(axes: Any, style: Style, free: Room) -> None:
+def legend(axes: Any, style: Style, free: Room, grow: bool = False) -> None:
     """Name the curves where no curve is; below the axes where there is no such place.
 
     Args:
-        axes: fitted, with their limits set; they shrink for a legend below.
+        axes: fitted, with their limits set.
         style: of the page.
         free: what is free; the legend is taken from it.
+        grow: for a legend below the page grows; else the axes shrink.
 
     Raises:
         NoRoomError: there is no room below either.
@@ -162,6 +163,9 @@ def legend(axes: Any, style: Style, free: Room) -> None:
             break
     frame.set_visible(False)
     frame.set_in_layout(False)
+    if grow:
+        width, height = axes.figure.get_size_inches()
+        axes.figure.set_size_inches(width, height + (box.height + pad) / axes.figure.dpi)
     fit(axes, style, below=box.height + pad)
     frame.set_visible(True)
     free.look()
