@@ -85,6 +85,11 @@ def new_axes(style: Style, title: str, reason: str | None, across: str, up: str)
     return page, axes
 
 
+def paper(style: Style) -> dict[str, Any]:
+    """White behind a text; a white rim around its letters would make them drawings in a PDF."""
+    return {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.5 * style.scale}
+
+
 def heading(page: Any, style: Style, title: str, reason: str | None) -> None:
     """Write a title at the top of a page, and under it why the run ended early."""
     page.text(0.5, 0.95, literal(title), ha="center", fontsize=15 * style.scale)
@@ -236,8 +241,6 @@ class Room:
             up: its other coordinate.
             size: of the letters, pt; in proportion to those of the style.
         """
-        from matplotlib.patheffects import withStroke
-
         figure, scale = self._axes.figure, self._style.scale
         at = self._axes.transData.transform((across, up))
         note = self._axes.annotate(
@@ -249,8 +252,8 @@ class Room:
             va="center",
             fontsize=size * scale,
             zorder=5,
+            bbox=paper(self._style),
         )
-        note.set_path_effects([withStroke(linewidth=3 * scale, foreground="white")])
         extent = note.get_window_extent(figure.canvas.get_renderer())
         half = np.array([extent.width, extent.height]) / 2
         places = list(_around(at, half, _pixels(scale, figure)))

@@ -21,6 +21,7 @@ from fiberbend.drawing.axes import (
     heading,
     legend,
     new_axes,
+    paper,
     whole_rows,
 )
 from fiberbend.drawing.page import DEFAULT, Style, literal, save
@@ -224,22 +225,74 @@ def _path_in_space(
                 axes.plot(*line[:, order].T, "-", color=color, linewidth=1.2 * scale, label=label)
                 label = "_"
     axes.plot(*points.T, "o-", color=BLUE, linewidth=1.8 * scale, markersize=4 * scale)
-    for i, name in {0: "start", len(points) - 1: "end"}.items():
+    for i in (0, len(points) - 1):
         axes.plot(*points[i : i + 1].T, "o", color=RED, markersize=9 * scale)
-        text = f"  {name}: {pressure[i]:.1f} kPa"
-        axes.text(*points[i], text, fontsize=12 * scale, verticalalignment="bottom", zorder=10)
     for axis, name, low, high in zip("xyz", "zxy", *limits, strict=True):
         getattr(axes, f"set_{axis}lim")(low, high)
         getattr(axes, f"set_{axis}label")(
             f"{name} (mm)", fontsize=style.font_size, labelpad=8 * scale
         )
         axes.tick_params(axis=axis, labelsize=10 * scale, pad=3 * scale)
-        axes.locator_params(axis=axis, nbins=5)
-    axes.set_box_aspect(limits[1] - limits[0], zoom=0.85)
+        short = high - low < 0.4 * (limits[1] - limits[0]).max()
+        axes.locator_params(axis=axis, nbins=3 if short else 5)
     axes.view_init(elev=22, azim=-60)
+    _fill(axes, limits[1] - limits[0], bool(title) or reason is not None)
+    for i, name in {0: "start", len(points) - 1: "end"}.items():
+        _name_end(axes, f"{name}: {pressure[i]:.1f} kPa", points[i], points.mean(axis=0), style)
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(fontsize=11 * scale, loc="upper left", edgecolor="none")
+        page.legend(
+            *axes.get_legend_handles_labels(),
+            fontsize=11 * scale,
+            loc="lower left",
+            edgecolor="none",
+            borderaxespad=0.3,
+        )
     save(page, target, style)
+
+
+def _name_end(axes: Any, text: str, point: Floats, middle: Floats, style: Style) -> None:
+    """Write beside a point (3,) of axes in space, toward the middle of what is drawn."""
+    (across, up), (center, _) = _projected(axes, np.stack([point, middle]))
+    left = across > center
+    axes.annotate(
+        text,
+        (across, up),
+        ((-8 if left else 8) * style.scale, 6 * style.scale),
+        textcoords="offset points",
+        ha="right" if left else "left",
+        fontsize=12 * style.scale,
+        zorder=20,
+        bbox=paper(style),
+    )
+
+
+def _projected(axes: Any, points: Floats) -> Floats:
+    """Points (n, 3) of axes in space as they lie on the page, (n, 2)."""
+    seen = np.column_stack([points, np.ones(len(points))]) @ axes.get_proj().T
+    projected: Floats = seen[:, :2] / seen[:, 3:]
+    return projected
+
+
+def _fill(axes: Any, extent: Floats, headed: bool) -> None:
+    """Let axes in space fill their page under its heading."""
+    page = axes.figure
+    renderer = page.canvas.get_renderer()
+    room = np.array([0.94 * page.bbox.width, (0.86 if headed else 0.94) * page.bbox.height])
+    middle, zoom = np.array([0.5, 0.46 if headed else 0.5]) * page.bbox.size, 0.85
+    corners = np.array(np.meshgrid(axes.get_xlim(), axes.get_ylim(), axes.get_zlim()))
+    for _ in range(3):
+        axes.set_box_aspect(extent, zoom=zoom)
+        # only now the names of the axes are where they will be
+        page.draw_without_rendering()
+        texts = [axis.label for axis in (axes.xaxis, axes.yaxis, axes.zaxis)]
+        boxes = [text.get_window_extent(renderer) for text in texts]
+        points = axes.transData.transform(_projected(axes, corners.reshape(3, -1).T))
+        low = np.min([points.min(axis=0), *([box.x0, box.y0] for box in boxes)], axis=0)
+        high = np.max([points.max(axis=0), *([box.x1, box.y1] for box in boxes)], axis=0)
+        shift = (middle - (low + high) / 2) / page.bbox.size
+        x0, y0, width, height = axes.get_position(original=True).bounds
+        axes.set_position((x0 + shift[0], y0 + shift[1], width, height))
+        zoom *= float(min(room / (high - low)))
 
 
 def _wires(shape: Shape, limits: Floats) -> list[Floats]:
