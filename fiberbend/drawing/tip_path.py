@@ -93,11 +93,11 @@ def plot_tip_path(
     )
     for i in (0, len(z) - 1):
         axes.plot(z[i], y[i], "o", color=RED, markersize=9 * scale, zorder=4)
+    _limits(axes, z, y, obstacles.values())
     fit(axes, style)
+    # one scale in the place that the axes have found
     _limits(axes, z, y, obstacles.values())
     names = _draw_shapes(axes, obstacles)
-    fit(axes, style)
-    _limits(axes, z, y, obstacles.values())
     free = Room(axes, style)
     if names:
         legend(axes, style, free)
