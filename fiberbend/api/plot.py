@@ -188,7 +188,10 @@ def _of_runs(
             raise CaseError([Problem("y", text)])
         y = tuple(leading)
     if not x:
-        x = col.ANGLE if y == (col.PRESSURE,) else col.PRESSURE
+        # where other loads act at one pressure, there is nothing to see over it
+        inflated = any(len({*run.pairs(col.PRESSURE, col.PRESSURE)}) > 1 for run in runs)
+        x = col.PRESSURE if inflated else col.STEP
+        x = col.ANGLE if y == (col.PRESSURE,) else x
     _one_unit(y)
     for run in runs:
         for place, name in (("x", x), *(("y", name) for name in y)):

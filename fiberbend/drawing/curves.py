@@ -132,14 +132,14 @@ def plot_pressure_angle(
     Raises:
         ValueError: no row has both values.
     """
-    data = whole_rows(rows, _ANGLE)
+    data, across, shown = _along(rows, _ANGLE)
     marks = []
     for angle in angles:
         nearest = int(np.abs(data[1] - angle).argmin())
         if abs(data[1][nearest] - angle) <= _SAME_ANGLE:
-            pressure = data[0][nearest]
-            marks.append((f"{angle:g}° at {pressure:.1f} kPa", pressure, angle))
-    page, axes = new_axes(style, title, reason, "pressure P (kPa)", "bending angle θ (°)")
+            place = data[0][nearest]
+            marks.append((f"{angle:g}° at {shown.format(place)}", place, angle))
+    page, axes = new_axes(style, title, reason, across, "bending angle θ (°)")
     _curves(axes, data, overlay, name, marks, style)
     save(page, target, style)
 
@@ -152,9 +152,9 @@ def plot_twist(
     style: Style = DEFAULT,
 ) -> None:
     """Twist of the sections about the centre-line against pressure; see `plot_pressure_angle`."""
-    data = whole_rows(rows, _TWIST)
-    page, axes = new_axes(style, title, reason, "pressure P (kPa)", "twist (°)")
-    end = (f"{data[1][-1]:.3g}° at {data[0][-1]:.1f} kPa", data[0][-1], data[1][-1])
+    data, across, shown = _along(rows, _TWIST)
+    page, axes = new_axes(style, title, reason, across, "twist (°)")
+    end = (f"{data[1][-1]:.3g}° at {shown.format(data[0][-1])}", data[0][-1], data[1][-1])
     _curves(axes, data, None, "", [end], style)
     save(page, target, style)
 
@@ -307,6 +307,19 @@ def _turns(rows: Sequence[col.Row], columns: tuple[str, str]) -> bool:
     """Whether an angle is more than nothing anywhere."""
     found = [row for row in rows if complete(row, columns)]
     return any(abs(row[columns[1]]) > SMALL_ANGLE for row in found)
+
+
+def _along(rows: Sequence[col.Row], columns: tuple[str, str]) -> tuple[list[Floats], str, str]:
+    """A column over the pressure; over the load steps where other loads act at one pressure.
+
+    Returns:
+        Both columns, the name of the lower axis, and how a value of it is written.
+    """
+    data = whole_rows(rows, columns)
+    steps = (col.STEP, columns[1])
+    if np.ptp(data[0]) == 0 and all(complete(row, steps) for row in rows):
+        return whole_rows(rows, steps), "load step", "step {:.0f}"
+    return data, "pressure P (kPa)", "{:.1f} kPa"
 
 
 def _curves(

@@ -114,7 +114,7 @@ def _overlay(curves: Sequence[Curve], across: str, up: str, style: Style) -> Any
     for index, curve in enumerate(runs):
         look = {"color": _COLORS[index % len(_COLORS)], "linewidth": 1.8 * scale, "zorder": 3}
         # where colours come again, the strokes are others
-        dashes = _DASHES[(index + index // len(_COLORS)) % len(_DASHES)]
+        dashes = _DASHES[(index % len(_COLORS) + index // len(_COLORS)) % len(_DASHES)]
         dots = {"marker": "o", "markersize": 4 * scale} if len(curve.up) <= _DOTTED else {}
         axes.plot(curve.across, curve.up, dashes, **look, **dots, label=_name(curve.label))
     for index, curve in enumerate(points):

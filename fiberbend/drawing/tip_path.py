@@ -115,7 +115,7 @@ def _limits(axes: Any, z: Floats, y: Floats, shapes: Any) -> None:
     low, high = np.array([z.min(), y.min()]), np.array([z.max(), y.max()])
     most = max(_FARTHEST * max(*(high - low)), _BESIDE)
     for shape in shapes:
-        near = _nearest(shape, (low + high) / 2)
+        near = _nearest(shape, np.column_stack([z, y]))
         if near is not None:
             least, greatest = np.minimum(low, near[0]), np.maximum(high, near[1])
             if max(greatest - least) <= most:
@@ -128,15 +128,21 @@ def _limits(axes: Any, z: Floats, y: Floats, shapes: Any) -> None:
     axes.set_ylim(middle[1] - half, middle[1] + half)
 
 
-def _nearest(shape: Shape, point: Floats) -> tuple[Floats, Floats] | None:
-    """Least and greatest z and y of what of an obstacle is to be seen from a point z, y."""
+def _nearest(shape: Shape, path: Floats) -> tuple[Floats, Floats] | None:
+    """Least and greatest z and y of what of an obstacle is to be seen beside a path (n, 2)."""
     if isinstance(shape, Bar):
         center = np.array(shape.center[::-1])
         return center - shape.radius, center + shape.radius
     if isinstance(shape, Box):
-        corner = np.clip(point, shape.low[:0:-1], shape.high[:0:-1])
+        corner = np.clip(path.mean(axis=0), shape.low[:0:-1], shape.high[:0:-1])
         return corner - 1.0, corner + 1.0
-    return None
+    line = _line(shape) if isinstance(shape, Sheet) else None
+    if line is None:
+        return None
+    point, normal = line
+    above = (path - point) @ normal
+    foot = path[above.argmin()] - above.min() * normal
+    return foot - 1.0, foot + 1.0
 
 
 def _draw_shapes(axes: Any, obstacles: Mapping[str, Shape]) -> list[str]:
@@ -172,20 +178,24 @@ def _outline(shape: Shape, size: Floats) -> Floats | None:
     if isinstance(shape, Box):
         (_, y0, z0), (_, y1, z1) = shape.low, shape.high
         return np.array([[z0, y0], [z1, y0], [z1, y1], [z0, y1]])
-    if not isinstance(shape, Sheet):
+    line = _line(shape) if isinstance(shape, Sheet) else None
+    if line is None:
         return None
-    normal = np.array(shape.normal[:0:-1]) / np.linalg.norm(shape.normal)
-    length = float(np.linalg.norm(normal))
-    if length < 1e-6:
-        return None
-    normal /= length
-    # where x = 0 meets the plane, n · (p − point) = 0
-    point = np.array(shape.point[:0:-1]) + normal * (
-        shape.normal[0] / np.linalg.norm(shape.normal) * shape.point[0] / length
-    )
+    point, normal = line
     along = np.array([-normal[1], normal[0]]) * 10 * (np.abs(point).max() + size.max())
     thick = -0.03 * size.min() * normal
     return np.array([point - along, point + along, point + along + thick, point - along + thick])
+
+
+def _line(sheet: Sheet) -> tuple[Floats, Floats] | None:
+    """A point and the normal, z and y each, of where a sheet meets x = 0; None if it does not."""
+    whole = np.array(sheet.normal) / np.linalg.norm(sheet.normal)
+    normal, length = whole[:0:-1], float(np.linalg.norm(whole[1:]))
+    if length < 1e-6:
+        return None
+    # n · (p − point) = 0 with x = 0
+    point = np.array(sheet.point[:0:-1]) + normal * whole[0] * sheet.point[0] / length**2
+    return point, normal / length
 
 
 def _path_in_space(

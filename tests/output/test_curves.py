@@ -214,6 +214,14 @@ def test_no_angle_no_picture_of_it(angle: float, tmp_path: Path) -> None:
     assert draw_plots(rows, into(tmp_path)) == ["tip_force.png", "tip_path.png"]
 
 
+def test_loads_at_one_pressure_are_shown_by_their_steps(drawn: list[Any], tmp_path: Path) -> None:
+    rows = [{**row, col.PRESSURE: 0.0, col.TWIST: row[col.ANGLE]} for row in contact_rows()]
+    assert draw_plots(rows, into(tmp_path))[:2] == ["pressure_angle.png", "pressure_twist.png"]
+    for axes in drawn[:2]:
+        assert axes.get_xlabel() == "load step"
+        assert list(axes.lines[0].get_xdata()) == [row[col.STEP] for row in rows]
+
+
 def test_other_models_leave_the_axes_as_they_are(drawn: list[Any], tmp_path: Path) -> None:
     from fiberbend.drawing.overlay import Line, Overlay
 
@@ -296,6 +304,16 @@ def test_obstacles_stand_where_they_are_at_one_scale(drawn: list[Any], tmp_path:
     assert axes.get_legend() is not None
     assert covered(axes) == []
     assert overlapping(axes) == 0
+
+
+@pytest.mark.parametrize("height", [-12.0, -17.0])
+def test_a_table_under_the_tip_is_in_sight(height: float, drawn: list[Any], tmp_path: Path) -> None:
+    rows = [{col.PRESSURE: p, col.TIP_Z: 75.0, col.TIP_Y: 5 - p} for p in (0.0, 6, 12)]
+    table = {"table": Sheet((0.0, height, 0.0), (0.0, 1.0, 0.0))}
+    plot_tip_path(rows, tmp_path / "path.png", obstacles=table)
+    (axes,) = drawn
+    assert axes.get_ylim()[0] < height
+    assert [patch.get_label() for patch in axes.patches] == ["table"]
 
 
 def test_a_slanted_sheet_is_cut_by_the_plane_of_bending() -> None:

@@ -22,7 +22,7 @@ from fiberbend.results.folder import read_history
 from fiberbend.schema.problems import CaseError
 from fiberbend.sweep.command import run_sweep
 from tests.conftest import ROOT
-from tests.output.test_curves import contact_rows
+from tests.output.test_curves import contact_rows, covered
 from tests.output.test_styles import size_of
 
 
@@ -102,6 +102,13 @@ def test_a_run_that_touches_something_shows_the_force_of_it() -> None:
     assert select(RunData("missed", {}, never)).y == (col.ANGLE,)
 
 
+def test_a_run_at_one_pressure_is_shown_over_its_load_steps() -> None:
+    rows = [{**row, col.PRESSURE: 0.0} for row in contact_rows()]
+    shown = select(RunData("hanging", {}, rows))
+    assert (shown.x, shown.name) == (col.STEP, "step_angle")
+    assert list(shown.curves[0].across) == [row[col.STEP] for row in rows]
+
+
 @pytest.mark.parametrize("kind", ["pdf", "svg", "png"])
 def test_the_command_writes_a_figure_of_exactly_85_mm(
     kind: str, runs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -149,6 +156,7 @@ def test_runs_are_named_by_what_differs_between_their_cases(runs: Path) -> None:
     shown = select([runs / "thin", runs / "thick"])
     assert [curve.label for curve in shown.curves] == ["wall 2 mm", "wall 3 mm"]
     axes = shown.draw(PAPER).axes[0]
+    assert covered(axes) == []
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["wall 2 mm", "wall 3 mm"]
     shown = select([runs / "thin", runs / "thick"], labels=["ours"])
     assert [curve.label for curve in shown.curves] == ["ours", "wall 3 mm"]
@@ -175,6 +183,12 @@ def test_runs_are_named_by_what_differs_between_their_cases(runs: Path) -> None:
 def test_names_of_runs(cases: list[dict[str, Any]], expected: list[str]) -> None:
     runs = [RunData(f"run{i}", case, contact_rows()) for i, case in enumerate(cases)]
     assert [curve.label for curve in select(runs).curves] == expected
+
+
+def test_many_curves_are_told_apart() -> None:
+    runs = [RunData(f"run{i}", {}, contact_rows()) for i in range(28)]
+    lines = select(runs).draw(PAPER).axes[0].lines
+    assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == 28
 
 
 def test_runs_in_folders_of_one_name_are_counted() -> None:
