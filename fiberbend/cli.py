@@ -44,6 +44,18 @@ app.command(
   fiberbend control cases/section.yaml --steps "30 deg" "90 deg"
 """,
 )
+app.command(
+    "fiberbend.commands.plot:plot",
+    name="plot",
+    help="Draw a figure for a paper: curves of runs, sweeps and measured points.",
+    help_epilogue="""Examples:
+  fiberbend plot runs/section
+  fiberbend plot runs/section --format svg --width 85mm --font-size 7
+  fiberbend plot runs/section runs/thick --label "wall 2 mm" --label "wall 3 mm" --out walls.pdf
+  fiberbend plot runs/section --measured angles.csv --open
+  fiberbend plot runs/radius_length_wall --x wall_mm --y pressure_360deg_kPa
+""",
+)
 
 app.command(
     "fiberbend.commands.init:init",

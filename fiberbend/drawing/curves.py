@@ -1,31 +1,30 @@
-"""Curves of a run: bending angle and tip force against pressure, and the path of the tip.
+"""Curves of a run over the pressure: bending angle, twist, tip force and forces of contact.
 
-Rows are those of history.csv; what a row does not have is left out.
+Rows are those of history.csv; what a row does not have is left out. Axes are those of the run's own
+data and of measured points: the curve of another model ends where the axes do.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import functools
-import textwrap
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from fiberbend import columns as col
-from fiberbend.drawing.overlay import (
-    MODELS,
-    Line,
-    Overlay,
-    Points,
-)
-from fiberbend.drawing.page import figure, literal, save
+from fiberbend.drawing import tip_path
+from fiberbend.drawing.axes import BLUE, RED, Room, complete, fit, legend, new_axes, whole_rows
+from fiberbend.drawing.overlay import MODELS, Overlay
+from fiberbend.drawing.page import DEFAULT, Style, any_sign, literal, save
+from fiberbend.states.obstacles import Shape
 from fiberbend.states.snapshot import Target, Write
 from geometry.mesh.data import Floats
 
-SIZE = (1000, 700)
-"""Width and height of a plot in pixels."""
-_BLUE, _RED = "#1f5a99", "#c0392b"
+SMALL_ANGLE = 0.05
+"""Degrees; a run that bends or twists less draws no picture of it."""
 _MEASURED = "#111111"
 _STYLES = dict(
     zip(
@@ -34,17 +33,78 @@ _STYLES = dict(
         strict=True,
     )
 )
+_CONTACTS = (BLUE, "#b8860b", "#2e7d32", "#7b4fa3", "#444444")
 _SAME_ANGLE = 0.05
 _LONG = 40
-_LEFT = 0.17
-"""Part of the width that a point's text takes to its left."""
-_ROOM = 2.0
 _TINY = 1e-6
-_ASIDE = 1e-3
-"""Part of the path's extent by which it leaves the plane of bending where it is drawn in space."""
+_ALONG = 0.999
+"""A force whose component is this part of it is one along that axis."""
 _ANGLE = (col.PRESSURE, col.ANGLE)
-_PATH = (col.TIP_Z, col.TIP_Y, col.PRESSURE)
+_TWIST = (col.PRESSURE, col.TWIST)
 _FORCE = (col.PRESSURE, col.TIP_FORCE)
+_CONTACT = re.compile(r"contact_(.+)_y_N")
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class ContactForce:
+    """Force of one obstacle on the body over the pressure.
+
+    Attributes:
+        name: of the obstacle.
+        direction: along which axis it acts, such as " along −y"; empty for several axes.
+        pressure: pressures, (n,), kPa.
+        force: its magnitude in the plane of bending, (n,), N.
+        parts: its components along y and z, (2, n), N.
+        touch: index of the first state in touch; None where the body touches from the first state
+            on, or never.
+    """
+
+    name: str
+    direction: str
+    pressure: Floats
+    force: Floats
+    parts: Floats
+    touch: int | None
+
+    @property
+    def acts(self) -> bool:
+        """The body touches the obstacle at all."""
+        return bool((self.force > 0).any())
+
+
+def contact_forces(rows: Sequence[col.Row]) -> list[ContactForce]:
+    """Forces of all obstacles, and of strips that are kept in place, by the columns of a history.
+
+    A roof and a tip that are kept in place by their strips have a force and no obstacle.
+    """
+    keys = dict.fromkeys(key for row in rows for key in row)
+    names = [match[1] for match in map(_CONTACT.fullmatch, keys) if match]
+    found = []
+    for name in names:
+        columns = (col.PRESSURE, f"contact_{name}_y_N", f"contact_{name}_z_N")
+        if any(complete(row, columns) for row in rows):
+            pressure, along_y, along_z = whole_rows(rows, columns)
+            found.append(_contact(name, pressure, np.stack([along_y, along_z])))
+    roof = (col.PRESSURE, col.ROOF_FORCE)
+    if "roof" not in names and any(complete(row, roof) for row in rows):
+        for name, column, sign in (("roof", col.ROOF_FORCE, -1.0), ("post", col.TIP_FORCE, 1.0)):
+            pair = (col.PRESSURE, column)
+            if any(complete(row, pair) for row in rows):
+                pressure, force = whole_rows(rows, pair)
+                found.append(_contact(name, pressure, np.stack([sign * force, 0 * force])))
+    return found
+
+
+def _contact(name: str, pressure: Floats, parts: Floats) -> ContactForce:
+    force = np.hypot(*parts)
+    direction = ""
+    for part, axis in zip(parts, "yz", strict=True):
+        sign = np.sign(part[np.abs(part).argmax()])
+        if force.max() > 0 and (sign * part >= _ALONG * force).all():
+            direction = f" along {'+' if sign > 0 else '−'}{axis}"
+    touching = np.flatnonzero(force > 0)
+    touch = int(touching[0]) if len(touching) and touching[0] > 0 else None
+    return ContactForce(name, direction, pressure, force, parts, touch)
 
 
 def plot_pressure_angle(
@@ -55,6 +115,7 @@ def plot_pressure_angle(
     reason: str | None = None,
     overlay: Overlay | None = None,
     name: str = "",
+    style: Style = DEFAULT,
 ) -> None:
     """Bending angle against pressure, with a mark at every requested angle that was reached.
 
@@ -66,60 +127,36 @@ def plot_pressure_angle(
         reason: why the run ended early, or None.
         overlay: other models and measured points.
         name: of the run's own curve.
+        style: format, size and letters.
 
     Raises:
         ValueError: no row has both values.
     """
-    data = _columns(rows, _ANGLE)
-    page, axes = _axes(title, reason, "pressure P (kPa)", "bending angle θ (°)")
-    reached = []
+    data, across, shown = _along(rows, _ANGLE)
+    marks = []
     for angle in angles:
         nearest = int(np.abs(data[1] - angle).argmin())
         if abs(data[1][nearest] - angle) <= _SAME_ANGLE:
-            reached.append((data[0][nearest], angle))
-    _curves(axes, data, overlay, name)
-    for pressure, angle in reached:
-        axes.plot(pressure, angle, "o", color=_RED, markersize=9, zorder=4)
-        _name_point(axes, f"{angle:g}° at {pressure:.1f} kPa", pressure, angle)
-    save(page, target)
+            place = data[0][nearest]
+            marks.append((f"{angle:g}° at {shown.format(place)}", place, angle))
+    page, axes = new_axes(style, title, reason, across, "bending angle θ (°)")
+    _curves(axes, data, overlay, name, marks, style)
+    save(page, target, style)
 
 
-def plot_tip_path(
-    rows: Sequence[col.Row], target: Target, title: str = "", reason: str | None = None
+def plot_twist(
+    rows: Sequence[col.Row],
+    target: Target,
+    title: str = "",
+    reason: str | None = None,
+    style: Style = DEFAULT,
 ) -> None:
-    """Path of the tip in the plane of bending, z to the right, y up, one scale.
-
-    Where the tip leaves that plane, the path is drawn in space with its shadows on the walls. Dots
-    are the steps; the curve through them is a spline.
-
-    Args:
-        rows: rows of the history with tip_z_mm, tip_y_mm and pressure_kPa, and with tip_x_mm where
-            the tip may leave the plane.
-        target: a path, or a file open for writing bytes.
-        title: title of the case.
-        reason: why the run ended early, or None.
-
-    Raises:
-        ValueError: no row has all three values.
-    """
-    z, y, pressure = _columns(rows, _PATH)
-    x = np.array([row.get(col.TIP_X) or 0.0 for row in rows if _complete(row, _PATH)])
-    if np.ptp(x) > _ASIDE * max(np.ptp(z), np.ptp(y)):
-        _path_in_space(np.column_stack([x, y, z]), pressure, target, title, reason)
-        return
-    page, axes = _axes(title, reason, "z (mm)", "y (mm)")
-    axes.plot(*_smooth(np.column_stack([z, y])).T, "-", color=_BLUE, linewidth=1.8)
-    axes.plot(z, y, "o", color=_BLUE, markersize=4)
-    for i, name in {0: "start", len(z) - 1: "end"}.items():
-        axes.plot(z[i], y[i], "o", color=_RED, markersize=9, zorder=3)
-        above = 14 if y[i] >= y.mean() else -24
-        _label(axes, f"{name}: {pressure[i]:.1f} kPa", (z[i], y[i]), (0, above), "center")
-    reach = 0.62 * max(float(np.ptp(z)), float(np.ptp(y)), 10.0)
-    axes.set_aspect("equal")
-    axes.set_ylim((y.min() + y.max()) / 2 - reach, (y.min() + y.max()) / 2 + reach)
-    reach *= SIZE[0] / SIZE[1]
-    axes.set_xlim((z.min() + z.max()) / 2 - reach, (z.min() + z.max()) / 2 + reach)
-    save(page, target)
+    """Twist of the sections about the centre-line against pressure; see `plot_pressure_angle`."""
+    data, across, shown = _along(rows, _TWIST)
+    page, axes = new_axes(style, title, reason, across, "twist (°)")
+    end = (f"{data[1][-1]:.3g}° at {shown.format(data[0][-1])}", data[0][-1], data[1][-1])
+    _curves(axes, data, None, "", [end], style)
+    save(page, target, style)
 
 
 def plot_tip_force(
@@ -129,6 +166,7 @@ def plot_tip_force(
     reason: str | None = None,
     overlay: Overlay | None = None,
     name: str = "",
+    style: Style = DEFAULT,
 ) -> None:
     """Tip force of the whole body against pressure.
 
@@ -139,16 +177,73 @@ def plot_tip_force(
         reason: why the run ended early, or None.
         overlay: other models and measured points.
         name: of the run's own curve.
+        style: format, size and letters.
 
     Raises:
         ValueError: no row has both values.
     """
-    data = _columns(rows, _FORCE)
-    page, axes = _axes(title, reason, "pressure P (kPa)", "tip force (N)")
-    _curves(axes, data, overlay, name)
+    data = whole_rows(rows, _FORCE)
+    page, axes = new_axes(style, title, reason, "pressure P (kPa)", "tip force (N)")
     pressure, force = data[0][-1], data[1][-1]
-    _name_point(axes, f"{force:.3g} N at {pressure:.1f} kPa", pressure, force)
-    save(page, target)
+    end = (f"{force:.3g} N at {pressure:.1f} kPa", pressure, force)
+    _curves(axes, data, overlay, name, [end], style)
+    save(page, target, style)
+
+
+def plot_contact_force(
+    rows: Sequence[col.Row],
+    target: Target,
+    title: str = "",
+    reason: str | None = None,
+    style: Style = DEFAULT,
+) -> None:
+    """Force of every obstacle on the body against pressure, with the first touch marked.
+
+    Args:
+        rows: rows of the history with pressure_kPa and forces of obstacles.
+        target: a path, or a file open for writing bytes.
+        title: title of the case.
+        reason: why the run ended early, or None.
+        style: format, size and letters.
+
+    Raises:
+        ValueError: no obstacle has a force in any row.
+    """
+    forces = contact_forces(rows)
+    if not forces:
+        raise ValueError("no row of the history has the force of an obstacle")
+    scale = style.scale
+    page, axes = new_axes(style, title, reason, "pressure P (kPa)", "force on the actuator (N)")
+    values = [0.0]
+    for index, contact in enumerate(forces):
+        color = _CONTACTS[index % len(_CONTACTS)]
+        own = {"color": color, "linewidth": 1.8 * scale, "markersize": 4 * scale, "zorder": 3}
+        several = "" if contact.direction or not contact.acts else ", whole force"
+        never = "" if contact.acts else " (no touch)"
+        label = literal(f"{contact.name}{contact.direction}{several}{never}")
+        axes.plot(contact.pressure, contact.force, "o-", **own, clip_on=False, label=label)
+        values.extend(contact.force)
+        if several:
+            for part, axis, dashes in zip(contact.parts, "yz", ("--", ":"), strict=True):
+                text = literal(f"{contact.name} along {axis}")
+                thin = {"color": color, "linewidth": 1.2 * scale, "zorder": 2}
+                axes.plot(contact.pressure, part, dashes, **thin, label=text)
+                values.extend(part)
+    _limits(axes, np.concatenate([f.pressure for f in forces]), np.array(values))
+    touches = [(f, f.touch) for f in forces if f.touch is not None]
+    for contact, touch in touches:
+        axes.plot(contact.pressure[touch], contact.force[touch], "o", color=RED, **_mark(style))
+    fit(axes, style)
+    free = Room(axes, style)
+    legend(axes, style, free)
+    for contact, touch in touches:
+        text = f"{contact.name}: first touch at {contact.pressure[touch]:.3g} kPa"
+        free.write(text, contact.pressure[touch], contact.force[touch])
+    for contact in forces:
+        if contact.acts:
+            text = f"{contact.force[-1]:.3g} N"
+            free.write(text, contact.pressure[-1], contact.force[-1])
+    save(page, target, style)
 
 
 def draw_plots(
@@ -160,11 +255,18 @@ def draw_plots(
     beside_angles: Overlay | None = None,
     beside_forces: Overlay | None = None,
     name: str = "",
+    obstacles: Mapping[str, Shape] | None = None,
+    blocked: bool = False,
+    style: Style = DEFAULT,
 ) -> list[str]:
-    """Draw pressure_angle.png, tip_path.png and, with a tip force, tip_force.png.
+    """Draw the curves that a run has: what it was made for comes first.
+
+    They are pressure_angle.png, pressure_twist.png, tip_path.png, tip_force.png and
+    contact_force.png, with another ending in another format.
 
     Args:
-        rows: rows of the history; a plot whose columns are empty is not drawn.
+        rows: rows of the history; a plot whose columns are empty is not drawn, nor is one of an
+            angle below `SMALL_ANGLE` or of a tip that does not move.
         write: writes a file, such as `RunFolder.write`.
         angles: requested angles in degrees.
         title: title of the case.
@@ -172,137 +274,91 @@ def draw_plots(
         beside_angles: what is drawn beside the angle over the pressure.
         beside_forces: what is drawn beside the tip force over the pressure.
         name: of the run's own curve where others are beside it, such as "body model".
+        obstacles: rigid bodies by their names, drawn beside the path of the tip.
+        blocked: the actuator is kept straight, so that forces lead.
+        style: format, size and letters.
 
     Returns:
-        The names written.
+        The names written, in order of importance.
     """
     angle = functools.partial(plot_pressure_angle, angles=angles, overlay=beside_angles, name=name)
     force = functools.partial(plot_tip_force, overlay=beside_forces, name=name)
-    plots: dict[str, tuple[Callable[..., None], tuple[str, ...]]] = {
-        "pressure_angle.png": (angle, _ANGLE),
-        "tip_path.png": (plot_tip_path, _PATH),
-        "tip_force.png": (force, _FORCE),
+    path = functools.partial(tip_path.plot_tip_path, obstacles=obstacles)
+    plots: dict[str, tuple[Callable[..., None], bool]] = {
+        "pressure_angle": (angle, _turns(rows, _ANGLE)),
+        "pressure_twist": (plot_twist, _turns(rows, _TWIST)),
+        "tip_force": (force, sum(complete(row, _FORCE) for row in rows) > 0),
+        "contact_force": (plot_contact_force, any(f.acts for f in contact_forces(rows))),
+        "tip_path": (path, tip_path.moves(rows)),
     }
+    order = sorted(plots, key=lambda plot: blocked and not plot.endswith("force"))
     drawn = []
-    for name, (plot, columns) in plots.items():
-        if any(_complete(row, columns) for row in rows):
-            write(name, functools.partial(plot, rows, title=title, reason=reason))
-            drawn.append(name)
+    for plot in order:
+        draw, wanted = plots[plot]
+        if wanted:
+            file = f"{plot}.{style.format}"
+            with any_sign():
+                write(file, functools.partial(draw, rows, title=title, reason=reason, style=style))
+            drawn.append(file)
     return drawn
 
 
-def _complete(row: col.Row, columns: Sequence[str]) -> bool:
-    return all(row.get(name) is not None for name in columns)
+def _turns(rows: Sequence[col.Row], columns: tuple[str, str]) -> bool:
+    """Whether an angle is more than nothing anywhere."""
+    found = [row for row in rows if complete(row, columns)]
+    return any(abs(row[columns[1]]) > SMALL_ANGLE for row in found)
 
 
-def _columns(rows: Sequence[col.Row], names: Sequence[str]) -> list[Floats]:
-    full = [[row[name] for name in names] for row in rows if _complete(row, names)]
-    if not full:
-        raise ValueError(f"no row of the history has {', '.join(names)}")
-    return list(np.array(full, dtype=float).T)
+def _along(rows: Sequence[col.Row], columns: tuple[str, str]) -> tuple[list[Floats], str, str]:
+    """A column over the pressure; over the load steps where other loads act at one pressure.
+
+    Returns:
+        Both columns, the name of the lower axis, and how a value of it is written.
+    """
+    data = whole_rows(rows, columns)
+    steps = (col.STEP, columns[1])
+    if np.ptp(data[0]) == 0 and all(complete(row, steps) for row in rows):
+        return whole_rows(rows, steps), "load step", "step {:.0f}"
+    return data, "pressure P (kPa)", "{:.1f} kPa"
 
 
-def _path_in_space(
-    path: Floats, pressure: Floats, target: Target, title: str, reason: str | None
+def _curves(
+    axes: Any,
+    data: Sequence[Floats],
+    overlay: Overlay | None,
+    name: str,
+    marks: Sequence[tuple[str, float, float]],
+    style: Style,
 ) -> None:
-    """Draw a path (n, 3) in mm, z away to the right, y up, one scale, shadows on three walls."""
-    page = figure(SIZE)
-    axes = page.add_axes((0.04, 0.02, 0.92, 0.9), projection="3d")
-    page.text(0.5, 0.95, literal(title), ha="center", fontsize=15)
-    if reason:
-        text = literal(_note(reason))
-        page.text(0.5, 0.91, text, ha="center", color=_RED, fontsize=10)
-    # as seen: z to the right, x toward the viewer, y up
-    order = [2, 0, 1]
-    points, curve = path[:, order], _smooth(path)[:, order]
-    middle = (points.max(axis=0) + points.min(axis=0)) / 2
-    reach = np.maximum(0.6 * np.ptp(points, axis=0), 0.25 * np.ptp(points, axis=0).max())
-    limits = np.stack([middle - reach, middle + reach])
-    for wall, side in ((0, 0), (1, 1), (2, 0)):
-        shadow = curve.copy()
-        shadow[:, wall] = limits[side, wall]
-        axes.plot(*shadow.T, "-", color="0.75", linewidth=1.2)
-    axes.plot(*curve.T, "-", color=_BLUE, linewidth=1.8)
-    axes.plot(*points.T, "o", color=_BLUE, markersize=4)
-    for i, name in {0: "start", len(points) - 1: "end"}.items():
-        axes.plot(*points[i : i + 1].T, "o", color=_RED, markersize=9)
-        text = f"  {name}: {pressure[i]:.1f} kPa"
-        axes.text(*points[i], text, fontsize=12, verticalalignment="bottom", zorder=10)
-    for axis, name, low, high in zip("xyz", "zxy", *limits, strict=True):
-        getattr(axes, f"set_{axis}lim")(low, high)
-        getattr(axes, f"set_{axis}label")(f"{name} (mm)", fontsize=13, labelpad=8)
-        axes.locator_params(axis=axis, nbins=5)
-    axes.set_box_aspect(limits[1] - limits[0], zoom=0.85)
-    axes.view_init(elev=22, azim=-60)
-    save(page, target)
-
-
-def _smooth(points: Floats) -> Floats:
-    """A spline through points (n, d), its parameter their distance along the path."""
-    from scipy.interpolate import CubicSpline
-
-    path = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    kept = np.r_[True, np.diff(path) > 1e-9]
-    if kept.sum() < 3:
-        return points
-    fine = np.linspace(0.0, path[-1], 400)
-    curve: Floats = CubicSpline(path[kept], points[kept])(fine)
-    return curve
-
-
-def _axes(title: str, reason: str | None, across: str, up: str) -> tuple[Any, Any]:
-    page = figure(SIZE)
-    axes = page.add_axes((0.1, 0.11, 0.86, 0.77))
-    axes.set_title(literal(title), fontsize=15, pad=24 if reason else 10)
-    if reason:
-        place = {"transform": axes.transAxes, "ha": "center", "color": _RED, "fontsize": 10}
-        axes.text(0.5, 1.015, literal(_note(reason)), **place)
-    axes.set_xlabel(across, fontsize=13)
-    axes.set_ylabel(up, fontsize=13)
-    axes.tick_params(labelsize=11)
-    axes.grid(color="0.9")
-    axes.spines[["top", "right"]].set_visible(False)
-    return page, axes
-
-
-def _note(reason: str) -> str:
-    return f"ended early: {textwrap.shorten(reason, 110, placeholder=' …')}"
-
-
-def _label(
-    axes: Any, text: str, point: tuple[float, float], shift: tuple[float, float], side: str
-) -> None:
-    axes.annotate(text, point, shift, textcoords="offset points", ha=side, fontsize=12)
-
-
-def _curves(axes: Any, data: Sequence[Floats], overlay: Overlay | None, name: str) -> None:
-    """Draw the run's curve and what is beside it, with a legend; set the limits."""
-    overlay = overlay or Overlay()
-    _range(axes, data, overlay)
-    own = {"color": _BLUE, "markersize": 4, "linewidth": 1.8, "clip_on": False, "zorder": 3}
-    axes.plot(*data, "o-", **own, label=name or None)
+    """Draw the run's curve, marks on it and what is beside it, with a legend; set the limits."""
+    overlay, scale = overlay or Overlay(), style.scale
+    own = {"color": BLUE, "markersize": 4 * scale, "linewidth": 1.8 * scale, "zorder": 3}
+    axes.plot(*data, "o-", **own, clip_on=False, label=name or None)
     for line in overlay.lines:
-        color, style = _STYLES[line.name]
-        label = _shown(line.label)
-        axes.plot(line.across, line.up, style, color=color, linewidth=1.1, zorder=2, label=label)
+        color, dashes = _STYLES[line.name]
+        look = {"color": color, "linewidth": 1.1 * scale, "zorder": 2}
+        axes.plot(line.across, line.up, dashes, **look, label=_shown(line.label))
     for points in overlay.points:
         text = points.label if len(points.label) <= _LONG else f"{points.label[:_LONG]}…"
-        mark = {"color": _MEASURED, "markersize": 7, "zorder": 3.5}
+        mark = {"color": _MEASURED, "markersize": 7 * scale, "zorder": 3.5}
         axes.plot(points.across, points.up, "x", **mark, label=literal(text))
-    if overlay.lines or overlay.points:
-        axes.legend(fontsize=11, loc="best", edgecolor="none", framealpha=0.8)
-
-
-def _name_point(axes: Any, text: str, across: float, up: float) -> None:
-    """Write beside a point of a rising curve: over it to the left, or else under it."""
-    from matplotlib.patheffects import withStroke
-
-    left = axes.transLimits.transform((across, up))[0] > _LEFT
-    shift, side = ((-9, 4), "right") if left else ((9, -13), "left")
-    label = axes.annotate(
-        text, (across, up), shift, textcoords="offset points", ha=side, fontsize=12, zorder=5
+    _limits(
+        axes,
+        np.concatenate([data[0], *(points.across for points in overlay.points)]),
+        np.concatenate([data[1], *(points.up for points in overlay.points)]),
     )
-    label.set_path_effects([withStroke(linewidth=3, foreground="white")])
+    for _, across, up in marks:
+        axes.plot(across, up, "o", color=RED, **_mark(style))
+    fit(axes, style)
+    free = Room(axes, style)
+    if overlay.lines or overlay.points:
+        legend(axes, style, free)
+    for text, across, up in marks:
+        free.write(text, across, up)
+
+
+def _mark(style: Style) -> dict[str, Any]:
+    return {"markersize": 9 * style.scale, "zorder": 4, "clip_on": False}
 
 
 def _shown(label: str) -> str:
@@ -310,26 +366,11 @@ def _shown(label: str) -> str:
     return label.replace("μ̄", r"$\bar{\mu}$").replace("L_f", "$L_f$")
 
 
-def _range(axes: Any, data: Sequence[Floats], overlay: Overlay) -> None:
-    """Show the origin, the run, all measured points, and room for labels.
-
-    Other models may go beyond: of the pressures they get as much room again as the run.
-    """
-    for axis, change in enumerate((axes.set_xlim, axes.set_ylim)):
-        own = np.concatenate([[0.0], data[axis], *(p[axis] for p in map(_pair, overlay.points))])
-        low, high = float(own.min()), float(own.max())
-        others = [_pair(line)[axis] for line in overlay.lines]
-        if others:
-            beside = np.concatenate(others)
-            low, high = (
-                min(low, max(float(beside.min()), _ROOM * low)),
-                max(high, min(float(beside.max()), _ROOM * high)),
-            )
+def _limits(axes: Any, across: Floats, up: Floats) -> None:
+    """Show the origin, all of these values, and room for labels."""
+    for values, change in ((across, axes.set_xlim), (up, axes.set_ylim)):
+        low, high = min(0.0, float(values.min())), max(0.0, float(values.max()))
         if low > -_TINY * (high - low):
             low = 0.0
         room = 0.12 * (high - low) or 1.0
-        change(low - (room if low < 0 else 0), high + room)
-
-
-def _pair(curve: Line | Points) -> tuple[Floats, Floats]:
-    return curve.across, curve.up
+        change(low - (room if low < 0 else 0), high + (room if high > 0 else 0))

@@ -6,11 +6,12 @@ matplotlib is imported where it is used, and without its global state.
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import math
 import textwrap
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from fiberbend.drawing.renderer import Image, View
 from fiberbend.states.snapshot import Target
 
 Box = tuple[float, float, float, float]
+Format = Literal["png", "svg", "pdf"]
 
 COLORS = {
     "wall": "#9ecae1",
@@ -38,8 +40,73 @@ WARN = "#b01818"
 """Colour of what has to be said of a state."""
 _HEADING, _REMARK = 17, 11.5
 _DPI = 100
+_INCH = 25.4
+_FONT = 13.0
+_SHAPE = 0.7
+"""Height over width of a picture whose height is not given."""
 _LONGEST = 120
 """Characters of a line of text; the end of a title, which tells pictures apart, is kept."""
+_SAME_FILE = {
+    # letters stay letters: text in a SVG, whole TrueType fonts in a PDF
+    "pdf.fonttype": 42,
+    "svg.fonttype": "none",
+    # the same picture is the same file
+    "svg.hashsalt": "fiberbend",
+}
+_NO_DATE: dict[str, dict[str, Any]] = {
+    "png": {},
+    "svg": {"Date": None},
+    "pdf": {"CreationDate": None, "ModDate": None},
+}
+
+
+@dataclasses.dataclass(frozen=True)
+class Style:
+    """Format, size and letters of a picture; the defaults are those of the pictures of a run.
+
+    Attributes:
+        format: of the file.
+        width: of the picture, mm.
+        height: of the picture, mm; by default 0.7 of its width.
+        dpi: pixels per inch of a PNG, and of images within a SVG or a PDF.
+        font_size: size of the names of axes, pt; other text and all lines are in proportion.
+
+    Raises:
+        ValueError: a size that is not above zero.
+    """
+
+    format: Format = "png"
+    width: float = 254.0
+    height: float | None = None
+    dpi: float = float(_DPI)
+    font_size: float = _FONT
+
+    def __post_init__(self) -> None:
+        if self.format not in _NO_DATE:
+            raise ValueError(f"format {self.format!r}, expected {' or '.join(_NO_DATE)}")
+        for name in ("width", "height", "dpi", "font_size"):
+            value = getattr(self, name)
+            if value is not None and not 0 < value < math.inf:
+                raise ValueError(f"{name} {value!r}, expected a number above zero")
+
+    @property
+    def inches(self) -> tuple[float, float]:
+        """Width and height."""
+        height = self.height if self.height is not None else _SHAPE * self.width
+        return self.width / _INCH, height / _INCH
+
+    @property
+    def scale(self) -> float:
+        """What sizes in points are multiplied with; 1 for the pictures of a run."""
+        return self.font_size / _FONT
+
+    def figure(self) -> Any:
+        """An empty matplotlib figure of this size that needs no display."""
+        return _figure(self.inches, self.dpi)
+
+
+DEFAULT = Style()
+"""How the pictures of a run are drawn."""
 
 
 @contextlib.contextmanager
@@ -49,6 +116,14 @@ def own_style() -> Iterator[None]:
 
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
+        yield
+
+
+@contextlib.contextmanager
+def any_sign() -> Iterator[None]:
+    """A sign that the font does not have is a box on the page, and no warning."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing")
         yield
 
 
@@ -62,10 +137,14 @@ def literal(text: str) -> str:
 
 def figure(size: tuple[int, int]) -> Any:
     """A matplotlib figure of a size in pixels that needs no display."""
+    return _figure((size[0] / _DPI, size[1] / _DPI), _DPI)
+
+
+def _figure(inches: tuple[float, float], dpi: float) -> Any:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    page = Figure(figsize=(size[0] / _DPI, size[1] / _DPI), dpi=_DPI)
+    page = Figure(figsize=inches, dpi=dpi)
     FigureCanvasAgg(page)
     return page
 
@@ -93,13 +172,26 @@ def colormap() -> Any:
     return ListedColormap(colormaps["viridis"](np.linspace(0.2, 1.0, 256)))
 
 
-def save(page: Any, target: Target) -> None:
-    """Write a matplotlib figure as PNG to a path or to a file open for writing bytes."""
-    quick = {"compress_level": 4}
-    with warnings.catch_warnings():
-        # a sign that the font does not have is drawn as a box
-        warnings.filterwarnings("ignore", message="Glyph .* missing")
-        page.savefig(target, format="png", dpi=_DPI, facecolor="white", pil_kwargs=quick)
+def save(page: Any, target: Target, style: Style = DEFAULT) -> None:
+    """Write a matplotlib figure to a path or to a file open for writing bytes.
+
+    Args:
+        page: the figure; its size is kept.
+        target: where.
+        style: has the format and the pixels per inch.
+    """
+    import matplotlib
+
+    quick = {"pil_kwargs": {"compress_level": 4}} if style.format == "png" else {}
+    with any_sign(), matplotlib.rc_context(_SAME_FILE):
+        page.savefig(
+            target,
+            format=style.format,
+            dpi=style.dpi,
+            facecolor="white",
+            metadata=_NO_DATE[style.format],
+            **quick,
+        )
 
 
 class Page:
@@ -110,15 +202,21 @@ class Page:
         title: text at the top.
         caption: of the state that it shows, below the title.
         remark: what has to be said of the state, below the caption.
+        style: format and pixels per inch of the file; the size is that in pixels at 100 dpi.
 
     Attributes:
         panels: the images on it.
     """
 
     def __init__(
-        self, size: tuple[int, int], title: str, caption: str = "", remark: str = ""
+        self,
+        size: tuple[int, int],
+        title: str,
+        caption: str = "",
+        remark: str = "",
+        style: Style = DEFAULT,
     ) -> None:
-        self._size = size
+        self._size, self._style = size, style
         self.panels: list[Panel] = []
         self._figure = figure(size)
         heading(self._figure, title)
@@ -280,8 +378,8 @@ class Page:
         return np.asarray(canvas.buffer_rgba())[..., :3].copy()
 
     def save(self, target: Target) -> None:
-        """Write the page as PNG to a path or to a file open for writing bytes."""
-        save(self._figure, target)
+        """Write the page to a path or to a file open for writing bytes."""
+        save(self._figure, target, self._style)
 
 
 def columns_of(panels: int) -> int:

@@ -147,9 +147,12 @@ def draw_curves(
         model: the run's own model.
         say: takes a line for the user where nothing can be drawn.
     """
+    from fiberbend.case import convert
     from fiberbend.drawing.curves import draw_plots
 
     with pictures(say):
+        actuator = convert.dimensions(case.actuator)
+        shapes = [effect.obstacle_shapes(actuator) for effect in case.effects]
         draw_plots(
             rows,
             lambda name, fill: folder.write(f"pictures/{name}", fill),
@@ -159,6 +162,8 @@ def draw_curves(
             None if check is None else check.angles,
             None if check is None else check.forces,
             f"{model} model",
+            {name: shape for each in shapes for name, shape in each.items()},
+            case.straight,
         )
 
 

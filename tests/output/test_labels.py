@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fiberbend.drawing import curves
+from fiberbend.drawing import curves, tip_path
 from fiberbend.drawing.curves import plot_pressure_angle, plot_tip_force
 from fiberbend.drawing.overlay import MODELS, Line, Overlay, Points
+from fiberbend.drawing.page import Style
 from tests.output.test_pictures import is_drawn
 
 LABELS = ("section model", "analytic (own rubber)", "analytic (area to winding)", "analytic (μ̄)")
@@ -34,11 +35,12 @@ def drawn(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     axes: list[Any] = []
     save = curves.save
 
-    def kept(page: Any, target: Any) -> None:
+    def kept(page: Any, target: Any, style: Style) -> None:
         axes.append(page.axes[0])
-        save(page, target)
+        save(page, target, style)
 
     monkeypatch.setattr(curves, "save", kept)
+    monkeypatch.setattr(tip_path, "save", kept)
     return axes
 
 
