@@ -48,21 +48,22 @@ def draw(
         draw_curves(folder, case, rows, reason, check, model, say)
     if not (snapshots and (output.fields or output.pictures)):
         return
+    if output.fields:
+        from fiberbend.results.fields import write_fields
+
+        write_fields(folder, case, model_mesh, snapshots, rows, say)
+    if not output.pictures:
+        return
     if model_mesh.uniform:
         from fiberbend.running.uniform_outputs import draw_states
 
         draw_states(folder, case, model_mesh, snapshots, say)
         return
+    from fiberbend.drawing.body import draw_pictures
+
     fields = [recover(model_mesh, snapshot) for snapshot in snapshots]
-    if output.fields:
-        from fiberbend.states.paraview import write_fields
-
-        write_fields(model_mesh, snapshots, into("fields"), fields)
-    if output.pictures:
-        from fiberbend.drawing.body import draw_pictures
-
-        with pictures(say):
-            draw_pictures(model_mesh, snapshots, into("pictures"), fields)
+    with pictures(say):
+        draw_pictures(model_mesh, snapshots, into("pictures"), fields)
 
 
 def draw_curves(

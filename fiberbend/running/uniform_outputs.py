@@ -1,4 +1,4 @@
-"""Fields and pictures of a section or a cell: in its own plane, and put together in space."""
+"""Pictures of a section or a cell: in its own plane, and put together in space."""
 
 from __future__ import annotations
 
@@ -26,9 +26,7 @@ def draw_states(
     snapshots: Sequence[Snapshot],
     say: Callable[[str], None],
 ) -> None:
-    """Write fields/*.vtu and pictures/*.png of a section or cell, as the case wants them.
-
-    Fields are those of the whole length between the caps.
+    """Write pictures/*.png of a section or cell.
 
     Args:
         folder: where to write.
@@ -43,15 +41,7 @@ def draw_states(
 
     space = Space(case, model_mesh)
     fields = [space.recovered(state) for state in snapshots]
-    if case.output.fields:
-        from fiberbend.states.paraview import write_fields
-
-        moved = [space.snapshot(state) for state in snapshots]
-        pairs = zip(snapshots, fields, strict=True)
-        spread = [space.fields(state, own) for state, own in pairs]
-        write_fields(space.model_mesh, moved, into("fields"), spread)
-    if case.output.pictures:
-        _draw(case, model_mesh, snapshots, fields, space, into("pictures"), say)
+    _draw(case, model_mesh, snapshots, fields, space, into("pictures"), say)
 
 
 def _draw(
