@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fiberbend.states.recovery import NodalFields, SplitNodes, split_nodes
 from fiberbend.states.snapshot import ModelMesh, Snapshot
-from geometry.mesh.data import Floats, Ints, MeshData
+from geometry.mesh.data import Ints, MeshData
 from geometry.mesh.mirror import (
     BothHalves,
     both_halves,
@@ -18,6 +20,8 @@ from geometry.mesh.mirror import (
     reflected_vectors,
 )
 from geometry.winding.segments import EmbeddedFibers
+
+T = TypeVar("T", bound=np.generic)
 
 _ACROSS = (-1.0, 1.0, 1.0)
 
@@ -80,9 +84,10 @@ class Halves:
             volume_error=fields.volume_error[whole.cell],
         )
 
-    def at_cells(self, values: Floats) -> Floats:
+    def at_cells(self, values: NDArray[T]) -> NDArray[T]:
         """Values at the nodes of every cell of the whole from those of the half, (m, k, ...)."""
-        return values[self._whole.cell[:, None], self._whole.order]
+        found: NDArray[T] = values[self._whole.cell[:, None], self._whole.order]
+        return found
 
     @functools.cached_property
     def _copies(self) -> SplitNodes:
@@ -98,10 +103,8 @@ def _both_windings(fibers: EmbeddedFibers, half: MeshData) -> tuple[Ints, Embedd
     kind, count = half.cell_type, len(fibers.cell)
     lines = round(1 / float(fibers.share[0]))
     curves = int(fibers.curve.max()) + 1
-    if curves == 2 * lines:
-        other = (fibers.curve + lines) % curves
-    else:
-        other = fibers.curve + curves
+    double = curves == 2 * lines
+    other = (fibers.curve + lines) % curves if double else fibers.curve + curves
     image = dataclasses.replace(
         fibers,
         cell=fibers.cell + len(half.cells),

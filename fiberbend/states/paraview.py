@@ -200,8 +200,8 @@ def write_grid(data: Any, target: Target) -> None:
 
     slim = data.copy(deep=False)
     for attributes in (slim.point_data, slim.cell_data):
-        for name in attributes.keys():
-            values = np.asarray(attributes[name])
+        for name, data_array in list(attributes.items()):
+            values = np.asarray(data_array)
             if values.dtype == np.float64:
                 attributes[name] = values.astype(np.float32)
     lines = isinstance(data, pv.PolyData)

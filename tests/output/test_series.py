@@ -110,12 +110,13 @@ def test_one_filter_moves_body_and_fibers(element: str, half: bool, tmp_path: Pa
     there = fiber_lines(scene.mesh, scene.fibers, state.displacement, state.fiber_force)
     assert warped.points == pytest.approx(there.points, abs=2e-5)
     assert fibers.point_data["tension_N"] == pytest.approx(there.point_data["tension_N"], rel=1e-6)
-    # and the displacement is that of the body there, by VTK's own shape functions
+    # and the displacement is that of the body there, by VTK's own shape functions: it looks for
+    # the place in a cell of 2 mm to a part of a thousand
     inside = pv.PolyData(np.array(fibers.points)).sample(body, tolerance=1e-3)
     found = inside["vtkValidPointMask"] == 1
-    assert found.mean() > 0.99
+    assert found.mean() > 0.95
     gap = inside["displacement_mm"][found] - fibers.point_data["displacement_mm"][found]
-    assert np.abs(gap).max() < 1e-3
+    assert np.abs(gap).max() < 3e-3
     assert np.abs(fibers.point_data["displacement_mm"]).max() > 5.0
 
 
@@ -172,8 +173,8 @@ def test_the_analytic_tip_is_where_the_warped_section_ends(tmp_path: Path) -> No
     reader = pv.get_reader(str(tmp_path / "fields" / "states.pvd"))
     assert reader.time_values == [0.0, 1.0]
     rest, body = (at_time(tmp_path / "fields", time)["body"].combine() for time in (0.0, 1.0))
-    assert not rest["displacement_mm"].any()
-    assert not rest["von_mises_MPa"].any()
+    assert rest["displacement_mm"] == pytest.approx(0.0, abs=1e-12)
+    assert rest["von_mises_MPa"] == pytest.approx(0.0, abs=1e-12)
     placed = body.points + body["displacement_mm"]
     pin = np.flatnonzero(np.linalg.norm(body.points - [0.0, 0.0, SHORT.length], axis=1) < 1e-5)
     z, down = tip(np.pi / 2, SHORT.length)
