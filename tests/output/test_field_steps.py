@@ -24,6 +24,7 @@ def section(**output: Any) -> dict[str, Any]:
         effects=[SMALL["effects"][0], {"winding": winding}],
         model="section",
         mesh={"section": 1},
+        solver={"max_turn": "4 deg"},
         output={"at_angles": ["8 deg"], "pictures": False, "report": False} | output,
     )
 
