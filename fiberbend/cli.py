@@ -44,6 +44,16 @@ app.command(
   fiberbend control cases/section.yaml --steps "30 deg" "90 deg"
 """,
 )
+app.command(
+    "fiberbend.commands.mesh:mesh",
+    name="mesh",
+    help="Write the mesh of a case with its regions, surfaces and fibers.",
+    help_epilogue="""Examples:
+  fiberbend mesh cases/free_bending.yaml --out body.msh
+  fiberbend mesh cases/cell.yaml --out cell.vtu
+  fiberbend mesh cases/free_bending.yaml --set mesh.element=tetrahedron --out body.inp --overwrite
+""",
+)
 
 
 def entry() -> NoReturn:

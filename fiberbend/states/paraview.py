@@ -27,17 +27,23 @@ from geometry.mesh.data import Floats, Ints, MeshData, reference_nodes
 
 SERIES = "states.pvd"
 
+_VTK_TYPES = {
+    "hexahedron": "TRIQUADRATIC_HEXAHEDRON",
+    "tetrahedron": "QUADRATIC_TETRA",
+    "quadrilateral": "BIQUADRATIC_QUAD",
+}
 
+
+@functools.cache
 def vtk_order(cell_type: str) -> Ints:
     """Positions in the node list of `MeshData` of a VTK cell's nodes, in VTK's order, (k,)."""
     import pyvista as pv
 
-    cell = pv.UnstructuredGrid(
-        {_vtk_type(cell_type): np.arange(len(reference_nodes(cell_type)))[None]},
-        reference_nodes(cell_type),
-    ).GetCell(0)
+    ours = np.zeros((len(reference_nodes(cell_type)), 3))
+    ours[:, : reference_nodes(cell_type).shape[1]] = reference_nodes(cell_type)
+    cell = pv.UnstructuredGrid({_vtk_type(cell_type): np.arange(len(ours))[None]}, ours).GetCell(0)
     theirs = np.reshape(cell.GetParametricCoords(), (-1, 3))
-    gap = np.linalg.norm(theirs[:, None] - reference_nodes(cell_type), axis=2)
+    gap = np.linalg.norm(theirs[:, None] - ours, axis=2)
     return np.asarray(gap.argmin(axis=1))
 
 
@@ -298,9 +304,7 @@ def _xml(kind: str, version: str, element: str, rows: Sequence[str]) -> bytes:
 def _vtk_type(cell_type: str) -> int:
     import pyvista as pv
 
-    hexahedron = cell_type == "hexahedron"
-    kind = pv.CellType.TRIQUADRATIC_HEXAHEDRON if hexahedron else pv.CellType.QUADRATIC_TETRA
-    return int(kind)
+    return int(pv.CellType[_VTK_TYPES[cell_type]])
 
 
 def _put(data: bytes, target: Target) -> None:
