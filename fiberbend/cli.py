@@ -51,7 +51,7 @@ app.command(
     help_epilogue="""Examples:
   fiberbend mesh cases/free_bending.yaml --out body.msh
   fiberbend mesh cases/cell.yaml --out cell.vtu
-  fiberbend mesh cases/free_bending.yaml --set mesh.element=tetrahedron --out body.inp --overwrite
+  fiberbend mesh cases/section.yaml --out section.inp --overwrite
 """,
 )
 

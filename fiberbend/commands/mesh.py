@@ -10,20 +10,25 @@ from cyclopts import Parameter
 from fiberbend.reader.arguments import CaseFile, Changes
 from fiberbend.running.launch import say
 
+_OUT = (
+    "File to write, lengths in mm: .msh (gmsh: a physical group for each name), .vtu (VTK: an "
+    "array of zeros and ones for each name) or .inp (Abaqus, CalculiX: element sets, surfaces by "
+    "faces, node sets, fibers as trusses)."
+)
+
 
 def mesh(
     case: CaseFile,
     /,
     *,
-    out: Annotated[Path, Parameter(help="File to write: .msh (gmsh), .vtu (VTK), .inp (Abaqus).")],
+    out: Annotated[Path, Parameter(help=_OUT)],
     settings: Changes = (),
     overwrite: Annotated[bool, Parameter(help="Replace a file that is there.")] = False,
 ) -> None:
     """Write the mesh of a case's model with its regions, surfaces and fibers.
 
     A section writes its quadrilaterals, a cell its slice, a body its hexahedra or tetrahedra; where
-    half is modelled, that half. Lengths are in mm. .msh has physical groups by name, .vtu for each
-    name an array of zeros and ones, .inp element sets, surfaces, node sets, and fibers as trusses.
+    half is modelled, that half.
     """
     from fiberbend.reader.reader import read_case
     from fiberbend.results.mesh_file import check_target, write_mesh_file

@@ -106,7 +106,8 @@ def _lines(case: Case, model: MeshedModel, model_mesh: ModelMesh, path: Path) ->
     yield f"{path}: {what}: {model.name} model"
     if mesh.half:
         yield f"half: x ≥ 0 only{_for_all_of_it(case, model)}"
-    yield f"regions: {', '.join(mesh.regions)}"
+    there = {*mesh.cell_region.tolist()}
+    yield f"regions: {', '.join(name for name, n in mesh.regions.items() if n in there)}"
     yield f"surfaces: {', '.join(name for name, pairs in mesh.facets.items() if len(pairs))}"
     if model_mesh.lines is not None:
         count = len({*model_mesh.lines.curve.tolist()})
