@@ -92,7 +92,7 @@ def broken(path: Path) -> str:
                 dict(arrays)
         elif path.suffix == ".json":
             json.loads(path.read_text())
-        elif path.suffix in (".vtu", ".vtp", ".pvd"):
+        elif path.suffix in (".vtu", ".vtp", ".vtm", ".pvd"):
             ET.parse(path)
         elif not path.read_bytes().endswith(_ENDS.get(path.suffix, b"")):
             return f"{path.name} is cut off"

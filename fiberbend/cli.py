@@ -78,6 +78,17 @@ app.command(
 """,
 )
 
+app.command(
+    "fiberbend.commands.mesh:mesh",
+    name="mesh",
+    help="Write the mesh of a case with its regions, surfaces and fibers.",
+    help_epilogue="""Examples:
+  fiberbend mesh cases/free_bending.yaml --out body.msh
+  fiberbend mesh cases/cell.yaml --out cell.vtu
+  fiberbend mesh cases/section.yaml --out section.inp --overwrite
+""",
+)
+
 
 def entry() -> NoReturn:
     """The command as a process: `main`, with signals, streams and other ranks in order."""

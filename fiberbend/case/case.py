@@ -260,11 +260,13 @@ class Output(Spec):
     report: bool = True
     """Write report.html, a page with the answer, the curves and the body in space."""
     fields: bool = True
-    """Write fields for ParaView."""
+    """Write fields for ParaView, body and fibers at rest with their displacement."""
     field_steps: Literal["requested", "all"] = "requested"
-    """Load steps whose fields are written: rest and those that were asked for, or all."""
+    """States whose fields are written: rest, those asked for by angle or pressure and the last
+    one, or all load steps; their time in ParaView is the number of the load step."""
     field_halves: Literal["modelled", "both"] = "modelled"
-    """Fields of the half that is modelled, or of it and its mirror image."""
+    """Fields of what is modelled, or, where that is one half, of it and its mirror image; of a
+    body that is solved whole they are the same."""
 
 
 class Case(Spec):

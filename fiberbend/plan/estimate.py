@@ -102,7 +102,11 @@ def drawing_seconds(case: Case, model: ModelKind) -> float:
     states = max(1, len(output.at_angles) + len(output.at_pressures))
     once, each = model.pictures_s
     pictures = once + states * each if output.pictures else 0.0
-    return pictures + (states * model.fields_s if output.fields else 0.0)
+    elements = model.elements()
+    if output.field_steps == "all" and elements is not None:
+        states = max(states, steps_of(case, elements) or 0)
+    copies = 2 if output.field_halves == "both" else 1
+    return pictures + (copies * states * model.fields_s if output.fields else 0.0)
 
 
 def _compiled() -> str:

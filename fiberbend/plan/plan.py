@@ -10,6 +10,7 @@ from fiberbend.case.case import Case
 from fiberbend.models.choice import MODELS, choose_model, objection
 from fiberbend.models.model import MeshedModel, ModelKind
 from fiberbend.models.resolution import lost_pressure, winding_remark
+from fiberbend.models.uniform import twists
 from fiberbend.plan.doubts import doubts
 from fiberbend.plan.memory import shortage
 
@@ -170,3 +171,9 @@ def unused(case: Case, model: ModelKind) -> Iterator[str]:
         yield "support"
     if case.compare and case.actuator.section != PAPER_SHAPE:
         yield "compare"
+    output = case.output
+    if not output.fields:
+        names = {"field_steps", "field_halves"} & output.model_fields_set
+        yield from (f"output.{name}" for name in sorted(names))
+    elif output.field_halves == "both" and (twists(case) or not model.half(case)[0]):
+        yield "output.field_halves"

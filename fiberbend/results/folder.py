@@ -63,7 +63,7 @@ _OF_A_RUN = (
     *(CASE_FILE, RUN_FILE, HISTORY_FILE, MESH, CHECKPOINT, CHECKPOINT_BEFORE, "actuator.msh"),
     *("error.log", "error.rank*.log", f"{SNAPSHOTS}/*.npz"),
     *(FIBERS, LOG, REPORT),
-    *("fields/*.vtu", "fields/*.vtp", "fields/*.pvd"),
+    *("fields/*.vtu", "fields/*.vtp", "fields/*.vtm", "fields/*.pvd"),
     *("pictures/rest.png", "pictures/animation.gif", "pictures/animation.mp4"),
     *("pictures/undeformed.png", "pictures/cut.png", "pictures/montage.png", "pictures/bent*.png"),
     *("pictures/pressure_*.png", "pictures/tip_*.png", "pictures/contact_*.png"),

@@ -9,6 +9,7 @@ import numpy as np
 from fiberbend.case.case import Case
 from fiberbend.models.section import picture_layers
 from fiberbend.models.uniform import twists
+from fiberbend.states.halves import Halves
 from fiberbend.states.recovery import NodalFields, SplitNodes, recover, split_nodes
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 from fiberbend.states.stack import Stack, extruded, repeated, split_alike
@@ -21,24 +22,30 @@ class Space:
     Args:
         case: the case.
         own: mesh, materials and fibers as the model solves them.
+        both: add the mirror image in x = 0 of a body of which half is modelled.
 
     Attributes:
         own: as given.
         stack: what the section or cell becomes; None for a body.
+        halves: the half in space and its mirror image; None where there is no image.
     """
 
-    def __init__(self, case: Case, own: ModelMesh) -> None:
+    def __init__(self, case: Case, own: ModelMesh, both: bool = False) -> None:
         self.own = own
         self.stack = _whole(case, own) if own.uniform else None
+        one = own if self.stack is None else self.stack.model_mesh
+        self.halves = Halves(one) if both and one.mesh.half else None
+        self._one = one
 
     @property
     def model_mesh(self) -> ModelMesh:
         """Mesh, materials and fibers in space."""
-        return self.own if self.stack is None else self.stack.model_mesh
+        return self._one if self.halves is None else self.halves.model_mesh
 
     def snapshot(self, state: Snapshot) -> Snapshot:
         """A state of the model as one of the body in space."""
-        return state if self.stack is None else self.stack.snapshot(self.own, state)
+        one = state if self.stack is None else self.stack.snapshot(self.own, state)
+        return one if self.halves is None else self.halves.snapshot(one)
 
     def recovered(self, state: Snapshot) -> NodalFields:
         """Fields of a state at the nodes of its own mesh, copies where regions meet."""
@@ -51,16 +58,18 @@ class Space:
             state: of the model's own mesh.
             recovered: `recovered` of it, if at hand.
         """
-        recovered = recovered or self.recovered(state)
-        if self.stack is None:
-            return recovered
-        return self.stack.fields(self.own, self._copies, recovered, state)
+        one = recovered or self.recovered(state)
+        if self.stack is not None:
+            one = self.stack.fields(self.own, self._copies, one, state)
+        return one if self.halves is None else self.halves.fields(one)
 
     def at_cells(self, state: Snapshot, recovered: NodalFields | None = None) -> Floats:
         """Maximum principal logarithmic strain at the nodes of every cell in space, (m, k)."""
         recovered = recovered or self.recovered(state)
         values: Floats = recovered.log_strain[self._copies.cells]
-        return values if self.stack is None else self.stack.at_cells(values)
+        if self.stack is not None:
+            values = self.stack.at_cells(values)
+        return values if self.halves is None else self.halves.at_cells(values)
 
     @functools.cached_property
     def _copies(self) -> SplitNodes:

@@ -51,26 +51,16 @@ def draw(
         draw_curves(folder, case, rows, reason, check, model, say)
     if not (output.fields or output.pictures or output.animation):
         return
-    from fiberbend.results.space import Space
+    if output.fields:
+        from fiberbend.results.fields import write_fields
 
-    space = Space(case, model_mesh)
-    fields = [space.recovered(state) for state in snapshots]
-    if output.fields and snapshots:
-        _write_fields(folder, space, snapshots, fields)
+        write_fields(folder, case, model_mesh, snapshots, rows, say)
     if output.pictures or output.animation:
+        from fiberbend.results.space import Space
+
+        space = Space(case, model_mesh)
+        fields = [space.recovered(state) for state in snapshots]
         _draw_states(folder, case, space, snapshots, fields, rows, say)
-
-
-def _write_fields(
-    folder: RunFolder, space: Space, snapshots: Sequence[Snapshot], fields: Sequence[NodalFields]
-) -> None:
-    from fiberbend.states.paraview import write_fields
-
-    moved = [space.snapshot(state) for state in snapshots]
-    spread = [space.fields(state, own) for state, own in zip(snapshots, fields, strict=True)]
-    write_fields(
-        space.model_mesh, moved, lambda name, fill: folder.write(f"fields/{name}", fill), spread
-    )
 
 
 def _draw_states(

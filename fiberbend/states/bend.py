@@ -72,7 +72,7 @@ class Bend:
         Returns:
             Array (n, 3, 3).
         """
-        return self.line.turning(z)[0]
+        return self._turning(z)[0]
 
     def place(self, position: Floats, z: Floats) -> Floats:
         """Positions in space.
@@ -84,10 +84,16 @@ class Bend:
         Returns:
             Array (n, 3), mm.
         """
-        rotation, place = self.line.turning(z)
+        rotation, place = self._turning(z)
         placed: Floats = place + np.einsum("nij,nj->ni", rotation, position - self.line.centre)
         placed[:, 1] += self.height
         return placed
+
+    def _turning(self, z: Floats) -> tuple[Floats, Floats]:
+        """Rotations and places of stations, of which a body of layers has few."""
+        levels, level = np.unique(z, return_inverse=True)
+        rotation, place = self.line.turning(levels)
+        return rotation[level], place[level]
 
 
 def in_frame(nodes: Floats, displacement: Floats) -> Floats:

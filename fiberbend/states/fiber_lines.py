@@ -1,4 +1,4 @@
-"""The fibers as lines in the position of a state, with their tension.
+"""The fibers as lines, at rest or in the position of a state, with their tension.
 
 pyvista is imported where it is used: a run without output does without it.
 """
@@ -22,23 +22,26 @@ def fiber_lines(
     fibers: EmbeddedFibers,
     displacement: Floats | None = None,
     force: Floats | None = None,
+    moved: bool = True,
 ) -> Any:
-    """The fibers as a pyvista.PolyData of polylines in the deformed position.
+    """The fibers as a pyvista.PolyData of polylines.
 
     A polyline follows a curve along z and ends where the curve leaves the mesh. Point data:
     tension_N, the axial force of the line itself, the mean of both sides at a joint;
-    fiber_tension_N, the same of a whole fiber, of which a ribbon's line is a part. Cell data:
-    curve, its number.
+    fiber_tension_N, the same of a whole fiber, of which a ribbon's line is a part;
+    displacement_mm where the lines are not moved: that of the body at the fiber's points. Cell
+    data: curve, its number.
 
     Args:
         mesh: the mesh.
         fibers: segments along curves, sorted by curve and z.
         displacement: by node number, (n, 3), mm; none for the undeformed position.
         force: axial force of each segment, (segments,), N.
+        moved: the points lie where the displacement takes them; else they stay at rest.
     """
     import pyvista as pv
 
-    points = _segment_points(mesh, fibers, mesh.nodes)
+    points = rest = _segment_points(mesh, fibers, mesh.nodes)
     joint = _JOINT * np.ptp(mesh.nodes, axis=0).max()
     gap = np.linalg.norm(points[1:, 0] - points[:-1, 2], axis=1)
     fresh = np.r_[True, (fibers.curve[1:] != fibers.curve[:-1]) | (gap > joint)]
@@ -49,7 +52,9 @@ def fiber_lines(
     kept = np.column_stack([np.ones_like(last), np.ones_like(last), last]).ravel()
     sizes = 2 * np.diff(np.r_[np.flatnonzero(fresh), len(fresh)]) + 1
     lines = np.insert(np.arange(kept.sum()), np.cumsum(sizes) - sizes, sizes)
-    data = pv.PolyData(points.reshape(-1, 3)[kept], lines=lines)
+    data = pv.PolyData((points if moved else rest).reshape(-1, 3)[kept], lines=lines)
+    if displacement is not None and not moved:
+        data.point_data["displacement_mm"] = (points - rest).reshape(-1, 3)[kept]
     data.cell_data["curve"] = fibers.curve[fresh]
     if force is not None:
         for name, value in (("tension_N", force), ("fiber_tension_N", force / fibers.share)):

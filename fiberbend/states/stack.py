@@ -14,6 +14,7 @@ from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.bodies.extrude import extrude
 from geometry.bodies.stations import slice_stations
 from geometry.mesh.data import Floats, Ints, MeshData
+from geometry.mesh.mirror import both_halves
 from geometry.winding.segments import EmbeddedFibers
 
 _MIRRORED = (1.0, 1.0, -1.0)
@@ -122,7 +123,9 @@ def extruded(model_mesh: ModelMesh, length: float, number: int, turned: bool = F
     node, cell = np.arange(len(section.nodes)), np.arange(len(section.cells))
     sign, order = np.ones((len(node), 3)), np.tile(np.arange(9), (len(cell), 1))
     if turned:
-        section, node, sign, cell, order = _both_halves(section)
+        whole = both_halves(section)
+        section, node, cell, order = whole.mesh, whole.node, whole.cell, whole.order
+        sign = np.where(whole.image[:, None], _TURNED, 1.0)
     mesh = extrude(section, slice_stations(length, number))
     planes = 2 * number + 1
     return Stack(
@@ -207,36 +210,6 @@ def root_section(slab: MeshData) -> MeshData:
 
 def _solid(model_mesh: ModelMesh, mesh: MeshData, fibers: EmbeddedFibers | None) -> ModelMesh:
     return dataclasses.replace(model_mesh, mesh=mesh, fibers=fibers, uniform=False)
-
-
-def _both_halves(half: MeshData) -> tuple[MeshData, Ints, Floats, Ints, Ints]:
-    """A whole section from a half, and node, sign, cell and order as of a `Stack`."""
-    nodes, cells = len(half.nodes), len(half.cells)
-    shared = np.zeros(nodes, dtype=bool)
-    shared[half.facet_nodes("symmetry").ravel()] = True
-    added = np.flatnonzero(~shared)
-    number = np.arange(nodes)
-    number[added] = nodes + np.arange(len(added))
-    backward = np.arange(9).reshape(3, 3)[:, ::-1].ravel()
-    # the second and third side change places
-    side = np.array([0, 2, 1, 3])
-    facets = {
-        name: np.concatenate([pairs, np.column_stack([pairs[:, 0] + cells, side[pairs[:, 1]]])])
-        for name, pairs in half.facets.items()
-        if name != "symmetry"
-    }
-    mesh = dataclasses.replace(
-        half,
-        nodes=np.concatenate([half.nodes, half.nodes[added] * [-1.0, 1.0]]),
-        cells=np.concatenate([half.cells, number[half.cells][:, backward]]),
-        cell_region=np.tile(half.cell_region, 2),
-        facets=facets,
-        half=False,
-    )
-    sign = np.ones((len(mesh.nodes), 3))
-    sign[nodes:] = _TURNED
-    order = np.repeat([np.arange(9), backward], cells, axis=0)
-    return mesh, np.r_[np.arange(nodes), added], sign, np.tile(np.arange(cells), 2), order
 
 
 def _copy(slab: MeshData, quads: int, tile: Ints, cell: Ints) -> Ints:

@@ -23,7 +23,7 @@ def test_version(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> No
     assert capsys.readouterr().out.strip() == __version__
 
 
-COMMANDS = ("validate", "plan", "run", "sweep", "control", "completion")
+COMMANDS = ("validate", "plan", "run", "sweep", "control", "mesh", "completion")
 
 
 @pytest.mark.parametrize("flag", ["--help", "-h"])

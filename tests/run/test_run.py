@@ -53,7 +53,7 @@ def test_folder_has_what_is_promised(small_run: RunResult) -> None:
         assert (folder / name).stat().st_size > 0
     for name in ("pressure_angle", "tip_path", "undeformed", "cut", "bent_008deg", "montage"):
         assert (folder / "pictures" / f"{name}.png").stat().st_size > 5_000
-    assert (folder / "fields" / "008deg.vtu").exists()
+    assert (folder / "fields" / "008deg.vtm").exists()
     assert not list(folder.glob(".*"))
 
 
