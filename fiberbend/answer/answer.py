@@ -1,0 +1,328 @@
+"""The answer of a run: what its case asks for, in words and numbers, and how far to trust it."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from fiberbend import columns as col
+from fiberbend.answer.numbers import quantity
+from fiberbend.answer.touch import touches
+from fiberbend.case.case import Case
+from fiberbend.models.choice import choose_model
+from fiberbend.models.model import ModelKind
+from fiberbend.plan.plan import errors
+
+WIDTH = 100
+"""Columns of the printed answer."""
+_SAME = 1e-6
+"""Part of an asked angle or pressure by which a row may miss it."""
+_SEEN = 5e-3
+"""Degrees and millimetres that are shown; less is round-off."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Entry:
+    """A line of the answer.
+
+    Attributes:
+        label: what is answered, such as "pressure at 90°"; empty where it goes on from the line
+            before.
+        value: the answer with its unit, ready to print.
+        note: where it comes from or what limits it; may be empty.
+    """
+
+    label: str
+    value: str
+    note: str = ""
+
+
+@dataclasses.dataclass(frozen=True)
+class Answer:
+    """What a run answers; every text is ready to print.
+
+    Attributes:
+        title: title of the case; may be empty.
+        sentence: how the run ended.
+        entries: the answers, in the order in which they are read.
+        trust: one line on how far to trust them.
+        comparisons: lines on other models and measured points beside the run.
+        warnings: what is doubtful, as in run.json.
+    """
+
+    title: str
+    sentence: str
+    entries: tuple[Entry, ...]
+    trust: str
+    comparisons: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+
+def answer(case: Case, rows: Sequence[col.Row], run: Mapping[str, Any]) -> Answer:
+    """What a run answers.
+
+    Args:
+        case: its case.
+        rows: of history.csv, the first at rest; what is not known is None or absent.
+        run: content of run.json.
+    """
+    model = choose_model(case)[0]
+    entries = [
+        *(_forces(case, model, rows) if case.straight else _bending(case, rows)),
+        _end(case, rows),
+        *_tip(case, rows),
+        *_turns(rows),
+        *_contacts(case, rows),
+        *_critical(run),
+        *_strain(run),
+        *_errors(case, model),
+    ]
+    return Answer(
+        title=case.title,
+        sentence=_sentence(case, model, rows, run),
+        entries=tuple(entries),
+        trust=_trust(run),
+        comparisons=tuple(_comparisons(run)),
+        warnings=tuple(run.get("warnings") or ()),
+    )
+
+
+def lines(found: Answer, verbose: bool = False) -> list[str]:
+    """An answer as lines of text, at most `WIDTH` columns wide but for warnings.
+
+    Args:
+        found: the answer.
+        verbose: with the comparisons.
+    """
+    text = textwrap.wrap(found.title, WIDTH)
+    text += textwrap.wrap(found.sentence, WIDTH)
+    width = max((len(entry.label) for entry in found.entries), default=0)
+    for entry in found.entries:
+        note = f" ({entry.note})" if entry.note else ""
+        text += textwrap.wrap(
+            f"  {entry.label:<{width}}  {entry.value}{note}",
+            WIDTH,
+            subsequent_indent=" " * (width + 6),
+            break_on_hyphens=False,
+        )
+    if verbose:
+        for line in found.comparisons:
+            text += textwrap.wrap(line, WIDTH, subsequent_indent="  ", break_on_hyphens=False)
+    text += textwrap.wrap(found.trust, WIDTH, subsequent_indent="  ")
+    if found.warnings:
+        number = len(found.warnings)
+        text.append(f"{number} warning{'s' if number > 1 else ''}:")
+        # a warning stays a line, which scripts can find
+        text += [f"  {line}" for line in found.warnings]
+    return text
+
+
+# --- how it ended -----------------------------------------------------------------------------
+
+
+def _sentence(case: Case, model: ModelKind, rows: Sequence[col.Row], run: Mapping[str, Any]) -> str:
+    last, status = rows[-1], run.get("status")
+    here = _state(case, last)
+    if status == "converged":
+        if case.straight and last.get(col.TIP_FORCE) is not None:
+            force = quantity(last[col.TIP_FORCE], "N")
+            pressure = quantity(last[col.PRESSURE], "kPa")
+            return f"The blocked tip presses with {force} at {pressure} ({model.name} model)."
+        if case.inflation is None:
+            return f"The actuator ends at {here} ({model.name} model)."
+        angle, pressure = quantity(last[col.ANGLE], "°"), quantity(last[col.PRESSURE], "kPa")
+        return f"The actuator bends to {angle} at {pressure} ({model.name} model)."
+    if len(rows) < 2:
+        return (
+            f"The run {status} before its first load step: it has no answer ({model.name} model)."
+        )
+    return f"The run {status} at {here}: the answer is valid up to there ({model.name} model)."
+
+
+def _state(case: Case, row: col.Row) -> str:
+    """Pressure and angle of a row, and where the tip is blocked its force first."""
+    parts = []
+    if case.straight and row.get(col.TIP_FORCE) is not None:
+        parts.append(quantity(row[col.TIP_FORCE], "N"))
+    if case.inflation is not None:
+        parts.append(quantity(row[col.PRESSURE], "kPa"))
+    if not case.straight or abs(row[col.ANGLE]) > _SEEN:
+        parts.append(quantity(row[col.ANGLE], "°"))
+    return ", ".join(parts)
+
+
+def _end(case: Case, rows: Sequence[col.Row]) -> Entry:
+    return Entry("end of the run", _state(case, rows[-1]))
+
+
+# --- what is asked for ------------------------------------------------------------------------
+
+
+def _asked(
+    rows: Sequence[col.Row], key: str, goal: float, value: str, units: tuple[str, str], what: str
+) -> Entry:
+    """A column where another one has an asked value, at every load step that has it.
+
+    Args:
+        rows: of the history.
+        key: the column that is asked at.
+        goal: its value.
+        value: the column that answers.
+        units: of the asked value and of the answer.
+        what: what the answer is.
+    """
+    label = f"{what} at {quantity(goal, units[0])}"
+    slack = _SAME * max(1.0, abs(goal))
+    found = [
+        row for row in rows[1:] if row.get(value) is not None and abs(row[key] - goal) <= slack
+    ]
+    if not found:
+        return Entry(label, "not reached")
+    first, *again = (quantity(row[value], units[1]) for row in found)
+    return Entry(label, first, f"and again {', '.join(again)}" if again else "")
+
+
+def _bending(case: Case, rows: Sequence[col.Row]) -> Iterator[Entry]:
+    """Pressures at the asked angles, and angles at the asked pressures."""
+    if case.inflation is None:
+        return
+    for angle in dict.fromkeys(case.output.at_angles):
+        goal = math.degrees(angle)
+        yield _asked(rows, col.ANGLE, goal, col.PRESSURE, ("°", "kPa"), "pressure")
+    for pressure in dict.fromkeys(case.output.at_pressures):
+        yield _asked(rows, col.PRESSURE, 1e3 * pressure, col.ANGLE, ("kPa", "°"), "angle")
+
+
+def _forces(case: Case, model: ModelKind, rows: Sequence[col.Row]) -> Iterator[Entry]:
+    """Tip forces at the asked pressures and at the end, named for what they are."""
+    units = ("kPa", "N")
+    found = [
+        _asked(rows, col.PRESSURE, 1e3 * pressure, col.TIP_FORCE, units, "tip force")
+        for pressure in dict.fromkeys(case.output.at_pressures)
+    ]
+    last = rows[-1]
+    if last.get(col.TIP_FORCE) is None:
+        yield from found
+        return
+    yield from found
+    if not found:
+        at = quantity(last[col.PRESSURE], "kPa")
+        yield Entry(f"tip force at {at}", quantity(last[col.TIP_FORCE], "N"))
+    yield Entry("this force is", _force_name(case, model))
+    forces = ((col.ROOF_FORCE, "force of the roof", "N"), (col.AXIAL_FORCE, "axial force", "N"))
+    for key, label, unit in (*forces, (col.MOMENT, "moment that keeps it straight", "N mm")):
+        if last.get(key) is not None:
+            yield Entry(label, quantity(last[key], unit))
+
+
+def _force_name(case: Case, model: ModelKind) -> str:
+    """What the tip force of a model is."""
+    if model.ends:
+        return "that of the body's tip on the post"
+    from fiberbend.models.closed_form import lever_arm
+
+    lever = quantity(lever_arm(case), "mm")
+    if model.elements() is None:
+        return f"κP/L_f, of a closed form whose section keeps its shape; L_f = {lever}"
+    return f"M/L_f, of a {model.name} kept straight all along, without caps; L_f = {lever}"
+
+
+# --- where it is ------------------------------------------------------------------------------
+
+
+def _tip(case: Case, rows: Sequence[col.Row]) -> Iterator[Entry]:
+    """Where the tip is at the end, and at rest."""
+    if case.straight:
+        return
+    yield Entry("tip at the end", _place(rows[-1]), f"at rest {_place(rows[0])}")
+
+
+def _place(row: col.Row) -> str:
+    keys = {"x": col.TIP_X, "y": col.TIP_Y, "z": col.TIP_Z}
+    known = {name: row[key] for name, key in keys.items() if row.get(key) is not None}
+    if abs(known.get("x", 0.0)) <= _SEEN:
+        known.pop("x", None)
+    return ", ".join(f"{name} = {quantity(value, 'mm')}" for name, value in known.items())
+
+
+def _turns(rows: Sequence[col.Row]) -> Iterator[Entry]:
+    """Twist and side angle, where there are any."""
+    for key, label in ((col.TWIST, "twist"), (col.SIDE_ANGLE, "side angle")):
+        values = [row[key] for row in rows if row.get(key) is not None]
+        if values and max(map(abs, values)) > _SEEN:
+            yield Entry(f"{label} at the end", quantity(values[-1], "°"))
+
+
+def _contacts(case: Case, rows: Sequence[col.Row]) -> Iterator[Entry]:
+    """First touch of every obstacle, and its force at the end."""
+    for touch in touches(rows):
+        if touch.value:
+            yield Entry(f"touches the {touch.obstacle}", touch.value, touch.note)
+        else:
+            yield Entry(f"touch of the {touch.obstacle}", "none", touch.note)
+        if touch.force is not None and not case.straight:
+            yield Entry(f"force of the {touch.obstacle}", quantity(touch.force, "N"), "at the end")
+
+
+def _critical(run: Mapping[str, Any]) -> Iterator[Entry]:
+    """Limit points, and where stability is lost."""
+    for point in run.get("critical_points") or ():
+        before, beyond = point["unstable_modes_before"], point["unstable_modes_beyond"]
+        if beyond <= before:
+            continue
+        parts = []
+        if point.get(col.PRESSURE) is not None:
+            parts.append(quantity(point[col.PRESSURE], "kPa"))
+        if point.get(col.ANGLE) is not None:
+            parts.append(quantity(point[col.ANGLE], "°"))
+        load = point.get("load", "load")
+        if point["kind"] == "limit":
+            yield Entry("limit point", ", ".join(parts), f"beyond it the {load} falls")
+        else:
+            yield Entry("stability lost", ", ".join(parts), "the body buckles")
+
+
+def _strain(run: Mapping[str, Any]) -> Iterator[Entry]:
+    """Greatest strain of the last state, and where it is."""
+    found = run.get("greatest_strain")
+    if not found:
+        return
+    at = [
+        f"{axis} = {quantity(found[f'{axis}_mm'], 'mm')}"
+        for axis in "xyz"
+        if found.get(f"{axis}_mm") is not None
+    ]
+    strain = f"{100 * found['nominal']:.0f} %, logarithmic {found['logarithmic']:.3f}"
+    yield Entry("greatest strain", strain, f"{found['place']}; at rest {', '.join(at)}")
+
+
+# --- how far to trust it ----------------------------------------------------------------------
+
+
+def _errors(case: Case, model: ModelKind) -> Iterator[Entry]:
+    """How far the model's answer is expected to be off, with the source."""
+    for index, line in enumerate(errors(case, model)):
+        yield Entry("" if index else "expected error", line)
+
+
+def _comparisons(run: Mapping[str, Any]) -> Iterator[str]:
+    yield from (run.get("crosscheck") or {}).get("lines", ())
+
+
+def _trust(run: Mapping[str, Any]) -> str:
+    """One line: how it ended, the section model beside it, and how many warnings there are."""
+    parts = []
+    if run.get("status") != "converged":
+        parts.append("the values up to the end of the run are those of converged states")
+    beside = (run.get("crosscheck") or {}).get("section") or {}
+    if beside.get("text"):
+        parts.append(beside["text"])
+    number = len(run.get("warnings") or ())
+    if number:
+        parts.append(f"read the {'warning' if number == 1 else f'{number} warnings'} below")
+    else:
+        parts.append("no doubt beyond the expected error is known")
+    return f"Trust: {'; '.join(parts)}."
