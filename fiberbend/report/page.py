@@ -48,11 +48,13 @@ class Picture:
         address: its content.
         text: what it shows.
         name: of its file, empty for one that is in no file.
+        inside: the page contains it; else it is a link.
     """
 
     address: str
     text: str
     name: str = ""
+    inside: bool = True
 
 
 def render(template: str, **context: Any) -> str:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.drawing.page import COLORS, NAMES, nice_above
-from fiberbend.drawing.surfaces import BodySurfaces, Mask
+from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.drawing.tessellation import Tessellation, boundary_facets, on_mirror
 from fiberbend.results.space import Space
 from fiberbend.results.states import Kept, States
@@ -208,7 +208,7 @@ def _evenly(count: int, most: int) -> list[int]:
     """So many places at most of a list, evenly over it."""
     if count <= most:
         return list(range(count))
-    return sorted({round(x) for x in np.linspace(0, count - 1, max(most, 0))})
+    return [int((i + 0.5) * count / most) for i in range(most)]
 
 
 def _size(skins: Sequence[Skin]) -> int:
@@ -394,6 +394,3 @@ def _packed(values: NDArray[Any]) -> str:
 
 def _base64(data: bytes) -> str:
     return base64.b64encode(data).decode("ascii")
-
-
-__all__ = ["Mask", "Places", "SceneData", "Skin", "scene_data", "thinned"]
