@@ -44,6 +44,16 @@ app.command(
   fiberbend control cases/section.yaml --steps "30 deg" "90 deg"
 """,
 )
+app.command(
+    "fiberbend.commands.report:report",
+    name="report",
+    help="Write the page of a run or a sweep anew.",
+    help_epilogue="""Examples:
+  fiberbend report runs/section --open
+  fiberbend report runs/section --out section.html
+  fiberbend report runs/radius_length_wall
+""",
+)
 
 
 def entry() -> NoReturn:

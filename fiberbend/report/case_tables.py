@@ -15,7 +15,7 @@ _READ = (
     *(col.STEP, col.PRESSURE, col.ANGLE, col.TIP_X, col.TIP_Y, col.TIP_Z, col.VOLUME),
     *(col.TIP_FORCE, col.ROOF_FORCE, col.TWIST, col.SIDE_ANGLE, col.AXIS_STRETCH),
 )
-"""Columns that a user reads, where they have values other than zero; and the forces of obstacles."""
+"""Columns that a user reads, where they have values other than zero."""
 _OBSTACLE = ("_y_N", "_z_N")
 _PLANNED = {
     *("effects", "model", "half", "elements", "unknowns", "error"),

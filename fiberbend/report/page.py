@@ -89,12 +89,24 @@ def inside(path: Path, folder: Path) -> Download:
     return Download(name, data_address(content, path.name), _size(len(content)), True)
 
 
-def beside(path: Path, folder: Path) -> Download:
-    """A file that is too large for the page."""
+def beside(path: Path, folder: Path, links: str = "") -> Download:
+    """A file that is too large for the page; `links` as of `link`."""
+    name = path.relative_to(folder).as_posix()
+    return Download(name, link(path, folder, links), _size(path.stat().st_size), False)
+
+
+def link(path: Path, folder: Path, links: str = "") -> str:
+    """Where a browser finds a file of a folder from the page.
+
+    Args:
+        path: the file.
+        folder: the folder.
+        links: what leads from the page to the folder; empty where the page is in it.
+    """
     from urllib.parse import quote
 
-    name = path.relative_to(folder).as_posix()
-    return Download(name, quote(name), _size(path.stat().st_size), False)
+    # a name with a colon at its beginning would be another protocol
+    return quote(f"{links or './'}{path.relative_to(folder).as_posix()}")
 
 
 def asset(name: str) -> str:

@@ -1,10 +1,10 @@
-"""report.html of a run: case, plan, answer, curves, the body in space and all files, in one page."""
+"""report.html of a run: case, plan, answer, curves, the body in space and files, in one page."""
 
 from __future__ import annotations
 
-import dataclasses
 import io
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import IO, Any
 
@@ -23,24 +23,24 @@ from fiberbend.report.page import (
     citation,
     data_address,
     inside,
+    link,
     picture,
     render,
 )
-from fiberbend.results.folder import CASE_FILE, HISTORY_FILE, MESH, RUN_FILE, RunFolder
+from fiberbend.results.folder import CASE_FILE, HISTORY_FILE, MESH, REPORT, RUN_FILE, RunFolder
 from fiberbend.results.space import Space
 from fiberbend.results.states import States, read_snapshot, snapshot_paths
 
-REPORT_FILE = "report.html"
 _MOST_PICTURES = 4_000_000
 """Bytes of pictures of the body that the page contains; further ones are links."""
-_CURVES = ("pressure_*.png", "tip_force*.png", "contact_*.png", "fiber_*.png", "tip_path.png")
-_SECTIONS = ("section_*.png", "cell_*.png")
-_BODY = ("rest.png", "undeformed.png", "montage.png", "bent*.png", "cut.png")
+_PATHS = ("tip_path.*",)
+_SECTIONS = ("section_*.*", "cell_*.*", "fiber_*.*")
+_BODY = ("rest.*", "undeformed.*", "montage.*", "bent*.*", "cut.*", "animation.*")
+_PLANE = (col.TIP_Y, col.TIP_Z)
+_ASIDE = 1e-3
+"""Part of the path's extent by which it leaves the plane of bending where that is shown."""
 _INSIDE = (HISTORY_FILE, CASE_FILE, RUN_FILE)
-_BESIDE = (
-    *("run.log", "error.log", "actuator.msh", "fields/states.pvd", "fields/*.vt?"),
-    *("pictures/animation.*",),
-)
+_BESIDE = (*("run.log", "error.log", "actuator.msh", "fields/states.pvd", "fields/*.vt?"),)
 _ROWS_KEYS = {col.STEP: "step", col.PRESSURE: "pressure_kpa", col.ANGLE: "angle_deg"}
 
 
@@ -62,13 +62,26 @@ def write_report(
         CaseError: the folder's states do not fit its case.
     """
     if folder.writes:
-        folder.write_text(REPORT_FILE, report(folder.path, case, rows, run))
+        folder.write_text(REPORT, report(folder.path, case, rows, run))
 
 
 def report(
-    path: Path, case: Case, rows: Sequence[Mapping[str, Any]], run: Mapping[str, Any]
+    path: Path,
+    case: Case,
+    rows: Sequence[Mapping[str, Any]],
+    run: Mapping[str, Any],
+    links: str = "",
 ) -> str:
-    """The page of a run, see `write_report`."""
+    """The page of a run, see `write_report`.
+
+    Args:
+        path: the run folder.
+        case: its case.
+        rows: of history.csv; empty where there is none.
+        run: content of run.json.
+        links: what leads from the page to the folder, such as "runs/finger/"; empty for a page in
+            the folder itself.
+    """
     missing: list[str] = []
     if not rows:
         rows = rows_of_states(path)
@@ -108,8 +121,9 @@ def report(
         three=asset("three/three.min.js") if view else "",
         curves=curves,
         side=side,
-        sections=list(_pictures(path, _SECTIONS)),
-        body=_limited(path, _BODY),
+        path_in_space=_pictures(path, _PATHS) if known and _leaves_plane(known) else [],
+        sections=_pictures(path, _SECTIONS),
+        body=_limited(path, _BODY, links),
         dimensions=list(case_tables.dimensions(case)),
         materials=list(case_tables.materials(case)),
         effects=list(case_tables.effects(case)),
@@ -120,7 +134,7 @@ def report(
         phases=_phases(run),
         counts=_counts(run),
         machine=[(name, str(value)) for name, value in versions.items()],
-        downloads=list(_downloads(path)),
+        downloads=list(_downloads(path, links)),
         cite=citation(),
         version=str(versions.get("fiberbend", "")),
     )
@@ -153,9 +167,8 @@ def _states(
 # --- pictures ---------------------------------------------------------------------------------
 
 
-def _pictures(path: Path, patterns: Sequence[str]) -> Iterator[Picture]:
-    for file in _files(path / "pictures", patterns):
-        yield picture(file, file.stem.replace("_", " "))
+def _pictures(path: Path, patterns: Sequence[str]) -> list[Picture]:
+    return [picture(file, _in_words(file)) for file in _files(path / "pictures", patterns)]
 
 
 def _files(path: Path, patterns: Sequence[str]) -> list[Path]:
@@ -163,40 +176,51 @@ def _files(path: Path, patterns: Sequence[str]) -> list[Path]:
     return list(dict.fromkeys(found))
 
 
-def _limited(path: Path, patterns: Sequence[str]) -> list[Picture]:
-    """Pictures as far as there is room, the others as links."""
-    from urllib.parse import quote
+def _in_words(file: Path) -> str:
+    return file.stem.replace("_", " ")
 
+
+def _limited(path: Path, patterns: Sequence[str], links: str) -> list[Picture]:
+    """Pictures as far as there is room, the others as links."""
     shown, room = [], _MOST_PICTURES
     for file in _files(path / "pictures", patterns):
         room -= file.stat().st_size
-        each = picture(file, file.stem.replace("_", " "))
-        if room < 0:
-            each = dataclasses.replace(each, address=quote(f"pictures/{file.name}"), inside=False)
-        shown.append(each)
+        if room >= 0:
+            shown.append(picture(file, _in_words(file)))
+        else:
+            shown.append(Picture(link(file, path, links), _in_words(file), inside=False))
     return shown
 
 
 def _curves(path: Path, case: Case, rows: Sequence[dict[str, Any]]) -> list[Picture]:
-    """The plots of the run, drawn now where it has drawn none."""
-    there = list(_pictures(path, _CURVES))
+    """The plots of the run, drawn now where it has drawn none; the tip's path is another."""
+    there = _files(path / "pictures", ("*.png", "*.svg"))
     if there or not rows:
-        return there
+        others = {*_files(path / "pictures", (*_SECTIONS, *_BODY, *_PATHS))}
+        return [picture(file, _in_words(file)) for file in there if file not in others]
     from fiberbend.drawing.curves import draw_plots
     from fiberbend.drawing.page import own_style
 
     drawn: list[Picture] = []
 
     def keep(name: str, fill: Callable[[IO[bytes]], object]) -> None:
+        if any(fnmatchcase(name, pattern) for pattern in _PATHS):
+            return
         content = io.BytesIO()
         fill(content)
-        text = Path(name).stem.replace("_", " ")
-        drawn.append(Picture(data_address(content.getvalue(), name), text))
+        drawn.append(Picture(data_address(content.getvalue(), name), _in_words(Path(name))))
 
     angles = [float(np.rad2deg(angle)) for angle in case.output.at_angles]
     with own_style():
         draw_plots(rows, keep, angles, case.title)
     return drawn
+
+
+def _leaves_plane(rows: Sequence[Mapping[str, Any]]) -> bool:
+    """Whether the tip leaves the plane of bending, so that a view from the side is not enough."""
+    path = np.array([[row.get(key) or 0.0 for key in (col.TIP_X, *_PLANE)] for row in rows])
+    sizes = np.ptp(path, axis=0)
+    return bool(sizes[0] > _ASIDE * sizes[1:].max())
 
 
 def _side(
@@ -237,11 +261,9 @@ def _counts(run: Mapping[str, Any]) -> list[tuple[str, str]]:
     return [(text, str(run[key])) for key, text in names.items() if run.get(key) is not None]
 
 
-def _downloads(path: Path) -> Iterator[Download]:
+def _downloads(path: Path, links: str) -> Iterator[Download]:
     for name in _INSIDE:
         if (path / name).exists():
             yield inside(path / name, path)
     for file in _files(path, _BESIDE):
-        yield beside(file, path)
-
-
+        yield beside(file, path, links)

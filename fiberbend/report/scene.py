@@ -21,7 +21,7 @@ from fiberbend.results.space import Space
 from fiberbend.results.states import Kept, States
 from fiberbend.states.bend import Bend, in_frame
 from fiberbend.states.fiber_lines import fiber_lines
-from fiberbend.states.recovery import recover, split_nodes
+from fiberbend.states.recovery import SplitNodes, recover, split_nodes
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 from fiberbend.states.stack import split_alike
 from geometry.mesh.data import Floats, Ints, MeshData
@@ -116,9 +116,9 @@ def scene_data(case: Case, states: States, space: Space | None = None) -> SceneD
         raise ValueError("no load step was kept: nothing to see in space")
     space = space or Space(case, states.model_mesh)
     notes = []
-    skins, level = _skins(space, _FINE), _FINE
+    skins = _skins(space, _FINE)
     if _size(skins) * len(states) > MOST_NUMBERS:
-        skins, level = _skins(space, _COARSE), _COARSE
+        skins = _skins(space, _COARSE)
         notes.append("The surface is drawn with straight edges between the corners of elements.")
     most = max(2, MOST_NUMBERS // _size(skins))
     kept = states.kept
@@ -237,17 +237,17 @@ def _skins(space: Space, level: int) -> list[Skin]:
 
 def _own_copies(space: Space) -> Ints:
     """The copy of a node of the model's own mesh behind every node of a cell in space, (m, k)."""
-    copies = _split(space.own).cells
-    return copies if space.stack is None else space.stack.at_cells(copies)
+    copies: Ints = _split(space.own).cells
+    if space.stack is None:
+        return copies
+    return copies[space.stack.cell[:, None], space.stack.order]
 
 
-def _split(own: ModelMesh) -> Any:
+def _split(own: ModelMesh) -> SplitNodes:
     return split_alike(own.mesh) if own.uniform else split_nodes(own.mesh)
 
 
-def _skin(
-    mesh: MeshData, pairs: Ints, copies: Ints, level: int, part: str, cut: bool
-) -> Skin:
+def _skin(mesh: MeshData, pairs: Ints, copies: Ints, level: int, part: str, cut: bool) -> Skin:
     drawn = Tessellation(mesh, pairs, level)
 
     def at_points(numbers: Ints) -> Ints:
@@ -256,7 +256,9 @@ def _skin(
         return found
 
     node, copy = at_points(mesh.cells), at_points(copies)
-    first, place = np.unique(node * (int(copy.max()) + 1) + copy, return_index=True, return_inverse=True)[1:]
+    first, place = np.unique(
+        node * (int(copy.max()) + 1) + copy, return_index=True, return_inverse=True
+    )[1:]
     region = at_points(np.broadcast_to(mesh.cell_region[:, None], mesh.cells.shape))
     pieces = place[drawn.pieces]
     if pieces.shape[1] == 4:

@@ -69,32 +69,15 @@ def side_view(
     if states is not None and space is not None:
         drawn, around = _outlines(states, space)
     polygons = _obstacles(case, around) if len(around) else {}
-    # what has no end of its own is cut off at the frame
-    cloud = np.concatenate([path, *(loop for _, loops in drawn for loop in loops)])
-    low, high = cloud.min(axis=0), cloud.max(axis=0)
-    room = _ROOM * float((high - low).max()) + 1.0
-    low, high = low - room, high + room
-    # one scale for both axes, in a frame that is neither a strip nor a tower
-    size = np.maximum(high - low, [(high - low)[1] / _TALLEST, _FLATTEST * (high - low)[0]])
-    low, high = (low + high - size) / 2, (low + high + size) / 2
-    inner = _WIDTH - _LEFT - _RIGHT
-    tall = inner * size[1] / size[0]
-    height = _BELOW + tall + _RIGHT
-    page = figure((_WIDTH, round(height)))
-    axes = page.add_axes((_LEFT / _WIDTH, _BELOW / height, inner / _WIDTH, tall / height))
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
-    axes.set_xlabel("z (mm)")
-    axes.set_ylabel("y (mm)")
-    axes.grid(color="0.92")
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
+    page, axes, (low, high) = _frame([path, *(loop for _, loops in drawn for loop in loops)])
     for name, faces in polygons.items():
         _draw_obstacle(axes, name, faces, (low, high))
     for number, (_, loops) in enumerate(drawn):
         share = number / max(1, len(drawn) - 1)
         _draw_outline(axes, loops, colormap()(0.85 * share))
     axes.plot(*path.T, ".-", color=_TIP, linewidth=1.2, markersize=5, zorder=4)
-    _name_tips(axes, rows, [kept.step for kept, _ in drawn] or [int(rows[-1][col.STEP])], low, high)
+    steps = [kept.step for kept, _ in drawn] or [int(rows[-1][col.STEP])]
+    _name_tips(axes, rows, steps, low, high)
     content = io.BytesIO()
     page.savefig(content, format="svg", metadata={"Date": None}, transparent=False)
     return content.getvalue()
@@ -162,6 +145,31 @@ def loops_of(edges: Ints) -> list[Ints]:
     return loops
 
 
+def _frame(clouds: Sequence[Floats]) -> tuple[Any, Any, tuple[Floats, Floats]]:
+    """Figure, axes of one scale, and their least and greatest z and y.
+
+    Args:
+        clouds: points (z, y) that are seen; obstacles without an end are cut off.
+    """
+    cloud = np.concatenate(clouds)
+    low, high = cloud.min(axis=0), cloud.max(axis=0)
+    room = _ROOM * float((high - low).max()) + 1.0
+    low, high = low - room, high + room
+    # neither a strip nor a tower
+    size = np.maximum(high - low, [(high - low)[1] / _TALLEST, _FLATTEST * (high - low)[0]])
+    low, high = (low + high - size) / 2, (low + high + size) / 2
+    inner = _WIDTH - _LEFT - _RIGHT
+    tall = inner * size[1] / size[0]
+    height = _BELOW + tall + _RIGHT
+    page = figure((_WIDTH, round(height)))
+    axes = page.add_axes((_LEFT / _WIDTH, _BELOW / height, inner / _WIDTH, tall / height))
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="z (mm)", ylabel="y (mm)")
+    axes.grid(color="0.92")
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+    return page, axes, (low, high)
+
+
 def _outlines(states: States, space: Space) -> tuple[list[tuple[Kept, list[Floats]]], Floats]:
     """Closed lines (z, y) of some states, and points of the body in them."""
     places = Places(space)
@@ -203,10 +211,9 @@ def _draw_outline(axes: Any, loops: Sequence[Floats], color: Any) -> None:
     for number, loop in enumerate(ordered):
         # a hole is a line in the other direction
         turned = _area(loop) > 0
-        parts.append(Path(loop if turned == (number == 0) else loop[::-1], closed=False))
-    for part in parts:
-        part.codes = np.full(len(part.vertices), Path.LINETO, dtype=Path.code_type)
-        part.codes[0], part.codes[-1] = Path.MOVETO, Path.CLOSEPOLY
+        points = loop if turned == (number == 0) else loop[::-1]
+        codes = [Path.MOVETO, *[Path.LINETO] * (len(points) - 2), Path.CLOSEPOLY]
+        parts.append(Path(points, codes))
     if parts:
         whole = Path.make_compound_path(*parts)
         light = (*color[:3], 0.28)
@@ -218,7 +225,12 @@ def _draw_obstacle(
 ) -> None:
     from matplotlib.collections import PolyCollection
 
-    look = {"facecolor": "#c9ccd1", "edgecolor": "#7b8088", "linewidth": 0.8, "zorder": 1}
+    look: dict[str, Any] = {
+        "facecolor": "#c9ccd1",
+        "edgecolor": "#7b8088",
+        "linewidth": 0.8,
+        "zorder": 1,
+    }
     axes.add_collection(PolyCollection(faces, **look), autolim=False)
     points = np.concatenate(faces)
     seen = points[((points >= frame[0]) & (points <= frame[1])).all(axis=1)]
@@ -233,7 +245,8 @@ def _name_tips(
     from matplotlib.patheffects import withStroke
 
     by_step = {int(row[col.STEP]): row for row in rows}
-    size, taken = high - low, []
+    size = high - low
+    taken: list[Floats] = []
     for step in reversed(steps):
         row = by_step.get(step)
         if row is None or row.get(col.TIP_Z) is None or row.get(col.TIP_Y) is None:

@@ -27,6 +27,7 @@ from fiberbend.models.result import Curve, RunResult
 from fiberbend.plan.doubts import doubts, say_warnings
 from fiberbend.results.folder import RunFolder
 from fiberbend.running import launch, messages
+from fiberbend.running.outputs import draw_curves, write_page
 from fiberbend.running.progress import Progress
 from fiberbend.running.record import beside, entries, peak_memory_mb
 
@@ -105,8 +106,6 @@ def run_analytic(
         folder.write_history(rows)
         folder.write_run(**run)
         if case.output.pictures and folder.writes:
-            from fiberbend.running.outputs import draw_curves
-
             draw_curves(
                 folder,
                 case,
@@ -116,6 +115,7 @@ def run_analytic(
                 kind.name,
                 progress.message,
             )
+        write_page(folder, case, rows, run, progress.message)
     for line in check.lines():
         progress.message(line)
     say_warnings(run["warnings"], progress.message)

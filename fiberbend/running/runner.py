@@ -222,7 +222,7 @@ class _Run:
                 self._draw(assembly, recording, why, rows, check)
                 run["wall_s"] = self._wall(assembly)
                 run["warnings"] = list(recording.warnings)
-                self.folder.write_run(**run)
+                self._page(assembly, recording, rows, run)
         self.comm.barrier()
         self._report(run, check)
         return RunResult(status, reason, rows, run, self.folder.path if self.folder else None)
@@ -362,6 +362,25 @@ class _Run:
         for line in (*(check.lines() if check is not None else ()), *record.cost(run)):
             say(line)
         say_warnings(run["warnings"], say)
+
+    def _page(
+        self,
+        assembly: Assembly,
+        recording: Recording,
+        rows: list[dict[str, Any]],
+        run: dict[str, Any],
+    ) -> None:
+        """The report, on rank 0, from the folder as it is now."""
+        from fiberbend.running import outputs
+
+        assert self.folder is not None
+        self.progress.phase("report")
+        run["wall_s"] = self._wall(assembly)
+        self.folder.write_run(**run)
+        outputs.write_page(self.folder, self.case, rows, run, lambda text: recording.warn([text]))
+        if run["warnings"] != recording.warnings:
+            run["warnings"] = list(recording.warnings)
+            self.folder.write_run(**run)
 
     def _draw(
         self,

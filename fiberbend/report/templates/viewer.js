@@ -28,6 +28,9 @@
     return new Type(ordered.buffer);
   }
 
+  const FIBER_LIFT = 0.25; // mm
+  const FIBER_WIDTH = 0.4; // mm, as far as it can be seen
+
   // Colours as they are written, with a shade so faint that they can be read off the bar.
   const VERTEX = `
     attribute float value;
@@ -87,8 +90,6 @@
       uniforms: { colors: { value: palettes.scalar } },
       side: THREE.DoubleSide,
       polygonOffset: true,
-      polygonOffsetFactor: 1,
-      polygonOffsetUnits: 2,
     });
 
     // --- what is drawn ----------------------------------------------------------------------
@@ -136,7 +137,9 @@
       const segments = await unpacked(data.fibers.segments, Uint32Array);
       const geometry = new THREE.LineSegmentsGeometry();
       geometry.setPositions(new Float32Array(3 * segments.length));
-      const material = new THREE.LineMaterial({ color: 0x1a1a1a, linewidth: 1.6 });
+      const material = new THREE.LineMaterial({
+        color: 0x1a1a1a, linewidth: 1.4, side: THREE.DoubleSide,
+      });
       fibers = {
         segments,
         material,
@@ -280,21 +283,51 @@
         across = Math.max(across, Math.abs(corner.dot(right)));
         tall = Math.max(tall, Math.abs(corner.dot(up)));
       }
-      const half = 1.12 * Math.max(tall, (across * height) / width);
+      const half = 1.06 * Math.max(tall, (across * height) / width);
       camera.top = half;
       camera.bottom = -half;
       camera.right = (half * width) / height;
       camera.left = -camera.right;
-      camera.near = 0.1 * reach;
-      camera.far = 12 * reach;
+      camera.near = 0;
+      camera.far = 6 * reach;
+      // fibers lie in a surface that is drawn flat between its points: it steps back behind them
+      coloring.polygonOffsetUnits = (FIBER_LIFT / camera.far) * 2 ** 24;
       camera.updateProjectionMatrix();
       needed = true;
     }
 
+    function aim(least, greatest) {
+      low.copy(least);
+      high.copy(greatest);
+      const toward = camera.position.clone().sub(controls.target).normalize();
+      controls.target.copy(low).add(high).multiplyScalar(0.5);
+      camera.position.copy(controls.target).addScaledVector(toward, 3 * reach);
+      camera.zoom = 1;
+      controls.update();
+      fit();
+    }
+
+    function fitStep() {
+      const box = [new THREE.Vector3(1, 1, 1), new THREE.Vector3(-1, -1, -1)];
+      box.forEach((corner) => corner.multiplyScalar(1e9));
+      for (const skin of skins) {
+        const points = skin.geometry.getAttribute("position");
+        for (let i = 0; i < points.count; i++) {
+          const point = new THREE.Vector3().fromBufferAttribute(points, i);
+          box[0].min(point);
+          box[1].max(point);
+          if (data.half) box[0].x = Math.min(box[0].x, -point.x);
+        }
+      }
+      aim(...box);
+    }
+
     function look(name) {
+      low.set(...data.bounds[0]);
+      high.set(...data.bounds[1]);
       controls.target.copy(low).add(high).multiplyScalar(0.5);
       const toward = new THREE.Vector3(...views[name]).normalize();
-      camera.position.copy(controls.target).addScaledVector(toward, 5 * reach);
+      camera.position.copy(controls.target).addScaledVector(toward, 3 * reach);
       camera.zoom = 1;
       camera.lookAt(controls.target);
       controls.update();
@@ -376,6 +409,7 @@
     for (const button of document.querySelectorAll("[data-look]")) {
       button.addEventListener("click", () => look(button.dataset.look));
     }
+    element("fit-step").addEventListener("click", fitStep);
     const play = element("play");
     let timer = 0;
     function stop() {
@@ -402,6 +436,10 @@
       requestAnimationFrame(draw);
       if (!needed) return;
       needed = false;
+      if (fibers) {
+        const pixel = (camera.right - camera.left) / camera.zoom / canvas.clientWidth;
+        fibers.material.linewidth = Math.min(Math.max(FIBER_WIDTH / pixel, 0.7), 6);
+      }
       renderer.render(scene, camera);
       drawAxes();
       canvas.dataset.drawn = `${shown}`;
