@@ -114,7 +114,7 @@ def all_columns(rows: Sequence[Mapping[str, Any]]) -> list[str]:
 def _number(value: Any) -> str:
     if value is None or value == "":
         return ""
-    number = float(value)
+    number = float(value) + 0.0
     text = f"{number:.0f}" if number == round(number) and abs(number) < 1e6 else f"{number:.5g}"
     return text.replace("-", "−")
 

@@ -247,18 +247,18 @@ def _phases(run: Mapping[str, Any]) -> list[tuple[str, float, float]]:
     return [(name, value, value / longest) for name, value in seconds.items()]
 
 
-def _counts(run: Mapping[str, Any]) -> list[tuple[str, str]]:
+def _counts(run: Mapping[str, Any]) -> list[str]:
     names = {
-        "unknowns": "unknowns",
-        "elements": "elements",
-        "load_steps": "load steps",
-        "newton_iterations": "Newton iterations",
-        "factorisations": "factorisations",
-        "cutbacks": "cut-backs",
-        "peak_memory_MB": "peak memory, MB",
-        "ranks": "ranks",
+        "unknowns": "{} unknowns",
+        "elements": "{} elements",
+        "load_steps": "{} load steps",
+        "newton_iterations": "{} Newton iterations",
+        "factorisations": "{} factorisations",
+        "cutbacks": "{} cut-backs",
+        "peak_memory_MB": "peak memory {} MB",
+        "ranks": "{} ranks",
     }
-    return [(text, str(run[key])) for key, text in names.items() if run.get(key) is not None]
+    return [text.format(run[key]) for key, text in names.items() if run.get(key) is not None]
 
 
 def _downloads(path: Path, links: str) -> Iterator[Download]:

@@ -256,7 +256,9 @@ def _name_tips(
             continue
         taken.append(place)
         axes.plot(*place, "o", color=_TIP, markersize=6, zorder=5)
-        text = f"{row[col.PRESSURE]:.1f} kPa, {row[col.ANGLE]:.0f}°".replace("-", "−")
+        # a zero has no sign
+        pressure, angle = round(row[col.PRESSURE], 1) + 0.0, round(row[col.ANGLE]) + 0.0
+        text = f"{pressure:.1f} kPa, {angle:.0f}°".replace("-", "−")
         # at the right edge to the left of its point
         inside = place[0] + _TEXT[0] * size[0] < high[0]
         shift, side = ((7, 4), "left") if inside else ((-7, 6), "right")

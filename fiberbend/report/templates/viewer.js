@@ -201,9 +201,8 @@
         ends.needsUpdate = true;
       }
       showValues();
-      const angle = step.angle.toFixed(1).replace("-", "−");
-      const pressure = step.pressure.toFixed(1).replace("-", "−");
-      const text = `step ${step.step}: ${pressure} kPa, θ = ${angle}°`;
+      const rounded = (value) => value.toFixed(1).replace(/^-0\.0$/, "0.0").replace("-", "−");
+      const text = `step ${step.step}: ${rounded(step.pressure)} kPa, θ = ${rounded(step.angle)}°`;
       element("step-text").textContent = text;
       slider.setAttribute("aria-valuetext", text);
       slider.value = String(number);
