@@ -18,7 +18,6 @@ from fiberbend.report import case_tables
 from fiberbend.report.page import (
     Download,
     Picture,
-    asset,
     beside,
     citation,
     data_address,
@@ -118,7 +117,6 @@ def report(
         view=view,
         obstacles=bool(view and view["obstacles"]),
         view_notes=notes,
-        three=asset("three/three.min.js") if view else "",
         curves=curves,
         side=side,
         path_in_space=_pictures(path, _PATHS) if known and _leaves_plane(known) else [],

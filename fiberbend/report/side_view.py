@@ -19,6 +19,7 @@ from fiberbend.drawing.tessellation import on_mirror
 from fiberbend.report.scene import Places, thinned
 from fiberbend.results.space import Space
 from fiberbend.results.states import Kept, States
+from fiberbend.states.obstacles import Shape
 from geometry.mesh.data import (
     FACET_VERTICES,
     Floats,
@@ -64,11 +65,12 @@ def side_view(
     ).reshape(-1, 2)
     if not len(path):
         return None
+    shapes = _shapes(case)
     drawn: list[tuple[Kept, list[Floats]]] = []
-    around = np.zeros((0, 3))
+    polygons: dict[str, list[Floats]] = {}
     if states is not None and space is not None:
-        drawn, around = _outlines(states, space)
-    polygons = _obstacles(case, around) if len(around) else {}
+        drawn, around = _outlines(states, space, everything=bool(shapes))
+        polygons = {name: _faces(shape.surface(around)) for name, shape in shapes.items()}
     page, axes, (low, high) = _frame([path, *(loop for _, loops in drawn for loop in loops)])
     for name, faces in polygons.items():
         _draw_obstacle(axes, name, faces, (low, high))
@@ -170,34 +172,47 @@ def _frame(clouds: Sequence[Floats]) -> tuple[Any, Any, tuple[Floats, Floats]]:
     return page, axes, (low, high)
 
 
-def _outlines(states: States, space: Space) -> tuple[list[tuple[Kept, list[Floats]]], Floats]:
-    """Closed lines (z, y) of some states, and points of the body in them."""
+def _outlines(
+    states: States, space: Space, everything: bool
+) -> tuple[list[tuple[Kept, list[Floats]]], Floats]:
+    """Closed lines (z, y) of some states, and points of the body in them, (n, 3), mm.
+
+    Args:
+        states: what the run has kept.
+        space: body in space.
+        everything: the points are those of the whole body, not of the lines alone.
+    """
     places = Places(space)
     loops = loops_of(plane_edges(places.mesh))
-    kept = thinned(states.kept, _DRAWN)
+    ends = np.cumsum([len(loop) for loop in loops])[:-1]
+    node = np.concatenate(loops) if loops else np.zeros(0, dtype=np.int64)
     drawn, around = [], []
-    for each in kept:
+    for each in thinned(states.kept, _DRAWN):
         shot = states.read(each)
         if shot is None:
             continue
-        drawn.append((each, [places.at(shot, loop)[:, [2, 1]] for loop in loops]))
-        around.append(places.at(shot))
+        lines = places.at(shot, node)
+        drawn.append((each, np.split(lines[:, [2, 1]], ends) if loops else []))
+        around.append(places.at(shot) if everything else lines)
     points = np.concatenate(around)
     if places.mesh.half:
         points = np.concatenate([points, points * [-1.0, 1.0, 1.0]])
     return drawn, points
 
 
-def _obstacles(case: Case, around: Floats) -> dict[str, list[Floats]]:
-    """Faces (z, y) of every obstacle."""
+def _shapes(case: Case) -> dict[str, Shape]:
+    """Every obstacle of a case."""
     actuator = convert.dimensions(case.actuator)
-    found = {}
+    found: dict[str, Shape] = {}
     for effect in case.effects:
-        for name, shape in effect.obstacle_shapes(actuator).items():
-            surface = shape.surface(around)
-            faces = [surface.get_cell(i).points for i in range(surface.n_cells)]
-            found[name] = [np.asarray(points)[:, [2, 1]] for points in faces]
+        found |= effect.obstacle_shapes(actuator)
     return found
+
+
+def _faces(surface: Any) -> list[Floats]:
+    """Faces (z, y) of a pyvista.PolyData."""
+    faces = [surface.get_cell(i).points for i in range(surface.n_cells)]
+    return [np.asarray(points)[:, [2, 1]] for points in faces]
 
 
 def _draw_outline(axes: Any, loops: Sequence[Floats], color: Any) -> None:
