@@ -247,16 +247,18 @@ def _phases(run: Mapping[str, Any]) -> list[tuple[str, float, float]]:
 
 def _counts(run: Mapping[str, Any]) -> list[str]:
     names = {
-        "unknowns": "{} unknowns",
-        "elements": "{} elements",
-        "load_steps": "{} load steps",
-        "newton_iterations": "{} Newton iterations",
-        "factorisations": "{} factorisations",
-        "cutbacks": "{} cut-backs",
-        "peak_memory_MB": "peak memory {} MB",
-        "ranks": "{} ranks",
+        "unknowns": "unknown",
+        "elements": "element",
+        "load_steps": "load step",
+        "newton_iterations": "Newton iteration",
+        "factorisations": "factorisation",
+        "cutbacks": "cut-back",
+        "ranks": "rank",
     }
-    return [text.format(run[key]) for key, text in names.items() if run.get(key) is not None]
+    known = [(run[key], text) for key, text in names.items() if run.get(key) is not None]
+    counts = [f"{number} {text}{'' if number == 1 else 's'}" for number, text in known]
+    memory = run.get("peak_memory_MB")
+    return counts if memory is None else [*counts, f"peak memory {memory:.0f} MB"]
 
 
 def _downloads(path: Path, links: str) -> Iterator[Download]:

@@ -274,3 +274,9 @@ def test_without_a_desktop_open_says_so(
     monkeypatch.setattr(opening.sys, "platform", "linux")
     assert not opening.open_file(folder / REPORT)
     assert "expected a desktop or BROWSER" in capsys.readouterr().err
+
+
+def test_help_has_examples(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["report", "--help"]) == 0
+    _, _, examples = capsys.readouterr().out.partition("Examples:")
+    assert "fiberbend report runs/section --open" in examples
