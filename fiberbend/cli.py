@@ -89,6 +89,17 @@ app.command(
 """,
 )
 
+app.command(
+    "fiberbend.commands.report:report",
+    name="report",
+    help="Write the page of a run or a sweep anew.",
+    help_epilogue="""Examples:
+  fiberbend report runs/section --open
+  fiberbend report runs/section --out section.html
+  fiberbend report runs/radius_length_wall
+""",
+)
+
 
 def entry() -> NoReturn:
     """The command as a process: `main`, with signals, streams and other ranks in order."""

@@ -28,6 +28,7 @@ from fiberbend.models.result import Curve, RunResult
 from fiberbend.plan.doubts import doubts
 from fiberbend.results.folder import RunFolder
 from fiberbend.running import launch, messages
+from fiberbend.running.outputs import draw_curves, write_page
 from fiberbend.running.progress import Progress
 from fiberbend.running.record import beside, entries, peak_memory_mb
 
@@ -106,8 +107,6 @@ def run_analytic(
         folder.write_history(rows)
         folder.write_run(**run)
         if case.output.pictures and folder.writes:
-            from fiberbend.running.outputs import draw_curves
-
             draw_curves(
                 folder,
                 case,
@@ -117,6 +116,7 @@ def run_analytic(
                 kind.name,
                 progress.message,
             )
+        write_page(folder, case, rows, run, progress.message)
     progress.answer(answer(case, rows, run))
     return RunResult(status, reason, rows, run, folder.path if folder is not None else None)
 

@@ -157,6 +157,43 @@ def draw_curves(
         )
 
 
+def write_page(
+    folder: RunFolder,
+    case: Case,
+    rows: Sequence[dict[str, Any]],
+    run: dict[str, Any],
+    say: Callable[[str], None],
+) -> None:
+    """Write report.html where a case wants it; on the rank that writes.
+
+    Args:
+        folder: with everything else that the run leaves.
+        case: the case.
+        rows: the history.
+        run: content of run.json.
+        say: takes the line.
+    """
+    if not (case.output.report and folder.writes):
+        return
+    with page(say):
+        from fiberbend.report.run_page import write_report
+
+        write_report(folder, case, rows, run)
+
+
+@contextlib.contextmanager
+def page(say: Callable[[str], None]) -> Iterator[None]:
+    """Write a report meanwhile; a page that cannot be made costs a line, not the results."""
+    try:
+        yield
+    except OSError:
+        # a disk that is full lacks more than a page
+        raise
+    except Exception as error:
+        what = (str(error).splitlines() or [""])[0]
+        say(f"no report, writing it failed: {type(error).__name__}: {what}")
+
+
 @contextlib.contextmanager
 def pictures(say: Callable[[str], None], lacking: str = "no pictures") -> Iterator[None]:
     """Draw meanwhile; what cannot be drawn costs its pictures and a line, not the results.

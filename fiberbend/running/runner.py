@@ -220,7 +220,7 @@ class _Run:
                 self._draw(assembly, recording, why, rows, check)
                 run["wall_s"] = self._wall(assembly)
                 run["warnings"] = list(recording.warnings)
-                self.folder.write_run(**run)
+                self._page(assembly, recording, rows, run)
         self.comm.barrier()
         self._report(run, rows)
         return RunResult(status, reason, rows, run, self.folder.path if self.folder else None)
@@ -364,6 +364,25 @@ class _Run:
         for line in record.cost(run):
             self.progress.detail(line)
         self.progress.answer(answer(self.case, rows, run))
+
+    def _page(
+        self,
+        assembly: Assembly,
+        recording: Recording,
+        rows: list[dict[str, Any]],
+        run: dict[str, Any],
+    ) -> None:
+        """The report, on rank 0, from the folder as it is now."""
+        from fiberbend.running import outputs
+
+        assert self.folder is not None
+        self.progress.phase("report")
+        run["wall_s"] = self._wall(assembly)
+        self.folder.write_run(**run)
+        outputs.write_page(self.folder, self.case, rows, run, lambda text: recording.warn([text]))
+        if run["warnings"] != recording.warnings:
+            run["warnings"] = list(recording.warnings)
+            self.folder.write_run(**run)
 
     def _draw(
         self,

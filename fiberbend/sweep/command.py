@@ -8,7 +8,7 @@ from pathlib import Path
 
 from fiberbend.plan.memory import needed_mb, room, shortage
 from fiberbend.process.signals import Interrupted, stop_of
-from fiberbend.results.folder import RunFolder
+from fiberbend.results.folder import REPORT, RunFolder
 from fiberbend.running import launch
 from fiberbend.running.launch import FAILED
 from fiberbend.schema.problems import CaseError, Problem
@@ -163,3 +163,9 @@ def _write(sweep: Sweep, store: Store, say: Say, pictures: bool) -> None:
             )
         if names:
             say(f"maps in {store.path / 'maps'}")
+    from fiberbend.report.sweep_page import write_sweep_report
+    from fiberbend.running.outputs import page
+
+    with page(say):
+        write_sweep_report(folder, sweep.title)
+        say(f"report: {store.path / REPORT}")

@@ -1,0 +1,453 @@
+"use strict";
+// The 3-D view of a report: surfaces, fibers and obstacles at the load steps that the run has kept.
+// Between two steps nothing is drawn: what is seen was computed.
+(() => {
+  const element = (name) => document.getElementById(name);
+  const canvas = element("view");
+  const message = element("view-message");
+
+  function fail(text) {
+    message.textContent = text;
+    message.hidden = false;
+    element("view-controls").hidden = true;
+    canvas.hidden = true;
+    element("view-axes").hidden = true;
+  }
+
+  async function unpacked(text, Type) {
+    const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+    const planes = new Uint8Array(await new Response(stream).arrayBuffer());
+    const size = Type.BYTES_PER_ELEMENT;
+    if (size === 1) return new Type(planes.buffer);
+    const count = planes.length / size;
+    const ordered = new Uint8Array(planes.length);
+    for (let plane = 0; plane < size; plane++) {
+      for (let i = 0; i < count; i++) ordered[i * size + plane] = planes[plane * count + i];
+    }
+    return new Type(ordered.buffer);
+  }
+
+  const FIBER_LIFT = 0.25; // mm
+  const FIBER_WIDTH = 0.4; // mm, as far as it can be seen
+
+  // Colours as they are written, with a shade so faint that they can be read off the bar.
+  const VERTEX = `
+    attribute float value;
+    varying float shown;
+    varying float light;
+    void main() {
+      shown = value;
+      vec3 turned = normalize(normalMatrix * normal);
+      light = 0.86 + 0.14 * abs(turned.z);
+      gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+    }`;
+  const FRAGMENT = `
+    uniform sampler2D colors;
+    varying float shown;
+    varying float light;
+    void main() {
+      vec3 color = texture2D(colors, vec2((floor(shown * 255.0 + 0.5) + 0.5) / 256.0, 0.5)).rgb;
+      gl_FragColor = vec4(color * light, 1.0);
+    }`;
+
+  function palette(bytes) {
+    const data = new Uint8Array(4 * 256).fill(255);
+    for (let i = 0; i < 256; i++) data.set(bytes.subarray(3 * i, 3 * i + 3), 4 * i);
+    const texture = new THREE.DataTexture(data, 256, 1);
+    texture.needsUpdate = true;
+    return texture;
+  }
+
+  function regionColors(regions) {
+    const bytes = new Uint8Array(3 * 256).fill(150);
+    for (const region of regions) {
+      const color = parseInt(region.color.slice(1), 16);
+      bytes.set([color >> 16, (color >> 8) & 255, color & 255], 3 * region.number);
+    }
+    return bytes;
+  }
+
+  async function start() {
+    const data = JSON.parse(element("scene-data").textContent);
+    const scene = new THREE.Scene();
+    const renderer = new THREE.WebGLRenderer({
+      canvas, antialias: true, alpha: true, preserveDrawingBuffer: true,
+    });
+    renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+    const camera = new THREE.OrthographicCamera();
+    const controls = new THREE.OrbitControls(camera, canvas);
+    controls.minZoom = 0.3;
+    controls.maxZoom = 60;
+
+    const scalarColors = Uint8Array.from(atob(data.colors), (letter) => letter.charCodeAt(0));
+    const palettes = {
+      scalar: palette(scalarColors), region: palette(regionColors(data.regions)),
+    };
+    const coloring = new THREE.ShaderMaterial({
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      uniforms: { colors: { value: palettes.scalar } },
+      side: THREE.DoubleSide,
+      polygonOffset: true,
+    });
+
+    // --- what is drawn ----------------------------------------------------------------------
+
+    const place = (numbers, first, points, into) => {
+      for (let i = 0; i < 3 * points; i++) {
+        into[i] = data.corner[i % 3] + data.scale * numbers[3 * first + i];
+      }
+    };
+    const both = (make) => {
+      const whole = new THREE.Group();
+      whole.add(make());
+      if (data.half) {
+        const image = make();
+        image.scale.x = -1;
+        whole.add(image);
+      }
+      scene.add(whole);
+      return whole;
+    };
+
+    const skins = [];
+    for (const skin of data.skins) {
+      const geometry = new THREE.BufferGeometry();
+      const points = new Float32Array(3 * skin.points);
+      geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
+      geometry.setIndex(new THREE.BufferAttribute(await unpacked(skin.triangles, Uint32Array), 1));
+      const make = () => {
+        const mesh = new THREE.Mesh(geometry, coloring);
+        mesh.frustumCulled = false;
+        return mesh;
+      };
+      skins.push({
+        ...skin,
+        geometry,
+        numbers: await unpacked(skin.positions, Uint16Array),
+        byRegion: await unpacked(skin.region, Uint8Array),
+        byQuantity: await Promise.all(skin.values.map((text) => unpacked(text, Uint8Array))),
+        whole: both(make),
+      });
+    }
+
+    let fibers = null;
+    if (data.fibers.points) {
+      const segments = await unpacked(data.fibers.segments, Uint32Array);
+      const geometry = new THREE.LineSegmentsGeometry();
+      geometry.setPositions(new Float32Array(3 * segments.length));
+      const material = new THREE.LineMaterial({
+        color: 0x1a1a1a, linewidth: 1.4, side: THREE.DoubleSide,
+      });
+      fibers = {
+        segments,
+        material,
+        numbers: await unpacked(data.fibers.positions, Uint16Array),
+        points: new Float32Array(3 * data.fibers.points),
+        geometry,
+        whole: both(() => {
+          const line = new THREE.LineSegments2(geometry, material);
+          line.frustumCulled = false;
+          return line;
+        }),
+      };
+    }
+
+    const obstacles = new THREE.Group();
+    scene.add(obstacles);
+    for (const obstacle of data.obstacles) {
+      const geometry = new THREE.BufferGeometry();
+      const points = await unpacked(obstacle.points, Float32Array);
+      geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
+      const index = await unpacked(obstacle.triangles, Uint32Array);
+      geometry.setIndex(new THREE.BufferAttribute(index, 1));
+      obstacles.add(new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({
+        color: 0x8a8f98, transparent: true, opacity: 0.45, side: THREE.DoubleSide,
+        depthWrite: false,
+      })));
+      obstacles.add(new THREE.LineSegments(
+        new THREE.EdgesGeometry(geometry, 30), new THREE.LineBasicMaterial({ color: 0x5a6068 }),
+      ));
+    }
+
+    // --- the state of the controls ------------------------------------------------------------
+
+    const slider = element("step");
+    const quantity = element("quantity");
+    const checked = (name) => {
+      const box = element(name);
+      return box ? box.checked : false;
+    };
+    let shown = -1;
+    let needed = true;
+
+    function showStep(number) {
+      shown = number;
+      const step = data.steps[number];
+      for (const skin of skins) {
+        const position = skin.geometry.getAttribute("position");
+        place(skin.numbers, number * skin.points, skin.points, position.array);
+        position.needsUpdate = true;
+        skin.geometry.computeVertexNormals();
+      }
+      if (fibers) {
+        const { points, segments, geometry } = fibers;
+        place(fibers.numbers, (number * points.length) / 3, points.length / 3, points);
+        const ends = geometry.attributes.instanceStart.data;
+        for (let i = 0; i < segments.length; i++) {
+          ends.array.set(points.subarray(3 * segments[i], 3 * segments[i] + 3), 3 * i);
+        }
+        ends.needsUpdate = true;
+      }
+      showValues();
+      const rounded = (value) => value.toFixed(1).replace(/^-0\.0$/, "0.0").replace("-", "−");
+      const text = `step ${step.step}: ${rounded(step.pressure)} kPa, θ = ${rounded(step.angle)}°`;
+      element("step-text").textContent = text;
+      slider.setAttribute("aria-valuetext", text);
+      slider.value = String(number);
+      needed = true;
+    }
+
+    function showValues() {
+      const which = data.quantities.findIndex((each) => each.name === quantity.value);
+      coloring.uniforms.colors.value = which < 0 ? palettes.region : palettes.scalar;
+      for (const skin of skins) {
+        const all = which < 0 ? skin.byRegion : skin.byQuantity[which];
+        const first = which < 0 ? 0 : shown * skin.points;
+        const values = all.subarray(first, first + skin.points);
+        skin.geometry.setAttribute("value", new THREE.BufferAttribute(values, 1, true));
+      }
+      element("bar").hidden = which < 0;
+      element("regions").hidden = which >= 0;
+      if (which >= 0) drawBar(data.quantities[which]);
+      needed = true;
+    }
+
+    function showParts() {
+      const cut = checked("show-cut");
+      for (const skin of skins) {
+        const part = skin.part === "sheath" ? checked("show-sheath") : checked("show-body");
+        skin.whole.visible = part && (cut || !skin.cut);
+        if (skin.whole.children[1]) skin.whole.children[1].visible = !cut;
+      }
+      if (fibers) {
+        fibers.whole.visible = checked("show-fibers");
+        if (fibers.whole.children[1]) fibers.whole.children[1].visible = !cut;
+      }
+      obstacles.visible = checked("show-obstacles");
+      needed = true;
+    }
+
+    function drawBar(each) {
+      const bar = element("bar-colors");
+      const context = bar.getContext("2d");
+      for (let i = 0; i < 256; i++) {
+        context.fillStyle = `rgb(${scalarColors.subarray(3 * i, 3 * i + 3).join(",")})`;
+        context.fillRect(i, 0, 1, 1);
+      }
+      element("bar-label").textContent = each.label;
+      const ticks = element("bar-ticks");
+      ticks.replaceChildren(...[0, 1, 2, 3, 4].map((i) => {
+        const tick = document.createElement("span");
+        const value = String(Number(((i * each.top) / 4).toPrecision(3)));
+        tick.textContent = i === 4 ? `≥ ${value}` : value;
+        return tick;
+      }));
+    }
+
+    // --- from where it is seen ------------------------------------------------------------------
+
+    const low = new THREE.Vector3(...data.bounds[0]);
+    const high = new THREE.Vector3(...data.bounds[1]);
+    const reach = low.distanceTo(high);
+    const views = {
+      side: [-1, 0, 0], front: [0, 0, -1], top: [0, 1, 0.001], oblique: [-0.75, 0.42, -0.5],
+    };
+
+    function fit() {
+      const width = canvas.clientWidth, height = canvas.clientHeight;
+      if (!width || !height) return;
+      renderer.setSize(width, height, false);
+      if (fibers) fibers.material.resolution.set(width, height);
+      // the whole motion fits, seen from where it is
+      camera.updateMatrixWorld();
+      const right = new THREE.Vector3(), up = new THREE.Vector3(), back = new THREE.Vector3();
+      camera.matrixWorld.extractBasis(right, up, back);
+      let across = 0, tall = 0;
+      for (let i = 0; i < 8; i++) {
+        const corner = new THREE.Vector3(
+          i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z,
+        ).sub(controls.target);
+        across = Math.max(across, Math.abs(corner.dot(right)));
+        tall = Math.max(tall, Math.abs(corner.dot(up)));
+      }
+      const half = 1.06 * Math.max(tall, (across * height) / width);
+      camera.top = half;
+      camera.bottom = -half;
+      camera.right = (half * width) / height;
+      camera.left = -camera.right;
+      camera.near = 0;
+      camera.far = 6 * reach;
+      // fibers lie in a surface that is drawn flat between its points: it steps back behind them
+      coloring.polygonOffsetUnits = (FIBER_LIFT / camera.far) * 2 ** 24;
+      camera.updateProjectionMatrix();
+      needed = true;
+    }
+
+    function aim(least, greatest) {
+      low.copy(least);
+      high.copy(greatest);
+      const toward = camera.position.clone().sub(controls.target).normalize();
+      controls.target.copy(low).add(high).multiplyScalar(0.5);
+      camera.position.copy(controls.target).addScaledVector(toward, 3 * reach);
+      camera.zoom = 1;
+      controls.update();
+      fit();
+    }
+
+    function fitStep() {
+      const box = [new THREE.Vector3(1, 1, 1), new THREE.Vector3(-1, -1, -1)];
+      box.forEach((corner) => corner.multiplyScalar(1e9));
+      for (const skin of skins) {
+        const points = skin.geometry.getAttribute("position");
+        for (let i = 0; i < points.count; i++) {
+          const point = new THREE.Vector3().fromBufferAttribute(points, i);
+          box[0].min(point);
+          box[1].max(point);
+          if (data.half) box[0].x = Math.min(box[0].x, -point.x);
+        }
+      }
+      aim(...box);
+    }
+
+    function look(name) {
+      low.set(...data.bounds[0]);
+      high.set(...data.bounds[1]);
+      controls.target.copy(low).add(high).multiplyScalar(0.5);
+      const toward = new THREE.Vector3(...views[name]).normalize();
+      camera.position.copy(controls.target).addScaledVector(toward, 3 * reach);
+      camera.zoom = 1;
+      camera.lookAt(controls.target);
+      controls.update();
+      fit();
+    }
+
+    function turn(across, up) {
+      const offset = camera.position.clone().sub(controls.target);
+      const place = new THREE.Spherical().setFromVector3(offset);
+      place.theta += across;
+      place.phi = Math.min(Math.max(place.phi + up, 0.001), Math.PI - 0.001);
+      camera.position.copy(controls.target).add(offset.setFromSpherical(place));
+      controls.update();
+      needed = true;
+    }
+
+    function zoom(factor) {
+      camera.zoom = Math.min(Math.max(camera.zoom * factor, controls.minZoom), controls.maxZoom);
+      camera.updateProjectionMatrix();
+      needed = true;
+    }
+
+    const STEP = Math.PI / 36;
+    const keys = {
+      ArrowLeft: () => turn(-STEP, 0), ArrowRight: () => turn(STEP, 0),
+      ArrowUp: () => turn(0, -STEP), ArrowDown: () => turn(0, STEP),
+      "+": () => zoom(1.15), "=": () => zoom(1.15), "-": () => zoom(1 / 1.15),
+      Home: () => look("side"),
+    };
+    canvas.addEventListener("keydown", (event) => {
+      const action = keys[event.key];
+      if (!action || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      action();
+    });
+
+    // axes and a scale, in a corner
+    function drawAxes() {
+      const corner = element("view-axes");
+      const context = corner.getContext("2d");
+      const ratio = Math.min(window.devicePixelRatio || 1, 2);
+      const width = 170, height = 84;
+      if (corner.width !== width * ratio) {
+        corner.width = width * ratio;
+        corner.height = height * ratio;
+      }
+      context.setTransform(ratio, 0, 0, ratio, 0, 0);
+      context.clearRect(0, 0, width, height);
+      const ink = getComputedStyle(document.body).color;
+      context.strokeStyle = context.fillStyle = ink;
+      context.font = "13px sans-serif";
+      context.textAlign = "center";
+      context.textBaseline = "middle";
+      context.lineWidth = 1.5;
+      for (const [name, axis] of [["x", [1, 0, 0]], ["y", [0, 1, 0]], ["z", [0, 0, 1]]]) {
+        const seen = new THREE.Vector3(...axis).transformDirection(camera.matrixWorldInverse);
+        if (Math.hypot(seen.x, seen.y) < 0.08) continue;
+        context.beginPath();
+        context.moveTo(38, 44);
+        context.lineTo(38 + 24 * seen.x, 44 - 24 * seen.y);
+        context.stroke();
+        context.fillText(name, 38 + 33 * seen.x, 44 - 33 * seen.y);
+      }
+      const pixel = (camera.right - camera.left) / camera.zoom / canvas.clientWidth;
+      const power = 10 ** Math.floor(Math.log10(70 * pixel));
+      const length = [5, 2, 1].find((n) => n * power <= 70 * pixel) * power;
+      context.fillRect(84, 62, length / pixel, 3);
+      context.fillText(`${Number(length.toPrecision(2))} mm`, 84 + length / pixel / 2, 48);
+    }
+
+    // --- what the reader does --------------------------------------------------------------------
+
+    slider.max = String(data.steps.length - 1);
+    slider.addEventListener("input", () => { stop(); showStep(Number(slider.value)); });
+    quantity.addEventListener("change", showValues);
+    for (const box of document.querySelectorAll("#view-controls input[type=checkbox]")) {
+      box.addEventListener("change", showParts);
+    }
+    for (const button of document.querySelectorAll("[data-look]")) {
+      button.addEventListener("click", () => look(button.dataset.look));
+    }
+    element("fit-step").addEventListener("click", fitStep);
+    const play = element("play");
+    let timer = 0;
+    function stop() {
+      clearInterval(timer);
+      timer = 0;
+      play.textContent = "Play";
+    }
+    play.addEventListener("click", () => {
+      if (timer) return stop();
+      play.textContent = "Pause";
+      if (shown === data.steps.length - 1) showStep(0);
+      timer = setInterval(() => {
+        if (shown >= data.steps.length - 1) return stop();
+        showStep(shown + 1);
+      }, Math.min(600, Math.max(80, 5000 / data.steps.length)));
+    });
+    controls.addEventListener("change", () => { needed = true; });
+    new ResizeObserver(fit).observe(canvas);
+
+    look("side");
+    showStep(data.steps.length - 1);
+    showParts();
+    (function draw() {
+      requestAnimationFrame(draw);
+      if (!needed) return;
+      needed = false;
+      if (fibers) {
+        const pixel = (camera.right - camera.left) / camera.zoom / canvas.clientWidth;
+        fibers.material.linewidth = Math.min(Math.max(FIBER_WIDTH / pixel, 0.7), 6);
+      }
+      renderer.render(scene, camera);
+      drawAxes();
+      canvas.dataset.drawn = `${shown}`;
+    })();
+  }
+
+  if (typeof DecompressionStream === "undefined") {
+    fail("This browser is too old for the view in space: the pictures below show the body.");
+    return;
+  }
+  start().catch((error) => fail(`The view in space cannot be drawn here: ${error.message}`));
+})();

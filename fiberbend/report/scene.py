@@ -1,0 +1,398 @@
+"""The body in space at every load step, as numbers that the page of a run draws."""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+import functools
+import zlib
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fiberbend.case import convert
+from fiberbend.case.case import Case
+from fiberbend.drawing.page import COLORS, NAMES, nice_above
+from fiberbend.drawing.surfaces import BodySurfaces
+from fiberbend.drawing.tessellation import Tessellation, boundary_facets, on_mirror
+from fiberbend.results.space import Space
+from fiberbend.results.states import Kept, States
+from fiberbend.states.bend import Bend, in_frame
+from fiberbend.states.fiber_lines import fiber_lines
+from fiberbend.states.recovery import SplitNodes, recover, split_nodes
+from fiberbend.states.snapshot import ModelMesh, Snapshot
+from fiberbend.states.stack import split_alike
+from geometry.mesh.data import Floats, Ints, MeshData
+from geometry.winding.segments import EmbeddedFibers
+
+MOST_NUMBERS = 12_000_000
+"""Bytes of all steps before they are compressed; beyond, surfaces get coarser, then steps fewer."""
+_FINE, _COARSE = 2, 1
+"""Pieces along an element's edge: its three nodes, or its two ends."""
+_BYTES = 8
+"""Of a point in a step: three coordinates of two, and two quantities of one."""
+_TOP = 255
+_QUANTILE = 0.998
+"""The colours end short of single peaks."""
+
+
+class Places:
+    """Positions of nodes in space at any step.
+
+    Args:
+        space: body and fibers in space.
+    """
+
+    def __init__(self, space: Space) -> None:
+        self._space = space
+        self.mesh: MeshData = space.model_mesh.mesh
+
+    def at(self, state: Snapshot, nodes: Ints | None = None) -> Floats:
+        """Positions in a state, (n, 3), mm.
+
+        Args:
+            state: of the model's own mesh.
+            nodes: numbers in the mesh in space; all by default.
+        """
+        stack, base = self._space.stack, self._space.own.mesh
+        some = slice(None) if nodes is None else nodes
+        if stack is None:
+            moved: Floats = self.mesh.nodes[some] + state.displacement[some]
+            return moved
+        position = in_frame(base.nodes, state.displacement)[stack.node[some]] * stack.sign[some]
+        return Bend.of(state, base).place(position, self.mesh.nodes[some, 2])
+
+
+@dataclasses.dataclass(frozen=True)
+class Skin:
+    """A surface that the page draws: points that are nodes of the mesh, and triangles.
+
+    Attributes:
+        part: the part that it belongs to: "body" or "sheath".
+        cut: it lies in the mirror plane, and is seen where the body is cut open.
+        node: node in space of every point, (n,).
+        value: place of every point among the recovered fields, (n,).
+        region: region of every point, (n,).
+        triangles: counterclockwise seen from outside, (k, 3).
+    """
+
+    part: str
+    cut: bool
+    node: Ints
+    value: Ints
+    region: Ints
+    triangles: Ints
+
+
+@dataclasses.dataclass(frozen=True)
+class SceneData:
+    """What the page draws, and what else is to be said of it.
+
+    Attributes:
+        content: for the script of the page; arrays are compressed and in base64.
+        notes: sentences for the reader.
+        steps: load steps that can be seen.
+    """
+
+    content: dict[str, Any]
+    notes: tuple[str, ...]
+    steps: int
+
+
+def scene_data(case: Case, states: States, space: Space | None = None) -> SceneData:
+    """The 3-D view of a run.
+
+    Args:
+        case: the case.
+        states: what the run has kept.
+        space: of the same model mesh, if at hand.
+
+    Raises:
+        ValueError: no state but that at rest.
+    """
+    if len(states) < 2:
+        raise ValueError("no load step was kept: nothing to see in space")
+    space = space or Space(case, states.model_mesh)
+    notes = []
+    skins = _skins(space, _FINE)
+    if _size(skins) * len(states) > MOST_NUMBERS:
+        skins = _skins(space, _COARSE)
+        notes.append("The surface is drawn with straight edges between the corners of elements.")
+    most = max(2, MOST_NUMBERS // _size(skins))
+    kept = states.kept
+    if len(kept) > most:
+        kept = thinned(kept, most)
+        notes.append(
+            f"{len(kept)} of {len(states)} load steps are shown: this file would be too large."
+        )
+    shown = [(each, shot) for each in kept if (shot := states.read(each)) is not None]
+    if len(shown) < len(kept):
+        notes.append("Steps whose files are damaged are left out.")
+    places = Places(space)
+    threads = _Threads(space, places)
+    fields = _Fields(space.own, skins)
+    skin_nodes = np.concatenate([skin.node for skin in skins])
+    positions = np.stack([places.at(shot, skin_nodes) for _, shot in shown])
+    lines = np.stack([threads.at(shot) for _, shot in shown])
+    values = [fields.at(shot) for _, shot in shown]
+    if space.stack is not None:
+        notes.append("The length between the end caps; this model has no caps.")
+    if space.model_mesh.smeared:
+        notes.append("The winding is spread over its surface: there are no single fibers to draw.")
+    everything = np.concatenate([positions.reshape(-1, 3), lines.reshape(-1, 3)])
+    corner, scale = everything.min(axis=0), float(np.ptp(everything, axis=0).max()) / 65535
+    ends = np.cumsum([len(skin.node) for skin in skins])[:-1]
+    around = _mirrored(everything) if places.mesh.half else everything
+
+    def packed(points: Floats) -> str:
+        return _packed(np.rint((points - corner) / scale).astype("<u2"))
+
+    content = {
+        "half": places.mesh.half,
+        "corner": corner.tolist(),
+        "scale": scale,
+        "steps": [
+            {
+                "step": each.step,
+                "pressure": round(each.pressure_kpa, 4),
+                "angle": round(each.angle_deg, 4),
+                "asked": each.asked,
+            }
+            for each, _ in shown
+        ],
+        "skins": [
+            {
+                "part": skin.part,
+                "cut": skin.cut,
+                "points": len(skin.node),
+                "triangles": _packed(skin.triangles.astype("<u4")),
+                "positions": packed(position),
+                "region": _packed(skin.region.astype("u1")),
+                "values": [_packed(value) for value in fields.scaled(values, number)],
+            }
+            for number, (skin, position) in enumerate(
+                zip(skins, np.split(positions, ends, axis=1), strict=True)
+            )
+        ],
+        "regions": [
+            {"number": number, "name": NAMES.get(name, name), "color": COLORS.get(name, "#999999")}
+            for name, number in space.model_mesh.mesh.regions.items()
+        ],
+        "quantities": fields.described(values),
+        "colors": _colors(),
+        "fibers": threads.content | {"positions": packed(lines)},
+        "obstacles": _obstacles(case, around),
+        "bounds": [around.min(axis=0).tolist(), around.max(axis=0).tolist()],
+    }
+    return SceneData(content, tuple(notes), len(shown))
+
+
+def thinned(kept: Sequence[Kept], most: int) -> tuple[Kept, ...]:
+    """So many states at most: first, last, those that were asked for, others evenly.
+
+    Args:
+        kept: at least one.
+        most: at least two.
+    """
+    ends = {0, len(kept) - 1}
+    asked = [number for number, each in enumerate(kept) if each.asked and number not in ends]
+    chosen = ends | {asked[i] for i in _evenly(len(asked), most - len(ends))}
+    others = [number for number in range(len(kept)) if number not in chosen]
+    chosen |= {others[i] for i in _evenly(len(others), most - len(chosen))}
+    return tuple(kept[number] for number in sorted(chosen))
+
+
+def _evenly(count: int, most: int) -> list[int]:
+    """So many places at most of a list, evenly over it."""
+    if count <= most:
+        return list(range(count))
+    return [int((i + 0.5) * count / most) for i in range(most)]
+
+
+def _size(skins: Sequence[Skin]) -> int:
+    """Bytes of a step."""
+    return _BYTES * sum(len(skin.node) for skin in skins)
+
+
+def _skins(space: Space, level: int) -> list[Skin]:
+    """The surfaces of the body's parts: without the sheath, of the sheath, and both cut open."""
+    mesh = space.model_mesh.mesh
+    bare = BodySurfaces(space.model_mesh).bare
+    copies = _own_copies(space)
+    around = boundary_facets(mesh, np.ones(len(mesh.cells), dtype=bool))
+    skins = []
+    for part, cells in (("body", bare), ("sheath", ~bare)):
+        if not cells.any():
+            continue
+        # a sheath's inner face is that of the wall, and would be drawn twice in one place
+        pairs = boundary_facets(mesh, cells) if part == "body" else around[cells[around[:, 0]]]
+        cut = on_mirror(mesh, pairs) if mesh.half else np.zeros(len(pairs), dtype=bool)
+        for some in (False, True):
+            if (cut == some).any():
+                skins.append(_skin(mesh, pairs[cut == some], copies, level, part, some))
+    return skins
+
+
+def _own_copies(space: Space) -> Ints:
+    """The copy of a node of the model's own mesh behind every node of a cell in space, (m, k)."""
+    copies: Ints = _split(space.own).cells
+    if space.stack is None:
+        return copies
+    return copies[space.stack.cell[:, None], space.stack.order]
+
+
+def _split(own: ModelMesh) -> SplitNodes:
+    return split_alike(own.mesh) if own.uniform else split_nodes(own.mesh)
+
+
+def _skin(mesh: MeshData, pairs: Ints, copies: Ints, level: int, part: str, cut: bool) -> Skin:
+    drawn = Tessellation(mesh, pairs, level)
+
+    def at_points(numbers: Ints) -> Ints:
+        # the points are nodes: interpolation gives back the numbers of nodes
+        found: Ints = np.rint(drawn.interpolate(numbers.astype(float))).astype(np.int64)
+        return found
+
+    node, copy = at_points(mesh.cells), at_points(copies)
+    first, place = np.unique(
+        node * (int(copy.max()) + 1) + copy, return_index=True, return_inverse=True
+    )[1:]
+    region = at_points(np.broadcast_to(mesh.cell_region[:, None], mesh.cells.shape))
+    pieces = place[drawn.pieces]
+    if pieces.shape[1] == 4:
+        pieces = np.concatenate([pieces[:, [0, 1, 2]], pieces[:, [0, 2, 3]]])
+    return Skin(part, cut, node[first], copy[first], region[first], pieces)
+
+
+class _Fields:
+    """Quantities at the points of the surfaces, as numbers from 0 to 255."""
+
+    def __init__(self, own: ModelMesh, skins: Sequence[Skin]) -> None:
+        self._own, self._skins = own, skins
+        self._copies = _split(own)
+        self._top: list[float] = []
+
+    def at(self, state: Snapshot) -> list[Floats]:
+        """Strain and stress of a state at all recovered nodes."""
+        found = recover(self._own, state, self._copies)
+        return [found.log_strain, found.von_mises]
+
+    def described(self, values: Sequence[Sequence[Floats]]) -> list[dict[str, Any]]:
+        """The quantities with their labels and the ends of their colours."""
+        names = ("strain", "stress")
+        labels = ("maximum principal logarithmic strain", "von Mises stress (MPa)")
+        tops = self._tops(values)
+        return [
+            {"name": name, "label": label, "top": top}
+            for name, label, top in zip(names, labels, tops, strict=True)
+        ]
+
+    def scaled(self, values: Sequence[Sequence[Floats]], number: int) -> list[NDArray[np.uint8]]:
+        """Each quantity at the points of a surface in all steps, (steps, n)."""
+        place = self._skins[number].value
+        return [
+            np.rint(
+                np.clip(np.stack([step[i][place] for step in values]) / top, 0, 1) * _TOP
+            ).astype(np.uint8)
+            for i, top in enumerate(self._tops(values))
+        ]
+
+    def _tops(self, values: Sequence[Sequence[Floats]]) -> list[float]:
+        """What the last colour stands for: the most of all steps, short of single peaks."""
+        if not self._top:
+            seen = np.concatenate([skin.value for skin in self._skins])
+            for i in range(len(values[0])):
+                found = (np.nan_to_num(step[i][seen]) for step in values)
+                self._top.append(nice_above(max(float(np.quantile(x, _QUANTILE)) for x in found)))
+        return self._top
+
+
+class _Threads:
+    """The fibers, one line for each ribbon."""
+
+    def __init__(self, space: Space, places: Places) -> None:
+        self._places = places
+        fibers, mesh = BodySurfaces(space.model_mesh).fibers, places.mesh
+        self._fibers: EmbeddedFibers | None = None
+        self.content: dict[str, Any] = {"points": 0, "segments": "", "radius": 0.0}
+        if fibers is None:
+            return
+        cells, self._cell = np.unique(fibers.cell, return_inverse=True)
+        self._node, numbers = np.unique(mesh.cells[cells], return_inverse=True)
+        self._fibers = dataclasses.replace(fibers, cell=self._cell)
+        self._mesh = dataclasses.replace(
+            mesh,
+            nodes=mesh.nodes[self._node],
+            cells=numbers.reshape(len(cells), -1),
+            cell_region=mesh.cell_region[cells],
+            facets={},
+            points={},
+        )
+        lines = self._lines()
+        # the cells of a PolyData of lines: their sizes, each before its points
+        sizes, flat = [], np.asarray(lines.lines)
+        start = 0
+        while start < len(flat):
+            sizes.append(int(flat[start]))
+            start += sizes[-1] + 1
+        first = np.ones(lines.n_points, dtype=bool)
+        first[np.cumsum(sizes) - 1] = False
+        starts = np.flatnonzero(first)
+        self.content = {
+            "points": int(lines.n_points),
+            "segments": _packed(np.column_stack([starts, starts + 1]).astype("<u4")),
+        }
+
+    def at(self, state: Snapshot) -> Floats:
+        """Points of the lines in a state, (n, 3), mm; none without fibers."""
+        if self._fibers is None:
+            return np.zeros((0, 3))
+        return np.asarray(self._lines(state).points, dtype=float)
+
+    def _lines(self, state: Snapshot | None = None) -> Any:
+        assert self._fibers is not None
+        moved = None
+        if state is not None:
+            moved = self._places.at(state, self._node) - self._mesh.nodes
+        return fiber_lines(self._mesh, self._fibers, moved)
+
+
+def _mirrored(points: Floats) -> Floats:
+    return np.concatenate([points, points * [-1.0, 1.0, 1.0]])
+
+
+def _obstacles(case: Case, around: Floats) -> list[dict[str, Any]]:
+    actuator = convert.dimensions(case.actuator)
+    found = []
+    for effect in case.effects:
+        for name, shape in effect.obstacle_shapes(actuator).items():
+            surface = shape.surface(around).triangulate()
+            found.append(
+                {
+                    "name": name,
+                    "points": _packed(np.asarray(surface.points, dtype="<f4")),
+                    "triangles": _packed(np.asarray(surface.regular_faces, dtype="<u4")),
+                }
+            )
+    return found
+
+
+@functools.cache
+def _colors() -> str:
+    """The colour map of all pictures, 256 times red, green and blue."""
+    from fiberbend.drawing.page import colormap
+
+    return _base64(np.rint(255 * colormap()(np.arange(256))[:, :3]).astype(np.uint8).tobytes())
+
+
+def _packed(values: NDArray[Any]) -> str:
+    """An array compressed: all first bytes of its numbers, then all second ones, and so on."""
+    numbers = np.ascontiguousarray(values)
+    planes = numbers.view(np.uint8).reshape(-1, numbers.itemsize).T
+    return _base64(zlib.compress(planes.tobytes(), 6))
+
+
+def _base64(data: bytes) -> str:
+    return base64.b64encode(data).decode("ascii")
