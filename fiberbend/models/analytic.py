@@ -59,6 +59,10 @@ class Analytic(ModelKind):
         """Mesh and solver."""
         return {"mesh": case.mesh.model_fields_set, "solver": case.solver.model_fields_set}
 
+    def force_named(self) -> str:
+        """κ P over the lever."""
+        return "closed form, eq. (20)"
+
     def errors(self, case: Case) -> Iterator[str]:
         """Against the section model, and the paper's against its experiments."""
         if case.straight:

@@ -41,6 +41,11 @@ class VariedField:
         return f"{label}_{unit}" if unit else label
 
     @property
+    def heading(self) -> str:
+        """Its name over a column of text, "wall, mm"."""
+        return f"{self.label}, {self.unit}" if self.unit else self.label
+
+    @property
     def numeric(self) -> bool:
         """All its values are numbers."""
         return all(isinstance(value, float) for value in self.values)

@@ -11,71 +11,90 @@ import numpy as np
 from fiberbend.drawing.page import colormap, figure, literal, save
 from fiberbend.states.snapshot import Target
 from fiberbend.sweep.fields import VariedField
-from fiberbend.sweep.table import TableRow
+from fiberbend.sweep.quantities import ReportedQuantity, TableRow
+from fiberbend.sweep.store import NOT_RUN
 from fiberbend.sweep.trends import in_words
 from geometry.mesh.data import Floats
 
 PANELS = 4
 """Most panels side by side on a page."""
 _PANEL = (400, 300)
-_MARGIN = (92, 24)
-_TOP, _BOTTOM = 64, 150
-_HEAD, _FOOT = 70, 34
+_LEFT, _BAR = 92, 150
+_TOP, _BOTTOM = 64, 62
+_HEAD, _FOOT = 74, 40
 _MOST_LABELS = 12
 """More values of a field than this are drawn with contours instead of a number in each cell."""
+FAILED = "failed"
+"""Status of a point that failed."""
+_LEVEL = 1e-6
+"""A relative spread below which a map is level."""
+_EMPTY = {
+    FAILED: ("#f6dcd7", "////", "#a5402d"),
+    "not reached": ("#e4e4e4", "....", "#808080"),
+    NOT_RUN: ("#f4f4f4", "", "#808080"),
+}
+"""Face, hatch and edge of a point without a value, by what became of it."""
 
 
 def map_page(
     title: str,
     axes: Sequence[VariedField],
     panels: Mapping[str, Sequence[TableRow]],
-    lines: Mapping[str, str],
-    limits: tuple[float, float],
-    label: str,
+    quantity: ReportedQuantity,
+    limits: Mapping[str, tuple[float, float]],
     target: Target,
 ) -> None:
-    """A page of maps: a column for each panel, a row for each line.
+    """A page of maps: a column for each panel, a row with its own colour scale for each line.
 
     Args:
         title: text at the top.
         axes: the fields across and up.
         panels: the points of each panel, by its caption; at most `PANELS`.
-        lines: the column of the table for each row of maps, by its caption.
-        limits: values at the ends of the colour map.
-        label: name of the quantity, with its unit.
+        quantity: what is drawn; each of its lines is a row of maps.
+        limits: values at the ends of the colour scale of each line, by its caption.
         target: a path, or a file open for writing bytes.
     """
     across = len(panels) * _PANEL[0]
-    width = max(sum(_MARGIN) + across, 720)
-    height = _TOP + len(lines) * (_PANEL[1] + _HEAD + _FOOT) + _BOTTOM
+    width = max(_LEFT + across + _BAR, 720)
+    each = _PANEL[1] + _HEAD + _FOOT
+    height = _TOP + len(quantity.lines) * each + _BOTTOM
     page = figure((width, height))
     page.text(0.5, 1 - 34 / height, literal(title), ha="center", va="center", fontsize=17)
-    left = (width - across + _MARGIN[0] - _MARGIN[1]) / 2
-    for i, (caption, name) in enumerate(lines.items()):
-        top = height - _TOP - i * (_PANEL[1] + _HEAD + _FOOT)
+    left = _LEFT + (width - _LEFT - across - _BAR) / 2
+    empty: set[str] = set()
+    for i, (caption, name) in enumerate(quantity.lines.items()):
+        top, scale = height - _TOP - i * each, limits[caption]
+        bottom = top - _HEAD - _PANEL[1]
         page.text(
-            left / width, (top - 18) / height, caption, va="center", fontsize=14, weight="bold"
+            left / width,
+            (top - 18) / height,
+            literal(f"{quantity.label}, {caption}"),
+            va="center",
+            fontsize=14,
+            weight="bold",
         )
         for j, (panel, rows) in enumerate(panels.items()):
-            corner = (left + j * _PANEL[0], top - _HEAD - _PANEL[1])
+            corner = (left + j * _PANEL[0], bottom)
             axis = page.add_axes(_box(corner, (_PANEL[0] - 22, _PANEL[1]), (width, height)))
-            _map(axis, axes, rows, name, limits)
+            empty |= _map(axis, axes, rows, name, scale)
             axis.set_title(literal(panel), fontsize=12.5)
-            if i == len(lines) - 1:
-                axis.set_xlabel(axis_label(axes[0]), fontsize=13)
+            axis.set_xlabel(axis_label(axes[0]), fontsize=13)
             if j == 0:
                 axis.set_ylabel(axis_label(axes[1]), fontsize=13)
             else:
                 axis.tick_params(labelleft=False)
-    _color_bar(page, (width, height), limits, label)
+        box = _box((left + across + 8, bottom), (16, _PANEL[1]), (width, height))
+        _color_bar(page, box, scale, quantity.axis)
+    _legend(page, sorted(empty), height)
     save(page, target)
 
 
-def limits_of(rows: Sequence[TableRow], names: Sequence[str]) -> tuple[float, float]:
-    """Least and greatest value in some columns, never the same."""
-    values = [float(row[name]) for row in rows for name in names if row.get(name) is not None]
+def limits_of(rows: Sequence[TableRow], name: str) -> tuple[float, float]:
+    """Least and greatest value in a column, never the same."""
+    values = [float(row[name]) for row in rows if row.get(name) is not None]
     low, high = min(values), max(values)
-    return (low, high) if high > low else (low - 0.5, high + 0.5)
+    room = 0.05 * abs(low) or 0.5
+    return (low, high) if high - low > _LEVEL * abs(high) else (low - room, high + room)
 
 
 def axis_label(column: VariedField) -> str:
@@ -95,33 +114,43 @@ def _map(
     rows: Sequence[TableRow],
     name: str,
     limits: tuple[float, float],
-) -> None:
-    from matplotlib.ticker import MaxNLocator
-
-    x, y = (np.unique(np.array(column.values, dtype=float)) for column in axes)
+) -> set[str]:
+    """Draw a map; returns what became of the points that have no value."""
+    x, y = (np.unique(np.array([row[c.name] for row in rows], dtype=float)) for c in axes)
     values = np.full((len(y), len(x)), np.nan)
     labelled = max(len(x), len(y)) <= _MOST_LABELS
     # three digits of the range, and none of the whole numbers left out
     decimals = max(0, 2 - math.floor(math.log10(limits[1] - limits[0])))
-    axis.set_facecolor("#ececec")
+    empty = set()
     for row in rows:
-        place = tuple(
-            int(np.searchsorted(marks, row[column.name]))
-            for marks, column in ((y, axes[1]), (x, axes[0]))
+        place = (
+            int(np.searchsorted(y, row[axes[1].name])),
+            int(np.searchsorted(x, row[axes[0].name])),
         )
-        if row.get(name) is not None:
-            values[place] = row[name]
+        value = row.get(name)
+        text = f"{value:.{decimals}f}" if value is not None else outcome(row)
+        color = "#404040"
+        if value is None:
+            empty.add(text)
+            axis.add_patch(_patch(text, (place[1], place[0])))
+        else:
+            values[place] = value
+            if row["status"] == FAILED:
+                text += "\nfailed later"
+            dark = _dark((value - limits[0]) / (limits[1] - limits[0]))
+            color = "white" if dark else "black"
         if labelled:
-            known = np.isfinite(values[place])
-            share = (values[place] - limits[0]) / (limits[1] - limits[0]) if known else 1.0
             axis.text(
                 place[1] + 0.5,
                 place[0] + 0.5,
-                f"{values[place]:.{decimals}f}" if known else row["status"],
+                text,
                 ha="center",
                 va="center",
-                fontsize=12.5 if known else 10,
-                color="white" if _dark(share) else "black",
+                fontsize=12.5 if value is not None else 10,
+                color=color,
+                bbox={"facecolor": "white", "edgecolor": "none", "pad": 2}
+                if value is None
+                else None,
             )
     axis.pcolormesh(
         np.ma.masked_invalid(values),
@@ -131,17 +160,66 @@ def _map(
         edgecolors="white" if labelled else "none",
         linewidth=1.5 if labelled else 0,
     )
-    if not labelled and np.isfinite(values).all():
-        middle = (np.arange(len(x)) + 0.5, np.arange(len(y)) + 0.5)
-        levels = MaxNLocator(8).tick_values(*limits)
-        curves = axis.contour(*middle, values, levels=levels, colors="black", linewidths=0.8)
-        axis.clabel(curves, fontsize=10)
+    if not labelled:
+        _contours(axis, values, limits)
     for marks, ticks in ((x, axis.set_xticks), (y, axis.set_yticks)):
         every = 1 + (len(marks) - 1) // _MOST_LABELS
         ticks(np.arange(len(marks))[::every] + 0.5, [f"{mark:g}" for mark in marks[::every]])
+    axis.set(xlim=(0, len(x)), ylim=(0, len(y)))
     axis.tick_params(labelsize=11.5, length=0)
     for spine in axis.spines.values():
         spine.set_visible(False)
+    return empty
+
+
+def _contours(axis: Any, values: Floats, limits: tuple[float, float]) -> None:
+    """Lines of equal value, none across a point that has no value."""
+    from matplotlib.ticker import MaxNLocator
+
+    if min(values.shape) < 2 or np.isnan(values).all():
+        return
+    middle = (np.arange(values.shape[1]) + 0.5, np.arange(values.shape[0]) + 0.5)
+    levels = MaxNLocator(8).tick_values(*limits)
+    known = np.ma.masked_invalid(values)
+    curves = axis.contour(*middle, known, levels=levels, colors="black", linewidths=0.8)
+    axis.clabel(curves, fontsize=10)
+
+
+def outcome(row: TableRow) -> str:
+    """What became of a point that has no value."""
+    status = row["status"]
+    return status if status in (FAILED, NOT_RUN) else "not reached"
+
+
+def _patch(what: str, corner: tuple[float, float]) -> Any:
+    """A cell without a value."""
+    from matplotlib.patches import Rectangle
+
+    face, hatch, edge = _EMPTY[what]
+    return Rectangle(corner, 1, 1, facecolor=face, hatch=hatch, edgecolor=edge, linewidth=0)
+
+
+def _legend(page: Any, empty: Sequence[str], height: int) -> None:
+    """What hatched cells are, at the foot of the page."""
+    if not empty:
+        return
+    from matplotlib.patches import Patch
+
+    handles = []
+    for what in empty:
+        face, hatch, edge = _EMPTY[what]
+        label = f"{what}: no value"
+        handles.append(Patch(facecolor=face, hatch=hatch, edgecolor=edge, linewidth=0, label=label))
+    page.legend(
+        handles=handles,
+        loc="lower center",
+        bbox_to_anchor=(0.5, 8 / height),
+        ncols=len(handles),
+        fontsize=12,
+        frameon=False,
+        handlelength=2.4,
+        handleheight=1.4,
+    )
 
 
 def _dark(share: float) -> bool:
@@ -150,17 +228,17 @@ def _dark(share: float) -> bool:
     return bool(0.299 * red + 0.587 * green + 0.114 * blue < 0.5)
 
 
-def _color_bar(page: Any, size: tuple[int, int], limits: tuple[float, float], label: str) -> None:
+def _color_bar(
+    page: Any, box: tuple[float, float, float, float], limits: tuple[float, float], label: str
+) -> None:
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
-    axis = page.add_axes(_box((0.28 * size[0], 62), (0.44 * size[0], 16), size))
-    bar = page.colorbar(
-        ScalarMappable(Normalize(*limits), colormap()), cax=axis, orientation="horizontal"
-    )
-    bar.ax.tick_params(labelsize=12)
+    axis = page.add_axes(box)
+    bar = page.colorbar(ScalarMappable(Normalize(*limits), colormap()), cax=axis)
+    bar.ax.tick_params(labelsize=11.5)
     bar.outline.set_visible(False)
-    bar.set_label(label, fontsize=13)
+    bar.set_label(literal(label), fontsize=12.5)
 
 
 def spread(values: Floats) -> tuple[float, float]:
