@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from fiberbend.sweep.quantities import ReportedQuantity, TableRow
 
 _MOST_WARNINGS = 10
+_NUMBER = re.compile(r"[-+−]?\d[\d.]*")
 Say = Callable[[str], None]
 
 
@@ -161,11 +163,16 @@ def _summary(sweep: Sweep, store: Store, stop: Interrupted | None, say: Say) -> 
 
 def _say_warnings(runs: Sequence[Event], say: Say) -> None:
     """What is doubtful of how many points; all of it stands in their run.json."""
-    counts = Counter(text for run in runs for text in run.get("warnings", ()))
-    for text, number in counts.most_common(_MOST_WARNINGS):
-        say(f"warning, {number} of {len(runs)} points: {text}")
-    if len(counts) > _MOST_WARNINGS:
-        say(f"{len(counts) - _MOST_WARNINGS} more warnings in run.json of the points")
+    alike: dict[str, list[str]] = {}
+    for run in runs:
+        for text in dict.fromkeys(run.get("warnings", ())):
+            # points warn of the same with other figures
+            alike.setdefault(_NUMBER.sub("#", text), []).append(text)
+    for texts in sorted(alike.values(), key=len, reverse=True)[:_MOST_WARNINGS]:
+        such = ", such as" if len(set(texts)) > 1 else ""
+        say(f"warning, {len(texts)} of {len(runs)} points{such}: {texts[0]}")
+    if len(alike) > _MOST_WARNINGS:
+        say(f"{len(alike) - _MOST_WARNINGS} more warnings in run.json of the points")
 
 
 # --- table and pictures ------------------------------------------------------------------------

@@ -11,9 +11,10 @@ from fiberbend.models.model import MACHINE
 from fiberbend.plan.estimate import cold, drawing_seconds, steps_of
 from fiberbend.plan.memory import gigabytes, needed_mb, room
 from fiberbend.schema.units import show
+from fiberbend.sweep.fields import shown
 from fiberbend.sweep.points import Point, Sweep
 from fiberbend.sweep.store import MARK, Store
-from fiberbend.sweep.table import aligned, cells
+from fiberbend.sweep.table import aligned
 
 IMPORTS_S = 1.5
 """Seconds of a model's start that a process spends once, on imports."""
@@ -32,7 +33,7 @@ def lines(sweep: Sweep, store: Store, jobs: int) -> Iterator[str]:
     left = []
     for index, point in enumerate(sweep.points):
         run = store.result(point)
-        values = [cells(column.values[index]) for column in sweep.columns]
+        values = [shown(column.values[index]) for column in sweep.columns]
         model = choose_model(point.case)[0].name
         if run is None:
             left.append(point)

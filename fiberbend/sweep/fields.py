@@ -95,6 +95,15 @@ def point_name(values: Mapping[str, Any]) -> str:
     return f"{name[:100]}_{hashlib.sha256(text.encode()).hexdigest()[:8]}"
 
 
+def shown(value: float | str | None) -> str:
+    """A value of a field for a reader; a mapping, which the table has as JSON, in plain words."""
+    if isinstance(value, float):
+        return f"{value:g}"
+    if isinstance(value, str) and value.startswith("{"):
+        return ", ".join(f"{key} {part}" for key, part in json.loads(value).items())
+    return "none" if value is None else value
+
+
 def _slug(value: Any) -> tuple[str, bool]:
     """A value as part of a file name, and whether the value can be read from it."""
     if isinstance(value, str):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -16,20 +17,25 @@ from fiberbend.sweep.store import NOT_RUN
 from fiberbend.sweep.trends import in_words
 from geometry.mesh.data import Floats
 
+_REMARK, _LETTER = 18, 7.6
+"""Height of a line of a remark, and width of a letter of it, pixels."""
 PANELS = 4
 """Most panels side by side on a page."""
 _PANEL = (400, 300)
 _LEFT, _BAR = 92, 150
-_TOP, _BOTTOM = 64, 62
-_HEAD, _FOOT = 74, 40
+_TOP, _BOTTOM = 92, 44
+_HEAD, _FOOT = 66, 66
 _MOST_LABELS = 12
 """More values of a field than this are drawn with contours instead of a number in each cell."""
 FAILED = "failed"
 """Status of a point that failed."""
+LATER = "failed later"
+"""What a map says of a point that failed beyond a state that it has reached."""
 _LEVEL = 1e-6
 """A relative spread below which a map is level."""
 _EMPTY = {
     FAILED: ("#f6dcd7", "////", "#a5402d"),
+    LATER: ("none", "//", "#a5402d"),
     "not reached": ("#e4e4e4", "....", "#808080"),
     NOT_RUN: ("#f4f4f4", "", "#808080"),
 }
@@ -57,18 +63,21 @@ def map_page(
     across = len(panels) * _PANEL[0]
     width = max(_LEFT + across + _BAR, 720)
     each = _PANEL[1] + _HEAD + _FOOT
-    height = _TOP + len(quantity.lines) * each + _BOTTOM
+    remark = wrapped(quantity.remark, width)
+    foot = _BOTTOM + _REMARK * len(remark)
+    height = _TOP + len(quantity.lines) * each + foot
     page = figure((width, height))
-    page.text(0.5, 1 - 34 / height, literal(title), ha="center", va="center", fontsize=17)
+    head(page, title, quantity.label)
     left = _LEFT + (width - _LEFT - across - _BAR) / 2
-    empty: set[str] = set()
+    unlike: set[str] = set()
+    decimals = _decimals(*next(iter(limits.values())))
     for i, (caption, name) in enumerate(quantity.lines.items()):
         top, scale = height - _TOP - i * each, limits[caption]
         bottom = top - _HEAD - _PANEL[1]
         page.text(
             left / width,
             (top - 18) / height,
-            literal(f"{quantity.label}, {caption}"),
+            literal(caption),
             va="center",
             fontsize=14,
             weight="bold",
@@ -76,7 +85,8 @@ def map_page(
         for j, (panel, rows) in enumerate(panels.items()):
             corner = (left + j * _PANEL[0], bottom)
             axis = page.add_axes(_box(corner, (_PANEL[0] - 22, _PANEL[1]), (width, height)))
-            empty |= _map(axis, axes, rows, name, scale)
+            own = name == quantity.column
+            unlike |= _map(axis, axes, rows, name, scale, decimals, own)
             axis.set_title(literal(panel), fontsize=12.5)
             axis.set_xlabel(axis_label(axes[0]), fontsize=13)
             if j == 0:
@@ -85,8 +95,33 @@ def map_page(
                 axis.tick_params(labelleft=False)
         box = _box((left + across + 8, bottom), (16, _PANEL[1]), (width, height))
         _color_bar(page, box, scale, quantity.axis)
-    _legend(page, sorted(empty), height)
+    _legend(page, sorted(unlike), height)
+    for i, line in enumerate(reversed(remark)):
+        down = (_BOTTOM + _REMARK * i) / height
+        page.text(0.5, down, literal(line), ha="center", va="bottom", fontsize=11)
     save(page, target)
+
+
+def head(page: Any, title: str, label: str) -> None:
+    """The title of a sweep above the name of a quantity, in letters that fit the page.
+
+    Args:
+        page: a figure of matplotlib.
+        title: of the sweep.
+        label: of the quantity.
+    """
+    width, height = page.get_size_inches() * page.dpi
+    for text, down, size in ((title, 30, 17), (label, 62, 15)):
+        shown = page.text(
+            0.5, 1 - down / height, literal(text), ha="center", va="center", fontsize=size
+        )
+        share = shown.get_window_extent().width / (0.96 * width)
+        shown.set_fontsize(size / max(share, 1.0))
+
+
+def wrapped(text: str, width: int) -> list[str]:
+    """A remark in lines for a page of a width in pixels."""
+    return textwrap.wrap(text, min(int(width / _LETTER), 110))
 
 
 def limits_of(rows: Sequence[TableRow], name: str) -> tuple[float, float]:
@@ -114,44 +149,42 @@ def _map(
     rows: Sequence[TableRow],
     name: str,
     limits: tuple[float, float],
+    decimals: int,
+    own: bool,
 ) -> set[str]:
-    """Draw a map; returns what became of the points that have no value."""
+    """Draw a map; returns what became of the points that have no value, or failed later.
+
+    Args:
+        axis: where.
+        axes: the fields across and up.
+        rows: the points.
+        name: column of the values.
+        limits: values at the ends of the colour scale.
+        decimals: of the numbers in the cells.
+        own: the values are the runs' own, which a failure concerns.
+    """
     x, y = (np.unique(np.array([row[c.name] for row in rows], dtype=float)) for c in axes)
     values = np.full((len(y), len(x)), np.nan)
     labelled = max(len(x), len(y)) <= _MOST_LABELS
-    # three digits of the range, and none of the whole numbers left out
-    decimals = max(0, 2 - math.floor(math.log10(limits[1] - limits[0])))
-    empty = set()
+    unlike = set()
     for row in rows:
         place = (
             int(np.searchsorted(y, row[axes[1].name])),
             int(np.searchsorted(x, row[axes[0].name])),
         )
         value = row.get(name)
-        text = f"{value:.{decimals}f}" if value is not None else outcome(row)
-        color = "#404040"
-        if value is None:
-            empty.add(text)
-            axis.add_patch(_patch(text, (place[1], place[0])))
-        else:
+        what = outcome(row) if value is None else ""
+        if value is not None:
             values[place] = value
-            if row["status"] == FAILED:
-                text += "\nfailed later"
-            dark = _dark((value - limits[0]) / (limits[1] - limits[0]))
-            color = "white" if dark else "black"
+            what = LATER if own and row["status"] == FAILED else ""
+        if what:
+            unlike.add(what)
+            axis.add_patch(_patch(what, (place[1], place[0])))
         if labelled:
-            axis.text(
-                place[1] + 0.5,
-                place[0] + 0.5,
-                text,
-                ha="center",
-                va="center",
-                fontsize=12.5 if value is not None else 10,
-                color=color,
-                bbox={"facecolor": "white", "edgecolor": "none", "pad": 2}
-                if value is None
-                else None,
-            )
+            number = "" if value is None else f"{value:.{decimals}f}"
+            share = None if value is None else (value - limits[0]) / (limits[1] - limits[0])
+            text = "\n".join(part for part in (number, what) if part)
+            _write_in(axis, (place[1] + 0.5, place[0] + 0.5), text, share, boxed=bool(what))
     axis.pcolormesh(
         np.ma.masked_invalid(values),
         cmap=colormap(),
@@ -169,7 +202,36 @@ def _map(
     axis.tick_params(labelsize=11.5, length=0)
     for spine in axis.spines.values():
         spine.set_visible(False)
-    return empty
+    return unlike
+
+
+def _write_in(
+    axis: Any, middle: tuple[float, float], text: str, share: float | None, boxed: bool
+) -> None:
+    """Write into a cell: black or white on its colour, and on a plain box where it is hatched.
+
+    Args:
+        axis: where.
+        middle: of the cell.
+        text: what.
+        share: place of its value on the colour scale, None without one.
+        boxed: the cell is hatched.
+    """
+    face = "white" if share is None else colormap()(float(np.clip(share, 0.0, 1.0)))
+    axis.text(
+        *middle,
+        text,
+        ha="center",
+        va="center",
+        fontsize=10 if boxed else 12.5,
+        color="#404040" if share is None else "white" if _dark(share) else "black",
+        bbox={"facecolor": face, "edgecolor": "none", "pad": 2} if boxed else None,
+    )
+
+
+def _decimals(low: float, high: float) -> int:
+    """So many that values between two have three digits and differ."""
+    return max(0, 2 - math.floor(math.log10(min(high - low, max(abs(low), (high - low) / 10)))))
 
 
 def _contours(axis: Any, values: Floats, limits: tuple[float, float]) -> None:
@@ -196,7 +258,10 @@ def _patch(what: str, corner: tuple[float, float]) -> Any:
     from matplotlib.patches import Rectangle
 
     face, hatch, edge = _EMPTY[what]
-    return Rectangle(corner, 1, 1, facecolor=face, hatch=hatch, edgecolor=edge, linewidth=0)
+    order = 2 if what == LATER else 0
+    return Rectangle(
+        corner, 1, 1, facecolor=face, hatch=hatch, edgecolor=edge, linewidth=0, zorder=order
+    )
 
 
 def _legend(page: Any, empty: Sequence[str], height: int) -> None:
@@ -208,8 +273,7 @@ def _legend(page: Any, empty: Sequence[str], height: int) -> None:
     handles = []
     for what in empty:
         face, hatch, edge = _EMPTY[what]
-        label = f"{what}: no value"
-        handles.append(Patch(facecolor=face, hatch=hatch, edgecolor=edge, linewidth=0, label=label))
+        handles.append(Patch(facecolor=face, hatch=hatch, edgecolor=edge, linewidth=0, label=what))
     page.legend(
         handles=handles,
         loc="lower center",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -15,19 +16,23 @@ from fiberbend.sweep.maps import (
     FAILED,
     PANELS,
     axis_label,
+    head,
     limits_of,
     map_page,
     spread,
+    wrapped,
 )
 from fiberbend.sweep.quantities import ReportedQuantity, TableRow
 from fiberbend.sweep.trends import Group, described, groups
 
 _COLORS = ("#1f5a99", "#c0392b", "#2e8b57", "#8e5ea2", "#b8860b", "#444444")
-_MARKS = "osD^vP"
+_MARKS = "osD^vPX"
 _STROKES = ("-", "--", ":", "-.")
 _PANEL = (520, 440)
 _LINE = 22
 """Height of a line of a legend, pixels."""
+_COLUMN = 4
+"""Names in a column before there is a second one."""
 _NAMED = 8
 """So many groups at most are named in a panel, the largest."""
 
@@ -114,13 +119,15 @@ def _curves(
     if not shown:
         shown = [(varied[0], [Group("", *_sorted(rows, varied[0]))])]
     several = len(columns) > 1
-    listed = max(min(len(found), _NAMED + 1) for _, found in shown) if several else 0
-    named = _LINE * listed
+    most = max(min(len(found), _NAMED + 1) for _, found in shown) if several else 0
+    named = _LINE * math.ceil(most / _columns(most)) + 14
     width = max(_PANEL[0] * len(shown) + 60, 860)
-    foot = named + _LINE * len(quantity.lines) + 22
-    height = 72 + _PANEL[1] + 64 + foot
+    remark = wrapped(quantity.remark, width)
+    legend = _LINE * len(quantity.lines) + 22
+    foot = named + legend + _LINE * len(remark)
+    height = 92 + _PANEL[1] + 64 + foot
     page = figure((width, height))
-    page.text(0.5, 1 - 30 / height, literal(title), ha="center", va="center", fontsize=17)
+    head(page, title, quantity.label)
     every = [row[name] for row in rows for name in quantity.lines.values()]
     known = np.array([value for value in every if value is not None], dtype=float)
     step = (width - 60) / len(shown)
@@ -141,6 +148,9 @@ def _curves(
             axis.set_ylabel(literal(quantity.axis), fontsize=13)
         if several:
             _name_groups(page, found, (left / width, (foot + 10) / height))
+    for i, line in enumerate(reversed(remark)):
+        down = (legend + _LINE * i) / height
+        page.text(0.5, down, literal(line), ha="center", va="bottom", fontsize=11)
     _legend(page, quantity, any(_failed(row, quantity) for row in rows), height)
     save(page, target)
 
@@ -193,10 +203,16 @@ def _name_groups(page: Any, found: Sequence[Group], corner: tuple[float, float])
         handles=handles,
         loc="upper left",
         bbox_to_anchor=corner,
+        ncols=_columns(len(handles)),
         fontsize=11,
         frameon=False,
         handletextpad=0.2,
     )
+
+
+def _columns(names: int) -> int:
+    """Columns of the names below a panel."""
+    return 2 if names > _COLUMN else 1
 
 
 def _panel(axis: Any, found: Sequence[Group], quantity: ReportedQuantity) -> None:

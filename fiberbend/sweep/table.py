@@ -17,7 +17,7 @@ from fiberbend.case.case import Case
 from fiberbend.models.choice import MODELS
 from fiberbend.models.closed_form import analytic_curves, lever_arm
 from fiberbend.results.folder import BLOCKED
-from fiberbend.sweep.fields import VariedField
+from fiberbend.sweep.fields import VariedField, shown
 from fiberbend.sweep.file import ReportSpec
 from fiberbend.sweep.points import Point, Sweep
 from fiberbend.sweep.quantities import (
@@ -128,7 +128,7 @@ def in_brief(
         return []
     if len(rows) > _MOST_ROWS:
         found = [(quantity, extremes(columns, rows, quantity)) for quantity in asked]
-        lines = [f"{quantity.label}: {text}" for quantity, text in found if text]
+        lines = [f"{q.label}, {next(iter(q.lines))}: {text}" for q, text in found if text]
     else:
         heads = [
             [
@@ -139,18 +139,17 @@ def in_brief(
         ]
         content = [
             [
-                *(cells(row[column.name]) for column in columns),
-                *(cells(quantity.value(row)) or "–" for quantity in asked),
+                *(shown(row[column.name]) for column in columns),
+                *(_four(quantity.value(row)) for quantity in asked),
                 "" if row["status"] == "converged" else row["status"],
             ]
             for row in rows
         ]
         lines = aligned([*([*head, ""] for head in heads), *content])
-    for quantity in asked:
-        caption = next(iter(quantity.lines))
-        if quantity.remark or caption != next(iter(asked[0].lines)):
-            lines.append(f"{quantity.label}: {caption}. {quantity.remark}".strip())
-    return lines
+        captions = {quantity.label: next(iter(quantity.lines)) for quantity in asked}
+        common = next(iter(captions.values()))
+        lines += [f"{label}: {text}" for label, text in captions.items() if text != common]
+    return lines + [f"note: {quantity.remark}" for quantity in asked if quantity.remark]
 
 
 def _heading(quantity: ReportedQuantity) -> tuple[str, str]:
@@ -159,9 +158,8 @@ def _heading(quantity: ReportedQuantity) -> tuple[str, str]:
     return first, ", ".join(part for part in (f"at {rest}" if at else "", quantity.unit) if part)
 
 
-def cells(value: float | str | None) -> str:
-    """A value as a cell of a table that is read, four digits."""
-    return f"{value:.4g}" if isinstance(value, float) else "" if value is None else str(value)
+def _four(value: float | None) -> str:
+    return "–" if value is None else f"{value:.4g}"
 
 
 def aligned(rows: Sequence[Sequence[str]]) -> list[str]:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.sweep.fields import VariedField
+from fiberbend.sweep.fields import VariedField, shown
 from fiberbend.sweep.quantities import ReportedQuantity, TableRow
 from geometry.mesh.data import Floats
 
@@ -78,8 +78,7 @@ def groups(
 
 def described(column: VariedField, value: Any) -> str:
     """A field with its value, "length 160 mm"."""
-    shown = f"{value:g}" if isinstance(value, float) else value
-    return " ".join(str(part) for part in (in_words(column), shown, column.unit) if part)
+    return " ".join(part for part in (in_words(column), shown(value), column.unit) if part)
 
 
 def in_words(column: VariedField) -> str:
