@@ -110,7 +110,8 @@ def _two_digits(value: float) -> str:
 
 def _total(left: Sequence[Point], number: int, jobs: int) -> Iterator[str]:
     """How many points, how long, and how much memory they need at once."""
-    yield f"{number} points: {number - len(left)} finished before, {len(left)} to solve"
+    noun = "point" if number == 1 else "points"
+    yield f"{number} {noun}: {number - len(left)} finished before, {len(left)} to solve"
     if not left:
         return
     jobs = min(jobs, len(left))

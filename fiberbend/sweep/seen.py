@@ -60,17 +60,20 @@ def hardly_seen(sweep: Sweep, jobs: int = 1) -> list[str]:
             # at some points it is seen: a comparison of models, or of threads stiff and soft
             continue
         names = sorted({choose_model(point.case)[0].name for point in sweep.points})
-        text = f"{field.label} varies, which model {' and '.join(names)} hardly sees: {reasons[0]}"
+        text = f"{field.path} varies, which model {' and '.join(names)} hardly sees: {reasons[0]}"
         found.append(f"{text}; {_remedy(sweep, field, jobs)}")
     return found
 
 
 def _reason(model: ModelKind, case: Case, field: VariedField) -> str:
     """Why a model hardly sees a field of a case; empty where it sees it."""
-    for path, reason in model.hardly_sees(case):
-        if f"{field.path}.".startswith(f"{path}."):
-            return reason
-    return ""
+    found = {
+        path: reason
+        for path, reason in model.hardly_sees(case)
+        if f"{field.path}.".startswith(f"{path}.")
+    }
+    # the reason that is nearest to the field
+    return found[max(found, key=len)] if found else ""
 
 
 def _remedy(sweep: Sweep, field: VariedField, jobs: int) -> str:
@@ -79,7 +82,8 @@ def _remedy(sweep: Sweep, field: VariedField, jobs: int) -> str:
     if answer is None:
         return "no model sees more of it"
     times = [time for cases in answer.cases if (time := seconds(cases)) is not None]
-    settings = " ".join(f'--set {path}="{value}"' for path, value in answer.settings.items())
+    quoted = {path: f'"{v}"' if " " in v else v for path, v in answer.settings.items()}
+    settings = " ".join(f"--set {path}={value}" for path, value in quoted.items())
     text = f"model {answer.model} sees it ({settings})"
     if not times:
         return text
