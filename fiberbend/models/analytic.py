@@ -63,6 +63,13 @@ class Analytic(ModelKind):
         """κ P over the lever."""
         return "closed form, eq. (20)"
 
+    def force_remark(self) -> str:
+        """Two errors of opposite sign."""
+        return (
+            "eq. (20) lies near the force of a body whose tip presses on a post, 54 beside 49 N mm "
+            "on the baseline, by coincidence (docs/contact.md)"
+        )
+
     def errors(self, case: Case) -> Iterator[str]:
         """Against the section model, and the paper's against its experiments."""
         if case.straight:

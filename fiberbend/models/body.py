@@ -115,7 +115,7 @@ class Body(MeshedModel):
 
     def force_named(self) -> str:
         """Of its tip on what blocks it."""
-        return "body, its tip on the post"
+        return "body, its tip blocked"
 
     def resolved_bulging(self, case: Case) -> float:
         """By the length of its elements."""

@@ -21,9 +21,11 @@ TableRow = dict[str, Any]
 
 STRETCH = "stretch"
 """Kind of the quantity that every sweep has, asked for or not."""
+FORCE = "blocked-force"
+"""Kind of the blocked force."""
 FORCE_MODEL = "blocked_force_model"
 """Column that says what the blocked force of a point is."""
-LINES = {lines.PAPER: "paper", lines.ZERO_FIT: "zero_fit", lines.WINDING: "winding"}
+LINES = {lines.ZERO_FIT: "zero_fit", lines.PAPER: "paper", lines.WINDING: "winding"}
 """Analytical lines in the table, with their names in it."""
 CAPTIONS = {
     "paper": f"closed form, eq. (19), the paper's μ̄ = {CALIBRATED_MODULUS:g} MPa",
@@ -34,6 +36,8 @@ CAPTIONS = {
 }
 """Captions of the analytical lines that are drawn."""
 _DRAWN = ("zero_fit", "paper")
+_PLAIN = str.maketrans({"°": "deg", "²": "2", "³": "3", " ": None})
+"""From a unit to its letters in the name of a column."""
 _LEVEL = 1e-6
 """A relative spread of a column below which it is the same at every point."""
 
@@ -47,7 +51,11 @@ class ReportedQuantity:
         name: name of its picture without the ending.
         label: its name in words.
         unit: its unit, or empty.
-        lines: columns of the table by their captions, the run first, then analytical models.
+        lines: columns of the table that have values, by their captions: the run's own first, then
+            closed forms.
+        column: the run's own column, which may have no value; of the force of a model that gives
+            none, the first closed form's.
+        caption: what that is.
         remark: what a reader of its values has to know, a sentence; empty where nothing.
     """
 
@@ -56,17 +64,20 @@ class ReportedQuantity:
     label: str
     unit: str
     lines: dict[str, str]
+    column: str = ""
+    caption: str = ""
     remark: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.column:
+            caption, column = next(iter(self.lines.items()))
+            object.__setattr__(self, "caption", caption)
+            object.__setattr__(self, "column", column)
 
     @property
     def axis(self) -> str:
         """Label of an axis."""
         return f"{self.label} ({self.unit})" if self.unit else self.label
-
-    @property
-    def column(self) -> str:
-        """The run's own column, or that of a closed form where the run has none."""
-        return next(iter(self.lines.values()))
 
     def value(self, row: Mapping[str, Any]) -> float | None:
         """Its value at a point, or None."""
@@ -84,7 +95,7 @@ def quantities(report: ReportSpec, rows: Sequence[TableRow]) -> list[ReportedQua
     known = {name for row in rows for name, value in row.items() if value is not None}
     solved = sorted({row["solved_by"] for row in rows if row["solved_by"]})
     run = f"{' and '.join(solved)} model" if solved else "model"
-    asked = [*_states(report, run), *_force(report, rows), *_history(report, run)]
+    asked = [*_states(report, run, _drawn(solved)), *_force(report, rows), *_history(report, run)]
     if not asked:
         asked = list(_ends(run, rows))
     filled = (
@@ -116,16 +127,22 @@ def angle_column(pressure: float, line: str = "") -> str:
     return f"{line and line + '_'}angle_{kilopascals(pressure)}_deg"
 
 
-def _states(report: ReportSpec, run: str) -> Iterator[ReportedQuantity]:
+def _drawn(solved: Sequence[str]) -> list[str]:
+    """Closed forms beside a run: not the one that is the run."""
+    own = {MODELS[name].line for name in solved}
+    return [name for line, name in LINES.items() if name in _DRAWN and own != {line}]
+
+
+def _states(report: ReportSpec, run: str, drawn: Sequence[str]) -> Iterator[ReportedQuantity]:
     """Pressures at angles, angles at pressures."""
     for angle in report.angles:
         found = {run: pressure_column(angle)}
-        found |= {CAPTIONS[line]: pressure_column(angle, line) for line in _DRAWN}
+        found |= {CAPTIONS[line]: pressure_column(angle, line) for line in drawn}
         label = f"pressure at {math.degrees(angle):.6g}°"
         yield ReportedQuantity("pressure", f"pressure_{degrees(angle)}", label, "kPa", found)
     for pressure in report.pressures:
         found = {run: angle_column(pressure)}
-        found |= {CAPTIONS[line]: angle_column(pressure, line) for line in _DRAWN}
+        found |= {CAPTIONS[line]: angle_column(pressure, line) for line in drawn}
         label = f"angle at {show(pressure, 'pressure')}"
         yield ReportedQuantity("angle", f"angle_{kilopascals(pressure)}", label, "°", found)
 
@@ -135,19 +152,19 @@ def _force(report: ReportSpec, rows: Sequence[TableRow]) -> Iterator[ReportedQua
     if report.force_at is None:
         return
     named = sorted({row[FORCE_MODEL] for row in rows if row.get(FORCE_MODEL)})
-    found = {", or ".join(named) or "model": "blocked_force_N"}
+    found = {", or ".join(named): "blocked_force_N"} if named else {}
     found |= {CAPTIONS[line]: f"{line}_N" for line in ("paper_force", "winding_force")}
     remarks = [model.force_remark() for model in MODELS.values() if model.force_named() in named]
     label = f"blocked force at {show(report.force_at, 'pressure')}"
     remark = " ".join(_sentence(text) for text in remarks if text)
-    yield ReportedQuantity("blocked-force", "blocked_force", label, "N", found, remark)
+    yield ReportedQuantity(FORCE, "blocked_force", label, "N", found, remark=remark)
 
 
 def _history(report: ReportSpec, run: str) -> Iterator[ReportedQuantity]:
     """Columns of history.csv that were asked for."""
     for name in report.history:
         unit = col.column(name).unit
-        words = name.replace("_", " ")
+        words = name.removesuffix(f"_{unit.translate(_PLAIN)}").replace("_", " ")
         yield ReportedQuantity("history", f"end_{name}", f"{words} at the end", unit, {run: name})
 
 

@@ -21,6 +21,7 @@ from fiberbend.sweep.fields import VariedField, shown
 from fiberbend.sweep.file import ReportSpec
 from fiberbend.sweep.points import Point, Sweep
 from fiberbend.sweep.quantities import (
+    FORCE,
     FORCE_MODEL,
     LINES,
     STRETCH,
@@ -100,6 +101,8 @@ def as_json(
                 "kind": quantity.kind,
                 "label": quantity.label,
                 "unit": quantity.unit,
+                "column": quantity.column,
+                "caption": quantity.caption,
                 "lines": quantity.lines,
                 "extremes": extremes(columns, rows, quantity),
                 "remark": quantity.remark,
@@ -128,7 +131,7 @@ def in_brief(
         return []
     if len(rows) > _MOST_ROWS:
         found = [(quantity, extremes(columns, rows, quantity)) for quantity in asked]
-        lines = [f"{q.label}, {next(iter(q.lines))}: {text}" for q, text in found if text]
+        lines = [f"{q.label}, {q.caption}: {text}" for q, text in found if text]
     else:
         heads = [
             [
@@ -146,9 +149,11 @@ def in_brief(
             for row in rows
         ]
         lines = aligned([*([*head, ""] for head in heads), *content])
-        captions = {quantity.label: next(iter(quantity.lines)) for quantity in asked}
-        common = next(iter(captions.values()))
-        lines += [f"{label}: {text}" for label, text in captions.items() if text != common]
+        lines += [
+            f"{quantity.label}: {quantity.caption}"
+            for quantity in asked
+            if quantity.caption != asked[0].caption or quantity.kind == FORCE
+        ]
     return lines + [f"note: {quantity.remark}" for quantity in asked if quantity.remark]
 
 
@@ -236,7 +241,8 @@ def _analytic(case: Case, report: ReportSpec) -> TableRow:
     row: TableRow = {}
     models = analytic_curves(case)
     for key, name in LINES.items():
-        if name == PAPER and PAPER not in case.compare:
+        if case.straight or (name == PAPER and PAPER not in case.compare):
+            # the closed forms bend freely
             continue
         for angle in report.angles:
             row[pressure_column(angle, name)] = _pressure(models.get(key), angle)

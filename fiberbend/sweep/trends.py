@@ -110,7 +110,8 @@ def in_a_sentence(column: VariedField, found: Sequence[Group], name: str) -> str
     counts = Counter(_shape(y) for y in known)
     total = len(known)
     if len(counts) == 1:
-        shapes = _WORDS[next(iter(counts))] + (f" in all {total} groups" if total > 1 else "")
+        where = "" if total == 1 else " in both groups" if total == 2 else f" in all {total} groups"
+        shapes = _WORDS[next(iter(counts))] + where
     else:
         (first, most), *others = counts.most_common()
         shapes = f"{_WORDS[first]} in {most} of {total} groups"
@@ -152,8 +153,9 @@ def extremes(
     known = [row for row in rows if quantity.value(row) is not None]
     if not known:
         return ""
-    order = sorted(known, key=lambda row: quantity.value(row) or 0.0)
-    ends = [order[0], order[-1]] if len(order) > 1 else order
+    ends = [known[0]]
+    if len(known) > 1:
+        ends = [end(known, key=lambda row: quantity.value(row) or 0.0) for end in (min, max)]
     return " to ".join(f"{amount(quantity, row)} ({place(columns, row)})" for row in ends)
 
 
@@ -206,9 +208,9 @@ def _in_words(
     rows: Sequence[TableRow],
     along: Sequence[tuple[VariedField, list[Group]]],
 ) -> str:
-    caption = next(iter(quantity.lines))
     heading = f"{quantity.label[0].upper()}{quantity.label[1:]}"
-    lines = [f"## {heading}", "", f"{caption}: {extremes(columns, rows, quantity)}.", ""]
+    span = extremes(columns, rows, quantity) or "no point has a value"
+    lines = [f"## {heading}", "", f"{quantity.caption}: {span}.", ""]
     for column, found in along:
         sentence = in_a_sentence(column, found, quantity.column)
         lines += [f"- {sentence}."] if sentence else []
