@@ -287,8 +287,19 @@ def _count(_type: type, number: int) -> None:
 
 @app.command(
     help_epilogue="""Examples:
+  fiberbend sweep cases/sweeps/radius_length_wall.yaml --dry-run -j 2
   fiberbend sweep cases/sweeps/radius_length_wall.yaml -j 2
+  fiberbend sweep cases/sweeps/table1.yaml --only wall=2mm --only radius=1cm
+  fiberbend sweep cases/sweeps/angle_at_pressure.yaml --set mesh.section=3
   fiberbend sweep cases/sweeps/radius_length_wall.yaml -j 2 --retry
+
+What a file asks for under "report" leads its table, trends and maps:
+  angles: [90 deg]     pressure at an angle, column pressure_90deg_kPa
+  pressures: [60 kPa]  angle at a pressure, column angle_60kPa_deg
+  force_at: 100 kPa    blocked force, columns blocked_force_N and
+                       blocked_force_model, which says whose force it is
+The line of the paper is drawn with "set: {compare: [paper]}". A point has a
+report of its own with "set: {output.report: true}"; pictures and fields alike.
 """
 )
 def sweep(
@@ -300,6 +311,11 @@ def sweep(
     jobs: Annotated[int, Parameter(name=("--jobs", "-j"), validator=_count)] = 1,
     retry: bool = False,
     force: bool = False,
+    only: Annotated[
+        tuple[str, ...],
+        Parameter(name="--only", metavar="FIELD=VALUE", consume_multiple=False),
+    ] = (),
+    dry_run: bool = False,
 ) -> int:
     """Solve a case at many points, in a folder that can be gone on with.
 
@@ -310,6 +326,8 @@ def sweep(
         jobs: Processes that solve at once; 1 by default.
         retry: Run failed points again.
         force: Run whether there is enough memory for all jobs or not.
+        only: Solve the points with this value of a varied field, such as wall=2mm; repeatable.
+        dry_run: Print points, models, time and memory; solve and write nothing.
     """
     from fiberbend.schema.problems import CaseError
     from fiberbend.sweep.command import run_sweep
@@ -317,7 +335,9 @@ def sweep(
     folder = out or Path("runs") / file.stem
     try:
         with signals.raising():
-            return run_sweep(file, folder, settings, jobs, retry, force, say=say)
+            return run_sweep(
+                file, folder, settings, jobs, retry, force, say=say, only=only, dry=dry_run
+            )
     except (CaseError, MachineError):
         raise
     except KeyboardInterrupt as error:

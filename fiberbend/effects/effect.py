@@ -191,6 +191,18 @@ class Effect(Spec):
         """
         yield from ()
 
+    def hardly_felt(self, resolved: bool) -> dict[str, str]:
+        """Settings of it whose change moves an answer little or not at all, each with the reason.
+
+        Args:
+            resolved: the model resolves the turns of a winding.
+        """
+        return {}
+
+    def in_turns(self) -> dict[str, Any]:
+        """Settings with which a winding has its turns, where it has none yet."""
+        return {}
+
     def completed(self, offers: frozenset[str] | None) -> Self:
         """The effect with its defaults.
 

@@ -61,6 +61,7 @@ class Body(MeshedModel):
     resumes = True
     takes_mesh_as_given = True
     ends = True
+    layers_a_pitch = 2.0
     agreement = 2.0
     turn = math.radians(60)
     first_turn = math.radians(20)
@@ -111,6 +112,10 @@ class Body(MeshedModel):
             lambda: BodyGauge(scene, line),
             lambda: BodyRod(scene.body, frames),
         )
+
+    def force_named(self) -> str:
+        """Of its tip on what blocks it."""
+        return "body, its tip blocked"
 
     def resolved_bulging(self, case: Case) -> float:
         """By the length of its elements."""

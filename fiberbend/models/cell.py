@@ -35,6 +35,7 @@ class Cell(UniformModel):
 
     name = "cell"
     offers = frozenset({CHAMBER, WOUND, ARC, VOLUME, TWIST, THREAD, TURNS})
+    layers_a_pitch = 8.0
     turn = math.radians(45)
     first_turn = math.radians(10)
     memory = 4
@@ -48,7 +49,8 @@ class Cell(UniformModel):
         turns = case.turns
         if turns is None:
             return case
-        return case.model_copy(update={"mesh": completed_mesh(case.mesh, axial=turns.pitch / 8)})
+        axial = turns.pitch / self.layers_a_pitch
+        return case.model_copy(update={"mesh": completed_mesh(case.mesh, axial=axial)})
 
     def limits(self, case: Case) -> Iterator[Objection]:
         """No uniform bend, and no slice that the chamber has no room for."""

@@ -168,6 +168,26 @@ class ModelKind(ABC):
         """Part of the bulging between the turns of a winding that it gives: 1 all, 0 nothing."""
         return 0.0
 
+    def hardly_sees(self, case: Case) -> Iterator[Objection]:
+        """Settings whose change moves its answer little or not at all: paths and reasons."""
+        for part, names in self.unused(case).items():
+            yield from ((f"{part}.{name}", "it has no use for it") for name in sorted(names))
+        yield from self.leaves_out(case)
+        if not self.ends:
+            yield "actuator.cap", "it has no caps; a cap is no more than a lever of the tip force"
+        resolved = self.resolved_bulging(case) > 0
+        for index, effect in enumerate(case.effects):
+            for key, reason in effect.hardly_felt(resolved).items():
+                yield f"effects.{index}.{effect.name}.{key}", reason
+
+    def force_named(self) -> str:
+        """What its force of a blocked tip is, in a table or a legend."""
+        return f"{self.name} model"
+
+    def force_remark(self) -> str:
+        """How that force compares with a body's, with its source; empty where it is one."""
+        return ""
+
     def errors(self, case: Case) -> Iterator[str]:
         """How far its answer is expected to be off, a line with its source each."""
         yield from ()
@@ -193,6 +213,8 @@ class MeshedModel(ModelKind):
     """Share of the load in the first step of an actuator that is kept straight."""
     compile_s: ClassVar[float]
     """Seconds to compile a scene that is not in the cache."""
+    layers_a_pitch: ClassVar[float] = 0.0
+    """Elements along a turn of a winding that it needs to resolve it; 0 where it never does."""
 
     def elements(self) -> MeshedModel:
         """The model itself."""

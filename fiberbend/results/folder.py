@@ -69,7 +69,7 @@ _OF_A_RUN = (
     *("pictures/pressure_*.png", "pictures/tip_*.png", "pictures/contact_*.png"),
     *("pictures/section_*.png", "pictures/cell_*.png", "pictures/fiber_*.png"),
 )
-_OF_A_SWEEP = ("sweep.csv", "trends.md", "maps/*.png", "report.html")
+_OF_A_SWEEP = ("sweep.csv", "sweep.json", "trends.md", "maps/*.png", "report.html")
 _OF_CONTROL = ("control.json", "control.csv", "control.png", "filter.csv", "angle_filter.h")
 FILES = (*_OF_A_RUN, *(f"{BLOCKED}/{name}" for name in _OF_A_RUN), *_OF_A_SWEEP, *_OF_CONTROL)
 """What is written: no other name can be, and `overwrite` removes nothing else."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from fiberbend.plan.memory import needed_mb, room, shortage
 from fiberbend.process.signals import Interrupted, stop_of
@@ -12,11 +14,17 @@ from fiberbend.results.folder import REPORT, RunFolder
 from fiberbend.running import launch
 from fiberbend.running.launch import FAILED
 from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.sweep.only import choose
 from fiberbend.sweep.points import Sweep, read_sweep
-from fiberbend.sweep.store import Store
+from fiberbend.sweep.seen import hardly_seen
+from fiberbend.sweep.store import NOT_RUN, Store
 from fiberbend.sweep.workers import Event, WorkerPool, work
 
+if TYPE_CHECKING:
+    from fiberbend.sweep.quantities import ReportedQuantity, TableRow
+
 _MOST_WARNINGS = 10
+_NUMBER = re.compile(r"[-+−]?\d[\d.]*")
 Say = Callable[[str], None]
 
 
@@ -28,6 +36,8 @@ def run_sweep(
     retry: bool = False,
     force: bool = False,
     say: Say = print,
+    only: Sequence[str] = (),
+    dry: bool = False,
 ) -> int:
     """Solve the points of a sweep that are not finished, then write its table and pictures.
 
@@ -39,6 +49,8 @@ def run_sweep(
         retry: run failed points again.
         force: run whether there is enough memory or not.
         say: takes lines for the user.
+        only: `FIELD=VALUE`, the points to solve; all by default. The others keep their rows.
+        dry: say what would be done; nothing is solved or written.
 
     Returns:
         The exit code: 0, 2 if a point failed, that of the signal if stopped by one.
@@ -52,21 +64,29 @@ def run_sweep(
             [Problem("fiberbend sweep", "under mpirun, expected -j for more processes")]
         )
     sweep = read_sweep(path, settings)
+    part = sweep.part(choose(sweep, only))
+    if dry:
+        return _dry_run(part, Store.look(out, force), jobs, say)
     store = Store.open(out, force)
     if retry:
-        for point in sweep.points:
+        for point in part.points:
             store.forget(point)
     if not force:
-        _refuse_shortage(sweep, store, jobs)
-    before = sum(store.result(point) is not None for point in sweep.points)
-    say(f"{len(sweep.points)} points, {before} finished before")
+        _refuse_shortage(part, store, jobs)
+    before = sum(store.result(point) is not None for point in part.points)
+    of_all = f" of {len(sweep.points)}" if len(part.points) < len(sweep.points) else ""
+    say(f"{len(part.points)}{of_all} points, {before} finished before")
+    for text in hardly_seen(part, jobs) if before < len(part.points) else ():
+        say(f"warning: {text}")
     stop = None
     try:
-        _solve(sweep, store, jobs, _EventPrinter(len(sweep.points), before, say))
+        _solve(part, store, jobs, _EventPrinter(len(part.points), before, say))
     except KeyboardInterrupt as error:
         stop = stop_of(error)
-    _write(sweep, store, say, pictures=stop is None)
-    return _summary(sweep, store, stop, say)
+    _tell(part, store, say)
+    code = _summary(part, store, stop, say)
+    _write(sweep, store, say, pictures=stop is None, doubts=hardly_seen(sweep, jobs))
+    return code
 
 
 class _EventPrinter:
@@ -89,6 +109,23 @@ class _EventPrinter:
             self._say(f"a worker died in {event['died']} (code {event['code']})")
 
 
+def _dry_run(sweep: Sweep, store: Store, jobs: int, say: Say) -> int:
+    """Say what would be done.
+
+    Raises:
+        CaseError: the points would be refused, as too little memory is free.
+    """
+    from fiberbend.sweep import dry_run
+
+    for line in dry_run.lines(sweep, store, jobs):
+        say(line)
+    for text in hardly_seen(sweep, jobs):
+        say(f"warning: {text}")
+    if not store.force:
+        _refuse_shortage(sweep, store, jobs)
+    return 0
+
+
 def _solve(sweep: Sweep, store: Store, jobs: int, on_event: _EventPrinter) -> None:
     left = sum(store.result(point) is None for point in sweep.points)
     if min(jobs, left) < 2:
@@ -102,7 +139,7 @@ def _solve(sweep: Sweep, store: Store, jobs: int, on_event: _EventPrinter) -> No
 def _refuse_shortage(sweep: Sweep, store: Store, jobs: int) -> None:
     """Refuse points of which so many at once would not fit into memory, were they the largest."""
     left = [point for point in sweep.points if store.result(point) is None]
-    cases = [case for point in left for case in (point.case, point.blocked) if case is not None]
+    cases = [case for point in left for case in point.cases]
     largest = sorted((needed_mb(case) for case in cases), reverse=True)[: max(jobs, 1)]
     text = shortage(largest, room(), "the sweep")
     if text is not None:
@@ -112,7 +149,7 @@ def _refuse_shortage(sweep: Sweep, store: Store, jobs: int) -> None:
 
 def _summary(sweep: Sweep, store: Store, stop: Interrupted | None, say: Say) -> int:
     runs = {point.name: store.result(point) for point in sweep.points}
-    counts = Counter("not run" if run is None else run["status"] for run in runs.values())
+    counts = Counter(NOT_RUN if run is None else run["status"] for run in runs.values())
     say(f"{len(runs)} points: " + ", ".join(f"{n} {status}" for status, n in counts.items()))
     for name, run in runs.items():
         if run is not None and run["status"] == "failed":
@@ -121,51 +158,87 @@ def _summary(sweep: Sweep, store: Store, stop: Interrupted | None, say: Say) -> 
     if stop is not None:
         say("interrupted; the same command goes on where it was")
         return stop.code
-    return FAILED if counts["failed"] or counts["not run"] else 0
+    return FAILED if counts["failed"] or counts[NOT_RUN] else 0
 
 
 def _say_warnings(runs: Sequence[Event], say: Say) -> None:
     """What is doubtful of how many points; all of it stands in their run.json."""
-    counts = Counter(text for run in runs for text in run.get("warnings", ()))
-    for text, number in counts.most_common(_MOST_WARNINGS):
-        say(f"warning, {number} of {len(runs)} points: {text}")
-    if len(counts) > _MOST_WARNINGS:
-        say(f"{len(counts) - _MOST_WARNINGS} more warnings in run.json of the points")
+    alike: dict[str, list[str]] = {}
+    for run in runs:
+        for text in dict.fromkeys(run.get("warnings", ())):
+            # points warn of the same with other figures
+            alike.setdefault(_NUMBER.sub("#", text), []).append(text)
+    for texts in sorted(alike.values(), key=len, reverse=True)[:_MOST_WARNINGS]:
+        such = ", such as" if len(set(texts)) > 1 else ""
+        say(f"warning, {len(texts)} of {len(runs)} points{such}: {texts[0]}")
+    if len(alike) > _MOST_WARNINGS:
+        say(f"{len(alike) - _MOST_WARNINGS} more warnings in run.json of the points")
 
 
 # --- table and pictures ------------------------------------------------------------------------
 
 
-def _write(sweep: Sweep, store: Store, say: Say, pictures: bool) -> None:
-    from fiberbend.sweep.table import as_csv, collect, quantities
+def _tell(sweep: Sweep, store: Store, say: Say) -> None:
+    """What was asked for, of the points that were to be solved."""
+    from fiberbend.sweep.quantities import quantities
+    from fiberbend.sweep.table import collect, in_brief
+
+    rows = collect(sweep, store)
+    if any(row["status"] == NOT_RUN for row in rows):
+        rows = [row for row in rows if row["status"] != NOT_RUN]
+    for line in in_brief(sweep.columns, rows, quantities(sweep.report, rows)):
+        say(line)
+
+
+def _write(
+    sweep: Sweep, store: Store, say: Say, pictures: bool, doubts: Sequence[str] = ()
+) -> None:
+    from fiberbend.sweep.quantities import quantities
+    from fiberbend.sweep.table import as_csv, as_json, collect
     from fiberbend.sweep.trends import as_markdown
 
     rows, folder = collect(sweep, store), RunFolder(store.path)
     reported = quantities(sweep.report, rows)
     folder.write_text("sweep.csv", as_csv(rows))
-    folder.write_text("trends.md", as_markdown(sweep.columns, rows, reported))
+    notes = as_markdown(sweep.title, sweep.columns, rows, reported, doubts)
+    folder.write_text("trends.md", notes)
     for index, name in enumerate(sweep.report.history):
         if all(row.get(name) is None for row in rows):
             say(f"report.history.{index}: no point has a column {name}")
-    say(f"table in {store.path / 'sweep.csv'}")
+    say(f"table: {store.path / 'sweep.csv'}")
+    say(f"trends: {store.path / 'trends.md'}")
+    drawn: dict[str, list[str]] = {}
     if pictures:
-        from fiberbend.drawing.page import own_style
-        from fiberbend.sweep.plots import draw
+        drawn = _draw(sweep, rows, reported, folder)
+        if drawn:
+            say(f"maps: {store.path / 'maps'}")
+    about = as_json(sweep.title, sweep.columns, rows, reported, drawn, doubts)
+    folder.write_text("sweep.json", about)
 
-        drawn = [quantity for quantity in reported if quantity.kind in sweep.report.maps]
-        with own_style():
-            names = draw(
-                sweep.title,
-                sweep.columns,
-                rows,
-                drawn,
-                lambda name, fill: folder.write(f"maps/{name}", fill),
-            )
-        if names:
-            say(f"maps in {store.path / 'maps'}")
     from fiberbend.report.sweep_page import write_sweep_report
     from fiberbend.running.outputs import page
 
     with page(say):
         write_sweep_report(folder, sweep.title)
         say(f"report: {store.path / REPORT}")
+
+
+def _draw(
+    sweep: Sweep,
+    rows: Sequence[TableRow],
+    reported: Sequence[ReportedQuantity],
+    folder: RunFolder,
+) -> dict[str, list[str]]:
+    """Maps and curves of the quantities that the sweep wants drawn: file names of each."""
+    from fiberbend.drawing.page import own_style
+    from fiberbend.sweep.plots import draw
+
+    wanted = [quantity for quantity in reported if quantity.kind in sweep.report.maps]
+    with own_style():
+        return draw(
+            sweep.title,
+            sweep.columns,
+            rows,
+            wanted,
+            lambda name, fill: folder.write(f"maps/{name}", fill),
+        )

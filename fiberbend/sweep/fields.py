@@ -41,6 +41,11 @@ class VariedField:
         return f"{label}_{unit}" if unit else label
 
     @property
+    def heading(self) -> str:
+        """Its name over a column of text, "wall, mm"."""
+        return f"{self.label}, {self.unit}" if self.unit else self.label
+
+    @property
     def numeric(self) -> bool:
         """All its values are numbers."""
         return all(isinstance(value, float) for value in self.values)
@@ -88,6 +93,15 @@ def point_name(values: Mapping[str, Any]) -> str:
         return name
     text = json.dumps(values, sort_keys=True, ensure_ascii=False)
     return f"{name[:100]}_{hashlib.sha256(text.encode()).hexdigest()[:8]}"
+
+
+def shown(value: float | str | None) -> str:
+    """A value of a field for a reader; a mapping, which the table has as JSON, in plain words."""
+    if isinstance(value, float):
+        return f"{value:g}"
+    if isinstance(value, str) and value.startswith("{"):
+        return ", ".join(f"{key} {part}" for key, part in json.loads(value).items())
+    return "none" if value is None else value
 
 
 def _slug(value: Any) -> tuple[str, bool]:

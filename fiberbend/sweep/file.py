@@ -14,9 +14,9 @@ from pydantic_core import PydanticCustomError
 
 from fiberbend.columns import COLUMNS, column
 from fiberbend.schema.problems import Problem, found, meant
-from fiberbend.schema.quantities import Angle, Pressure, Spec
+from fiberbend.schema.quantities import Angle, Pressure, SignedPressure, Spec
 
-MapKind = Literal["pressure", "stretch", "blocked-force"]
+MapKind = Literal["pressure", "angle", "blocked-force", "stretch", "history"]
 
 Values = Annotated[tuple[Any, ...], Field(strict=False)]
 
@@ -29,12 +29,14 @@ class ReportSpec(Spec):
 
     angles: tuple[Angle, ...] = Field(default=(), strict=False)
     """Bending angles at which the pressure is reported; every point hits them exactly."""
+    pressures: tuple[SignedPressure, ...] = Field(default=(), strict=False)
+    """Pressures at which the bending angle is reported; every point hits them exactly."""
     force_at: Pressure | None = None
     """Pressure at which the blocked force is reported; none by default."""
     history: tuple[str, ...] = Field(default=(), strict=False)
     """Further columns of history.csv, at the end of each point."""
     maps: tuple[MapKind, ...] = Field(
-        default=("pressure", "stretch", "blocked-force"), strict=False
+        default=("pressure", "angle", "blocked-force", "stretch"), strict=False
     )
     """Quantities that are drawn, where the table has them."""
 

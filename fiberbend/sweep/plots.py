@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,18 +13,26 @@ from fiberbend.drawing.page import figure, literal, save
 from fiberbend.states.snapshot import Target, Write
 from fiberbend.sweep.fields import VariedField
 from fiberbend.sweep.maps import (
+    FAILED,
     PANELS,
     axis_label,
+    head,
     limits_of,
     map_page,
     spread,
+    wrapped,
 )
-from fiberbend.sweep.table import ReportedQuantity, TableRow
+from fiberbend.sweep.quantities import ReportedQuantity, TableRow
 from fiberbend.sweep.trends import Group, described, groups
 
 _COLORS = ("#1f5a99", "#c0392b", "#2e8b57", "#8e5ea2", "#b8860b", "#444444")
-_MARKS = "osD^vP"
+_MARKS = "osD^vPX"
 _STROKES = ("-", "--", ":", "-.")
+_PANEL = (520, 440)
+_LINE = 22
+"""Height of a line of a legend, pixels."""
+_COLUMN = 4
+"""Names in a column before there is a second one."""
 _NAMED = 8
 """So many groups at most are named in a panel, the largest."""
 
@@ -34,7 +43,7 @@ def draw(
     rows: Sequence[TableRow],
     quantities: Sequence[ReportedQuantity],
     write: Write,
-) -> list[str]:
+) -> dict[str, list[str]]:
     """Draw quantities of a sweep.
 
     Args:
@@ -45,19 +54,18 @@ def draw(
         write: writes a file, such as `RunFolder.write`.
 
     Returns:
-        The names written.
+        The files written of each quantity, by its name.
     """
     varied = [column for column in columns if column.numeric and len({*column.values}) > 1]
-    written: list[str] = []
+    written: dict[str, list[str]] = {}
     for quantity in quantities if varied else ():
         if len(varied) > 1 and _full(columns, varied, rows):
-            written += _draw_maps(title, columns, varied[:2], rows, quantity, write)
+            names = _draw_maps(title, columns, varied[:2], rows, quantity, write)
         else:
-            write(
-                f"{quantity.name}.png",
-                functools.partial(_curves, title, columns, varied, rows, quantity),
-            )
-            written.append(f"{quantity.name}.png")
+            names = [f"{quantity.name}.png"]
+            fill = functools.partial(_curves, title, columns, varied, rows, quantity)
+            write(names[0], fill)
+        written[quantity.name] = names
     return written
 
 
@@ -83,7 +91,7 @@ def _draw_maps(
     for row in rows:
         caption = ", ".join(described(column, row[column.name]) for column in rest)
         panels.setdefault(caption, []).append(row)
-    limits = limits_of(rows, list(quantity.lines.values()))
+    limits = {caption: limits_of(rows, name) for caption, name in quantity.lines.items()}
     captions = list(panels)
     names = []
     for first in range(0, len(captions), PANELS):
@@ -92,7 +100,7 @@ def _draw_maps(
         names.append(f"{quantity.name}{number}.png")
         write(
             names[-1],
-            functools.partial(map_page, title, axes, part, quantity.lines, limits, quantity.axis),
+            functools.partial(map_page, title, axes, part, quantity, limits),
         )
     return names
 
@@ -110,51 +118,104 @@ def _curves(
     shown = [(column, found) for column, found in panels.values() if found]
     if not shown:
         shown = [(varied[0], [Group("", *_sorted(rows, varied[0]))])]
-    width, height = max(520 * len(shown) + 60, 860), 640
+    several = len(columns) > 1
+    most = max(min(len(found), _NAMED + 1) for _, found in shown) if several else 0
+    named = _LINE * math.ceil(most / _columns(most)) + 14
+    width = max(_PANEL[0] * len(shown) + 60, 860)
+    remark = wrapped(quantity.remark, width)
+    legend = _LINE * len(quantity.lines) + 22
+    foot = named + legend + _LINE * len(remark)
+    height = 92 + _PANEL[1] + 64 + foot
     page = figure((width, height))
-    page.text(0.5, 1 - 30 / height, literal(title), ha="center", va="center", fontsize=17)
+    head(page, title, quantity.label)
     every = [row[name] for row in rows for name in quantity.lines.values()]
     known = np.array([value for value in every if value is not None], dtype=float)
     step = (width - 60) / len(shown)
     for i, (column, found) in enumerate(shown):
+        left = 84 + i * step
         axis = page.add_axes(
             (
-                (78 + i * step) / width,
-                112 / height,
+                left / width,
+                (foot + 64) / height,
                 (step - 58) / width,
-                (height - 112 - 72) / height,
+                _PANEL[1] / height,
             )
         )
-        _panel(axis, found, quantity, several=len(columns) > 1)
+        _panel(axis, found, quantity)
         axis.set_ylim(*spread(known))
         axis.set_xlabel(axis_label(column), fontsize=13)
         if i == 0:
-            axis.set_ylabel(quantity.axis, fontsize=13)
-    _legend(page, quantity, height)
+            axis.set_ylabel(literal(quantity.axis), fontsize=13)
+        if several:
+            _name_groups(page, found, (left / width, (foot + 10) / height))
+    for i, line in enumerate(reversed(remark)):
+        down = (legend + _LINE * i) / height
+        page.text(0.5, down, literal(line), ha="center", va="bottom", fontsize=11)
+    _legend(page, quantity, any(_failed(row, quantity) for row in rows), height)
     save(page, target)
 
 
-def _legend(page: Any, quantity: ReportedQuantity, height: int) -> None:
-    """What full and broken lines are, below the panels."""
+def _failed(row: TableRow, quantity: ReportedQuantity) -> bool:
+    return row["status"] == FAILED and row.get(quantity.column) is None
+
+
+def _legend(page: Any, quantity: ReportedQuantity, failed: bool, height: int) -> None:
+    """What full and broken lines are, below everything else."""
     from matplotlib.lines import Line2D
 
     handles = [
-        Line2D([], [], color="0.25", linestyle=_STROKES[n % len(_STROKES)], label=caption)
+        Line2D([], [], color="0.25", linestyle=_STROKES[n % len(_STROKES)], label=literal(caption))
         for n, caption in enumerate(quantity.lines)
     ]
+    if failed:
+        handles.append(
+            Line2D([], [], color="0.25", marker="x", linestyle="", label="failed, no value")
+        )
     page.legend(
         handles=handles,
         loc="lower center",
-        bbox_to_anchor=(0.5, 8 / height),
-        ncols=len(handles),
+        bbox_to_anchor=(0.5, 6 / height),
+        ncols=2 if len(handles) > 2 else len(handles),
         fontsize=12,
         frameon=False,
     )
 
 
-def _panel(axis: Any, found: Sequence[Group], quantity: ReportedQuantity, several: bool) -> None:
+def _name_groups(page: Any, found: Sequence[Group], corner: tuple[float, float]) -> None:
+    """What the colours of a panel are, below it; `corner` is its upper left."""
     from matplotlib.lines import Line2D
 
+    handles = [
+        Line2D(
+            [],
+            [],
+            color=_COLORS[g % len(_COLORS)],
+            marker=_MARKS[g % len(_MARKS)],
+            linestyle="",
+            markersize=7,
+            label=literal(group.shared),
+        )
+        for g, group in enumerate(found[:_NAMED])
+    ]
+    if len(found) > _NAMED:
+        handles.append(Line2D([], [], linestyle="", label=f"and {len(found) - _NAMED} more"))
+    page.legend(
+        handles=handles,
+        loc="upper left",
+        bbox_to_anchor=corner,
+        ncols=_columns(len(handles)),
+        fontsize=11,
+        frameon=False,
+        handletextpad=0.2,
+    )
+
+
+def _columns(names: int) -> int:
+    """Columns of the names below a panel."""
+    return 2 if names > _COLUMN else 1
+
+
+def _panel(axis: Any, found: Sequence[Group], quantity: ReportedQuantity) -> None:
     for g, group in enumerate(found):
         color = _COLORS[g % len(_COLORS)]
         for n, name in enumerate(quantity.lines.values()):
@@ -167,20 +228,18 @@ def _panel(axis: Any, found: Sequence[Group], quantity: ReportedQuantity, severa
                 linewidth=1.8,
                 markersize=7,
             )
-    if several:
-        handles = [
-            Line2D(
-                [],
-                [],
-                color=_COLORS[g % len(_COLORS)],
-                marker=_MARKS[g % len(_MARKS)],
-                linestyle="",
-                markersize=7,
-                label=literal(group.shared),
-            )
-            for g, group in enumerate(found[:_NAMED])
-        ]
-        axis.legend(handles=handles, fontsize=11, frameon=False, handletextpad=0.2)
+        lost = [x for x, row in zip(group.x, group.rows, strict=True) if _failed(row, quantity)]
+        # at the foot of the panel: a point that failed has no height
+        axis.plot(
+            lost,
+            [0.03] * len(lost),
+            transform=axis.get_xaxis_transform(),
+            linestyle="",
+            marker="x",
+            color=color,
+            markersize=9,
+            markeredgewidth=2,
+        )
     marks = np.unique(np.concatenate([group.x for group in found]))
     if len(marks) <= 8:
         axis.set_xticks(marks, [f"{mark:g}" for mark in marks])

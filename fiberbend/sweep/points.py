@@ -38,6 +38,9 @@ from fiberbend.sweep.fields import (
 )
 from fiberbend.sweep.file import ReportSpec, SweepFile, contradictions
 
+_OWN_FILES = ("pictures", "fields", "report")
+"""Output that a point leaves where the base case or the sweep file asks for it by name."""
+
 
 @dataclasses.dataclass(frozen=True)
 class Point:
@@ -48,16 +51,23 @@ class Point:
         case: the checked case.
         blocked: the same kept straight under the pressure at which the blocked force is reported,
             or None where the force is not asked for or the model does not give it.
+        given: the case as a file would give it, from which another model's case can be made.
     """
 
     name: str
     case: Case
     blocked: Case | None = None
+    given: dict[str, Any] = dataclasses.field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def cases(self) -> tuple[Case, ...]:
+        """What is solved for it."""
+        return (self.case,) if self.blocked is None else (self.case, self.blocked)
 
     @functools.cached_property
     def digest(self) -> str:
         """Hash of the resolved cases: a result belongs to a point if it has the same."""
-        content = [case.resolved() for case in (self.case, self.blocked) if case is not None]
+        content = [case.resolved() for case in self.cases]
         text = json.dumps(content, sort_keys=True, ensure_ascii=False)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
@@ -77,6 +87,17 @@ class Sweep:
     points: tuple[Point, ...]
     columns: tuple[VariedField, ...]
     report: ReportSpec
+
+    def part(self, chosen: Iterable[Point]) -> Sweep:
+        """The same of some of its points, which stay in their order."""
+        names = {point.name for point in chosen}
+        kept = [index for index, point in enumerate(self.points) if point.name in names]
+        varied = tuple(
+            dataclasses.replace(column, values=tuple(column.values[index] for index in kept))
+            for column in self.columns
+        )
+        points = tuple(self.points[index] for index in kept)
+        return dataclasses.replace(self, points=points, columns=varied)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -122,14 +143,15 @@ def _checked(source: YamlContent, path: Path, settings: Sequence[str]) -> Sweep:
         raise CaseError(problems)
     base = _base(file, source, path, settings)
     points = list(_settings(file))
-    cases = _check_all(base, points, file.report)
+    checked = _check_all(base, points, file.report)
+    cases = [case for case, _ in checked]
     names = labels(list(dict.fromkeys(s.path for point in points for s in point)))
     resolved = [case.resolved() for case in cases]
     found_columns = columns(names, resolved)
     result = []
-    for case, content in zip(cases, resolved, strict=True):
+    for (case, given), content in zip(checked, resolved, strict=True):
         values = {label: value_at(content, field) for field, label in names.items()}
-        result.append(Point(point_name(values), case, _blocked(case, file.report)))
+        result.append(Point(point_name(values), case, blocked_case(case, file.report), given))
     _no_point_twice(result)
     return Sweep(file.title, tuple(result), found_columns, file.report)
 
@@ -203,9 +225,11 @@ def _settings(file: SweepFile) -> Iterator[tuple[_Setting, ...]]:
         yield tuple(setting for part in combination for setting in part)
 
 
-def _check_all(base: _Base, points: list[tuple[_Setting, ...]], report: ReportSpec) -> list[Case]:
-    """The case of every point, or all their problems."""
-    cases: list[Case] = []
+def _check_all(
+    base: _Base, points: list[tuple[_Setting, ...]], report: ReportSpec
+) -> list[tuple[Case, dict[str, Any]]]:
+    """The case of every point, checked and as it is given, or all their problems."""
+    cases: list[tuple[Case, dict[str, Any]]] = []
     wrong: dict[Problem, list[int]] = {}
     for index, settings in enumerate(points):
         try:
@@ -249,7 +273,9 @@ def _merged(
                 yield Problem(f"point {index + 1} ({values})", str(problem))
 
 
-def _case(base: dict[str, Any], settings: tuple[_Setting, ...], report: ReportSpec) -> Case:
+def _case(
+    base: dict[str, Any], settings: tuple[_Setting, ...], report: ReportSpec
+) -> tuple[Case, dict[str, Any]]:
     data = copy.deepcopy(base)
     problems: list[Problem] = []
     for setting in settings:
@@ -259,9 +285,15 @@ def _case(base: dict[str, Any], settings: tuple[_Setting, ...], report: ReportSp
             problems += (Problem(setting.path, str(problem)) for problem in error.problems)
     if problems:
         raise CaseError(problems)
-    added = _request(data, report.angles)
+    added = _request(data, report)
     try:
-        return parse_case(data)
+        case = parse_case(data)
+        if report.force_at is not None and case.straight:
+            # its own history has the force: no value between steps
+            at = _ask(data["output"], "at_pressures", "pressure", "force_at", (report.force_at,))
+            added |= dict.fromkeys(at, "report.force_at")
+            case = parse_case(data)
+        return case, data
     except CaseError as error:
         raise CaseError(
             Problem(added.get(problem.path, problem.path), problem.text)
@@ -269,39 +301,63 @@ def _case(base: dict[str, Any], settings: tuple[_Setting, ...], report: ReportSp
         ) from None
 
 
-def _blocked(case: Case, report: ReportSpec) -> Case | None:
+def blocked_case(case: Case, report: ReportSpec) -> Case | None:
+    """A case kept straight under the pressure at which the blocked force is reported.
+
+    Args:
+        case: the case of a point.
+        report: what the sweep reports.
+
+    Returns:
+        None where the force is not asked for, or the model does not give it so.
+
+    Raises:
+        CaseError: the actuator cannot be kept straight.
+    """
     model = choose_model(case)[0]
     if report.force_at is None or case.straight or not model.gives_blocked_force:
         return None
     data = kept_straight(case.resolved(), show(report.force_at, "pressure"))
-    data |= {"model": model.name, "output": {"pictures": False, "fields": False}}
+    data |= {"model": model.name, "output": dict.fromkeys(_OWN_FILES, False)}
     try:
         return parse_case(data)
     except CaseError as error:
         raise CaseError(Problem("report.force_at", str(p)) for p in error.problems) from None
 
 
-def _request(data: dict[str, Any], angles: tuple[float, ...]) -> dict[str, str]:
-    """Ask a case for the reported angles too, so that their pressures are no interpolation.
+def _request(data: dict[str, Any], report: ReportSpec) -> dict[str, str]:
+    """Ask a case for the reported states, so that none is interpolated, and for no other files.
 
     Returns:
         For each place in the case that this has made, its place in the sweep file.
     """
-    output = data.setdefault("output", {}) if angles else None
-    given = output.setdefault("at_angles", []) if isinstance(output, dict) else None
+    output = data.setdefault("output", {})
+    if not isinstance(output, dict):
+        return {}
+    for name in _OWN_FILES:
+        output.setdefault(name, False)
+    angles = _ask(output, "at_angles", "angle", "angles", report.angles)
+    return angles | _ask(output, "at_pressures", "pressure", "pressures", report.pressures)
+
+
+def _ask(
+    output: dict[str, Any], key: str, kind: str, name: str, values: tuple[float, ...]
+) -> dict[str, str]:
+    """Add the values of a part of the report to those that a case asks for; see `_request`."""
+    given = output.setdefault(key, []) if values else None
     if not isinstance(given, list):
         return {}
     there = set()
     for text in given:
         try:
-            there.add(parse(text, "angle"))
+            there.add(parse(text, kind))
         except ValueError:
             continue
     added = {}
-    for index, angle in enumerate(angles):
-        if angle not in there:
-            added[f"output.at_angles.{len(given)}"] = f"report.angles.{index}"
-            given.append(show(angle, "angle"))
+    for index, value in enumerate(values):
+        if value not in there:
+            added[f"output.{key}.{len(given)}"] = f"report.{name}.{index}"
+            given.append(show(value, kind))
     return added
 
 

@@ -32,6 +32,8 @@ from fiberbend.sweep.points import Point
 
 MARK = "sweep"
 """Key of run.json under which a finished point stands."""
+NOT_RUN = "not run"
+"""Status in the table of a point without a result."""
 _LOCKS = ".locks"
 
 
@@ -53,18 +55,27 @@ class Store:
         Raises:
             CaseError: something else is there, or the folder cannot be made.
         """
+        store = cls.look(path, force)
         try:
-            if path.is_dir() and any(path.iterdir()) and not (path / _LOCKS).is_dir():
-                raise CaseError(
-                    [
-                        Problem(
-                            str(path), "contains no sweep, expected a new folder or that of a sweep"
-                        )
-                    ]
-                )
             (path / _LOCKS).mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise CaseError([Problem(str(path), f"{error.strerror}, expected a folder")]) from None
+        return store
+
+    @classmethod
+    def look(cls, path: Path, force: bool = False) -> Store:
+        """The folder as it is, or is not yet there; nothing is made.
+
+        Raises:
+            CaseError: something else is there.
+        """
+        try:
+            strange = path.exists() and not (path / _LOCKS).is_dir() and any(path.iterdir())
+        except OSError as error:
+            raise CaseError([Problem(str(path), f"{error.strerror}, expected a folder")]) from None
+        if strange:
+            text = "contains no sweep, expected a new folder or that of a sweep"
+            raise CaseError([Problem(str(path), text)])
         return cls(path, force)
 
     def folder(self, point: Point) -> Path:

@@ -3,37 +3,38 @@
 from __future__ import annotations
 
 import csv
-import dataclasses
 import io
 import json
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from analytic.bending import Hemicircle
-from analytic.stress import CALIBRATED_MODULUS
+from analytic.inverse import first_angle
 from fiberbend import columns as col
 from fiberbend.case.case import Case
-from fiberbend.models import lines
+from fiberbend.models.choice import MODELS
 from fiberbend.models.closed_form import analytic_curves, lever_arm
 from fiberbend.results.folder import BLOCKED
-from fiberbend.schema.units import show
+from fiberbend.sweep.fields import VariedField, shown
 from fiberbend.sweep.file import ReportSpec
 from fiberbend.sweep.points import Point, Sweep
-from fiberbend.sweep.store import MARK, Store
+from fiberbend.sweep.quantities import (
+    FORCE,
+    FORCE_MODEL,
+    LINES,
+    STRETCH,
+    ReportedQuantity,
+    TableRow,
+    angle_column,
+    pressure_column,
+)
+from fiberbend.sweep.store import MARK, NOT_RUN, Store
+from fiberbend.sweep.trends import extremes, in_words
 
 History = Sequence[Mapping[str, float | None]]
-TableRow = dict[str, Any]
 
-LINES = {lines.PAPER: "paper", lines.ZERO_FIT: "zero_fit", lines.WINDING: "winding"}
-"""Analytical lines in the table, with their names in it."""
-CAPTIONS = {
-    "paper": f"analytical, eq. (19), μ̄ = {CALIBRATED_MODULUS:g} MPa",
-    "uniform": "analytical, λ = 1 + h θ/L",
-    "paper_force": "analytical, eq. (20)",
-    "winding_force": "analytical, pressure acting up to the winding",
-}
-"""Captions of the analytical lines that are drawn."""
 MODEL_STRETCH = col.CROWN_STRETCH
 """Column of history.csv with the axial stretch of the wall's crown."""
 BLOCKED_COLUMNS = {
@@ -42,73 +43,11 @@ BLOCKED_COLUMNS = {
     "blocked_axis_stretch": col.AXIS_STRETCH,
 }
 """Columns of the table from the history of the body kept straight."""
+PAPER = "paper"
+"""Entry of a case's `compare` that asks for the figures of the paper."""
 _SAME = 1e-6
-NOT_RUN = "not run"
-
-
-@dataclasses.dataclass(frozen=True)
-class ReportedQuantity:
-    """A quantity of the table that is drawn and has its trends listed.
-
-    Attributes:
-        kind: an entry of `ReportSpec.maps`.
-        name: name of its picture without the ending.
-        label: its name in words.
-        unit: its unit, or empty.
-        lines: columns of the table by their captions, the run first, then analytical models.
-    """
-
-    kind: str
-    name: str
-    label: str
-    unit: str
-    lines: dict[str, str]
-
-    @property
-    def axis(self) -> str:
-        """Label of an axis."""
-        return f"{self.label} ({self.unit})" if self.unit else self.label
-
-
-def quantities(report: ReportSpec, rows: Sequence[TableRow]) -> list[ReportedQuantity]:
-    """Quantities of the table of a sweep that can be drawn; columns without values are left out."""
-    solved = sorted({row["solved_by"] for row in rows if row["solved_by"]})
-    run = " and ".join(solved) + " model"
-    result = []
-    for angle in report.angles:
-        lines = {run: pressure_column(angle), CAPTIONS["paper"]: pressure_column(angle, "paper")}
-        label = f"pressure at {math.degrees(angle):.6g}°"
-        result.append(
-            ReportedQuantity("pressure", f"pressure_{degrees(angle)}", label, "kPa", lines)
-        )
-    at = f" at {math.degrees(max(report.angles, key=abs)):.6g}°" if report.angles else ""
-    lines = {run: "greatest_stretch", CAPTIONS["uniform"]: "paper_stretch"}
-    result.append(
-        ReportedQuantity("stretch", "stretch", f"greatest axial stretch λ{at}", "", lines)
-    )
-    if report.force_at is not None:
-        lines = {run: "blocked_force_N"}
-        lines |= {CAPTIONS[line]: f"{line}_N" for line in ("paper_force", "winding_force")}
-        label = f"blocked force at {show(report.force_at, 'pressure')}"
-        result.append(ReportedQuantity("blocked-force", "blocked_force", label, "N", lines))
-    known = {name for row in rows for name, value in row.items() if value is not None}
-    filled = (
-        dataclasses.replace(
-            quantity, lines={c: name for c, name in quantity.lines.items() if name in known}
-        )
-        for quantity in result
-    )
-    return [quantity for quantity in filled if quantity.lines]
-
-
-def degrees(angle: float) -> str:
-    """An angle in rad as part of a column's name, 360deg."""
-    return f"{math.degrees(angle):.6g}deg"
-
-
-def pressure_column(angle: float, line: str = "") -> str:
-    """Column of the pressure at an angle, of the run or of an analytical line."""
-    return f"{line and line + '_'}pressure_{degrees(angle)}_kPa"
+_MOST_ROWS = 20
+"""More points than this are not listed one by one."""
 
 
 def collect(sweep: Sweep, store: Store) -> list[TableRow]:
@@ -131,6 +70,112 @@ def as_csv(rows: Sequence[TableRow]) -> str:
     return text.getvalue()
 
 
+def as_json(
+    title: str,
+    columns: Sequence[VariedField],
+    rows: Sequence[TableRow],
+    quantities: Sequence[ReportedQuantity],
+    pictures: Mapping[str, Sequence[str]],
+    notes: Sequence[str],
+) -> str:
+    """What the table, the trends and the maps of a sweep are, for a program that shows them.
+
+    Args:
+        title: of the sweep.
+        columns: the varied fields.
+        rows: the table.
+        quantities: those of the table, what was asked for first.
+        pictures: files in maps/ of each quantity, by its name.
+        notes: sentences for the reader.
+    """
+    content = {
+        "title": title,
+        "points": len(rows),
+        "status": dict(Counter(row["status"] for row in rows)),
+        "fields": [
+            {"column": field.name, "label": in_words(field), "unit": field.unit, "path": field.path}
+            for field in columns
+        ],
+        "quantities": [
+            {
+                "kind": quantity.kind,
+                "label": quantity.label,
+                "unit": quantity.unit,
+                "column": quantity.column,
+                "caption": quantity.caption,
+                "lines": quantity.lines,
+                "extremes": extremes(columns, rows, quantity),
+                "remark": quantity.remark,
+                "pictures": list(pictures.get(quantity.name, ())),
+            }
+            for quantity in quantities
+        ],
+        "notes": list(notes),
+        "failed": {row["point"]: row["reason"] for row in rows if row["status"] == "failed"},
+    }
+    return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+
+
+def in_brief(
+    columns: Sequence[VariedField], rows: Sequence[TableRow], quantities: Sequence[ReportedQuantity]
+) -> list[str]:
+    """What was asked for at every point, or at the first and the last of many, as lines of text.
+
+    Args:
+        columns: the varied fields.
+        rows: the points to tell of.
+        quantities: those of the table, what was asked for first.
+    """
+    asked = [quantity for quantity in quantities if quantity.kind != STRETCH] or list(quantities)
+    if not asked:
+        return []
+    if len(rows) > _MOST_ROWS:
+        found = [(quantity, extremes(columns, rows, quantity)) for quantity in asked]
+        lines = [f"{q.label}, {q.caption}: {text}" for q, text in found if text]
+    else:
+        heads = [
+            [
+                *(column.heading for column in columns),
+                *(_heading(quantity)[0] for quantity in asked),
+            ],
+            ["" for _ in columns] + [_heading(quantity)[1] for quantity in asked],
+        ]
+        content = [
+            [
+                *(shown(row[column.name]) for column in columns),
+                *(_four(quantity.value(row)) for quantity in asked),
+                "" if row["status"] == "converged" else row["status"],
+            ]
+            for row in rows
+        ]
+        lines = aligned([*([*head, ""] for head in heads), *content])
+        lines += [
+            f"{quantity.label}: {quantity.caption}"
+            for quantity in asked
+            if quantity.caption != asked[0].caption or quantity.kind == FORCE
+        ]
+    return lines + [f"note: {quantity.remark}" for quantity in asked if quantity.remark]
+
+
+def _heading(quantity: ReportedQuantity) -> tuple[str, str]:
+    """Two lines above a column, "pressure" and "at 90°, kPa"."""
+    first, at, rest = quantity.label.partition(" at ")
+    return first, ", ".join(part for part in (f"at {rest}" if at else "", quantity.unit) if part)
+
+
+def _four(value: float | None) -> str:
+    return "–" if value is None else f"{value:.4g}"
+
+
+def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Rows of cells as lines of text whose columns stand under each other."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
+
+
 def _results(point: Point, report: ReportSpec, store: Store) -> TableRow:
     run = store.result(point)
     history = store.history(point) if run is not None else []
@@ -142,6 +187,8 @@ def _results(point: Point, report: ReportSpec, store: Store) -> TableRow:
     }
     for angle in report.angles:
         row[pressure_column(angle)] = where(history, col.ANGLE, math.degrees(angle), col.PRESSURE)
+    for pressure in report.pressures:
+        row[angle_column(pressure)] = where(history, col.PRESSURE, 1e3 * pressure, col.ANGLE)
     row["end_pressure_kPa"] = end.get(col.PRESSURE)
     row["end_angle_deg"] = end.get(col.ANGLE)
     row["greatest_stretch"] = _stretch(history, report)
@@ -150,6 +197,8 @@ def _results(point: Point, report: ReportSpec, store: Store) -> TableRow:
         straight = store.history(point, BLOCKED) if run is not None and point.blocked else history
         for name, column in BLOCKED_COLUMNS.items():
             row[name] = where(straight, col.PRESSURE, 1e3 * report.force_at, column)
+        known = run if row["blocked_force_N"] is not None else None
+        row[FORCE_MODEL] = MODELS[known["model"]].force_named() if known else None
     row |= {name: end.get(name) for name in report.history}
     row |= _analytic(point.case, report)
     for key in ("unknowns", "newton_iterations"):
@@ -192,8 +241,13 @@ def _analytic(case: Case, report: ReportSpec) -> TableRow:
     row: TableRow = {}
     models = analytic_curves(case)
     for key, name in LINES.items():
+        if case.straight or (name == PAPER and PAPER not in case.compare):
+            # the closed forms bend freely
+            continue
         for angle in report.angles:
             row[pressure_column(angle, name)] = _pressure(models.get(key), angle)
+        for pressure in report.pressures:
+            row[angle_column(pressure, name)] = _angle(models.get(key), pressure)
     paper = models.get("paper")
     if paper is not None and report.angles:
         angle = max(report.angles, key=abs)
@@ -216,6 +270,15 @@ def _pressure(model: Hemicircle | None, angle: float) -> float | None:
     except ValueError:
         return None
     return pressure if math.isfinite(pressure) else None
+
+
+def _angle(model: Hemicircle | None, pressure: float) -> float | None:
+    """Angle at a pressure in degrees, None beyond what a closed form can bear."""
+    if model is None:
+        return None
+    low, high = model.angles
+    found = first_angle(model.pressure, pressure, high if pressure > 0 else low)
+    return None if found.end else math.degrees(found.angle)
 
 
 def _cell(value: Any) -> Any:

@@ -3,18 +3,32 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from fiberbend.sweep.fields import VariedField
-from fiberbend.sweep.table import ReportedQuantity, TableRow
+from fiberbend.sweep.fields import VariedField, shown
+from fiberbend.sweep.quantities import ReportedQuantity, TableRow
 from geometry.mesh.data import Floats
 
 INSENSITIVE = 0.01
 """A relative change from the least to the greatest value that counts as none."""
+_WORDS = {
+    "↑": "rises",
+    "↓": "falls",
+    "∩": "has a greatest value in between",
+    "∪": "has a least value in between",
+    "~": "turns more than once",
+    "—": "stays within 1 %",
+}
+_KEY = (
+    "A group of points differs in one field alone. ↑ rises, ↓ falls, ∩ rises, then falls, ∪ falls, "
+    "then rises, ~ turns more than once, — stays within 1 %, each with the number of its groups; "
+    "in brackets the change from the first to the last value.\n"
+)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -64,8 +78,7 @@ def groups(
 
 def described(column: VariedField, value: Any) -> str:
     """A field with its value, "length 160 mm"."""
-    shown = f"{value:g}" if isinstance(value, float) else value
-    return " ".join(str(part) for part in (in_words(column), shown, column.unit) if part)
+    return " ".join(part for part in (in_words(column), shown(value), column.unit) if part)
 
 
 def in_words(column: VariedField) -> str:
@@ -81,16 +94,46 @@ def sign(found: Sequence[Group], name: str) -> str:
         it stays, each with the number of groups where they differ, and the relative changes from
         the least to the greatest value of the field; empty where nothing is known.
     """
-    known = [group.values(name) for group in found]
-    known = [y[~np.isnan(y)] for y in known]
-    known = [y for y in known if len(y) > 1]
+    known = _known(found, name)
     if not known:
         return ""
     counts = Counter(_shape(y) for y in known)
     shapes = ", ".join(f"{shape} {n}" if len(counts) > 1 else shape for shape, n in counts.items())
-    changes = [100 * (y[-1] / y[0] - 1) for y in known]
+    return f"{shapes} ({_changes(known, ' … ')})"
+
+
+def in_a_sentence(column: VariedField, found: Sequence[Group], name: str) -> str:
+    """The same as `sign` in words, "radius 6 to 12 mm: falls in 7 of 9 groups, …"; or empty."""
+    known = _known(found, name)
+    if not known:
+        return ""
+    counts = Counter(_shape(y) for y in known)
+    total = len(known)
+    if len(counts) == 1:
+        where = "" if total == 1 else " in both groups" if total == 2 else f" in all {total} groups"
+        shapes = _WORDS[next(iter(counts))] + where
+    else:
+        (first, most), *others = counts.most_common()
+        shapes = f"{_WORDS[first]} in {most} of {total} groups"
+        shapes += "".join(f", {_WORDS[shape]} in {n}" for shape, n in others)
+    ends = sorted({float(x) for group in found for x in group.x})
+    unit = f" {column.unit}" if column.unit else ""
+    span = f"{in_words(column)} {ends[0]:g} to {ends[-1]:g}{unit}"
+    return f"{span}: {shapes}; from first to last {_changes(known, ' to ')}"
+
+
+def _known(found: Sequence[Group], name: str) -> list[Floats]:
+    """A column along each group, where it has two values or more."""
+    values = [group.values(name) for group in found]
+    values = [y[~np.isnan(y)] for y in values]
+    return [y for y in values if len(y) > 1]
+
+
+def _changes(known: Sequence[Floats], between: str) -> str:
+    """The relative changes from the first to the last value: the least and the greatest."""
+    changes = [100 * (y[-1] / y[0] - 1) if y[0] else math.inf for y in known]
     ends = dict.fromkeys(f"{bound:+.1f} %" for bound in (min(changes), max(changes)))
-    return f"{shapes} ({' … '.join(ends)})".replace("-", "−")
+    return between.join(ends).replace("-", "−")
 
 
 def _shape(y: Floats) -> str:
@@ -103,29 +146,84 @@ def _shape(y: Floats) -> str:
     return ("↑" if rises[0] else "↓") if turns == 0 else ("∩" if rises[0] else "∪")
 
 
-def as_markdown(
-    columns: Sequence[VariedField], rows: Sequence[TableRow], quantities: Sequence[ReportedQuantity]
+def extremes(
+    columns: Sequence[VariedField], rows: Sequence[TableRow], quantity: ReportedQuantity
 ) -> str:
-    """A table of the signs for each quantity.
+    """The least and the greatest value of a quantity with their points, or an empty text."""
+    known = [row for row in rows if quantity.value(row) is not None]
+    if not known:
+        return ""
+    ends = [known[0]]
+    if len(known) > 1:
+        ends = [end(known, key=lambda row: quantity.value(row) or 0.0) for end in (min, max)]
+    return " to ".join(f"{amount(quantity, row)} ({place(columns, row)})" for row in ends)
+
+
+def amount(quantity: ReportedQuantity, row: TableRow) -> str:
+    """The value of a quantity at a point with its unit."""
+    unit = quantity.unit if quantity.unit == "°" else f" {quantity.unit}".rstrip()
+    return f"{quantity.value(row):.4g}{unit}"
+
+
+def place(columns: Sequence[VariedField], row: TableRow) -> str:
+    """The values of a point, "radius 6 mm, wall 1 mm"."""
+    return ", ".join(described(column, row[column.name]) for column in columns)
+
+
+def as_markdown(
+    title: str,
+    columns: Sequence[VariedField],
+    rows: Sequence[TableRow],
+    quantities: Sequence[ReportedQuantity],
+    notes: Sequence[str] = (),
+) -> str:
+    """Each quantity in words and as a table of signs, what was asked for first.
 
     Args:
-        columns: the varied fields; those that are no numbers are left out.
+        title: of the sweep.
+        columns: the varied fields; trends along those that are no numbers are left out.
         rows: the table of the sweep.
-        quantities: those of the table.
+        quantities: those of the table, in their order.
+        notes: sentences at the end.
     """
+    counts = Counter(row["status"] for row in rows)
+    states = ", ".join(f"{number} {status}" for status, number in counts.items())
+    blocks = [f"# {title or 'Sweep'}\n\n{len(rows)} points: {states}.\n"]
     along = [(column, groups(columns, rows, column)) for column in columns if column.numeric]
-    blocks = []
+    along = [(column, found) for column, found in along if found]
     for quantity in quantities:
-        lines = [
-            f"| {quantity.axis}; increase in | groups | " + " | ".join(quantity.lines) + " |",
-            "|" + "---|" * (len(quantity.lines) + 2),
-        ]
-        for column, found in along:
-            if found:
-                values = ", ".join(f"{x:g}" for x in sorted({x for g in found for x in g.x}))
-                cells = [sign(found, name) for name in quantity.lines.values()]
-                lines.append(
-                    f"| {described(column, values)} | {len(found)} | " + " | ".join(cells) + " |"
-                )
-        blocks.append("\n".join(lines) + "\n")
+        blocks.append(_in_words(quantity, columns, rows, along))
+        if along:
+            blocks.append(_signs(quantity, along))
+    if along:
+        blocks.append(_KEY)
+    if notes:
+        blocks.append("".join(f"- {note}\n" for note in notes))
     return "\n".join(blocks)
+
+
+def _in_words(
+    quantity: ReportedQuantity,
+    columns: Sequence[VariedField],
+    rows: Sequence[TableRow],
+    along: Sequence[tuple[VariedField, list[Group]]],
+) -> str:
+    heading = f"{quantity.label[0].upper()}{quantity.label[1:]}"
+    span = extremes(columns, rows, quantity) or "no point has a value"
+    lines = [f"## {heading}", "", f"{quantity.caption}: {span}.", ""]
+    for column, found in along:
+        sentence = in_a_sentence(column, found, quantity.column)
+        lines += [f"- {sentence}."] if sentence else []
+    return "\n".join([*lines, *(["", quantity.remark] if quantity.remark else []), ""])
+
+
+def _signs(quantity: ReportedQuantity, along: Sequence[tuple[VariedField, list[Group]]]) -> str:
+    lines = [
+        f"| {quantity.axis}; increase in | groups | " + " | ".join(quantity.lines) + " |",
+        "|" + "---|" * (len(quantity.lines) + 2),
+    ]
+    for column, found in along:
+        values = ", ".join(f"{x:g}" for x in sorted({x for g in found for x in g.x}))
+        cells = [sign(found, name) for name in quantity.lines.values()]
+        lines.append(f"| {described(column, values)} | {len(found)} | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"

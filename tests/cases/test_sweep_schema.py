@@ -56,10 +56,11 @@ def grid(**changes: Any) -> dict[str, Any]:
 @pytest.mark.parametrize("path", SWEEPS, ids=lambda path: path.stem)
 def test_example_sweeps_are_valid(path: Path) -> None:
     """10 points are those of Table I of Polygerinos et al. 2015, 36 the grid behind Fig. 8."""
-    counts = {"radius_length_wall": 36, "floor_stiffness": 8}
+    counts = {"radius_length_wall": 36, "floor_stiffness": 8, "angle_at_pressure": 9}
+    fields = {"floor_stiffness": 1, "angle_at_pressure": 2}
     sweep = read_sweep(path)
     assert len(sweep.points) == counts.get(path.stem, 10)
-    assert sum(column.numeric for column in sweep.columns) == (1 if "floor_st" in path.stem else 3)
+    assert sum(column.numeric for column in sweep.columns) == fields.get(path.stem, 3)
 
 
 def test_grid_has_every_combination_and_the_last_field_is_fastest(read: Any) -> None:
@@ -227,7 +228,7 @@ BAD: list[tuple[dict[str, Any], list[str]]] = [
         {"report": {"angles": [90], "maps": ["colour"]}},
         [
             'report.angles.0: 90, expected an angle with its unit such as "90 deg"',
-            'report.maps.0: "colour", expected pressure, stretch or blocked-force',
+            'report.maps.0: "colour", expected pressure, angle, blocked-force, stretch or history',
         ],
     ),
     ({"set": {"effects.7.pressure": 1}}, ["set.effects.7: no such entry, the list has 2"]),
