@@ -27,7 +27,7 @@ extensions = [
 ]
 exclude_patterns = ["_build"]
 html_math_renderer = "pictures"
-myst_enable_extensions = ["dollarmath"]
+myst_enable_extensions = ["deflist", "dollarmath"]
 myst_heading_anchors = 3
 
 autodoc_member_order = "bysource"
@@ -40,6 +40,28 @@ html_copy_source = False
 html_show_sphinx = False
 
 
+def names_of_python() -> str:
+    """Everything that `import fiberbend` offers, as directives of autodoc."""
+    import inspect
+
+    import fiberbend
+
+    offered = getattr(fiberbend, "__all__", ["run"])
+    lines: list[str] = []
+    for name in (name for name in offered if not name.startswith("_")):
+        what = getattr(fiberbend, name)
+        if inspect.isclass(what):
+            lines += [f".. autoclass:: fiberbend.{name}", "   :members:", ""]
+        elif callable(what):
+            lines += [f".. autofunction:: fiberbend.{name}", ""]
+    return "\n".join(lines)
+
+
 def setup(app: Any) -> None:
-    """Run the notebook before its page is read."""
-    app.connect("builder-inited", lambda _: notebook_page.write())
+    """Write what is made from code before the pages are read."""
+
+    def write(_: Any) -> None:
+        notebook_page.write()
+        (notebook_page.PAGE.parent / "python_names.txt").write_text(names_of_python(), "utf-8")
+
+    app.connect("builder-inited", write)

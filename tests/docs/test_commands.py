@@ -101,7 +101,7 @@ def test_marks_are_read(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     slow, failing, script, file = blocks(page)
-    assert slow.slow and slow.commands() == ["make    demo"]
-    assert failing.code == 1 and failing.commands() == ["false"]
+    assert (slow.slow, slow.commands()) == (True, ["make    demo"])
+    assert (failing.code, failing.commands()) == (1, ["false"])
     assert not script.slow
     assert (file.file, file.text) == ("a.csv", "a,b\n")

@@ -66,8 +66,10 @@ def test_the_notebook_has_no_outputs() -> None:
 def test_the_site_builds_with_the_notebook_run_and_without_a_warning(tmp_path: Path) -> None:
     pytest.importorskip("sphinx", reason="make tools installs it")
     built = subprocess.run(
-        [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html"]
-        + ["-d", tmp_path / "trees", ROOT / "docs", tmp_path / "site"],
+        [
+            *(sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html"),
+            *("-d", tmp_path / "trees", ROOT / "docs", tmp_path / "site"),
+        ],
         capture_output=True,
         text=True,
         check=False,
