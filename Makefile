@@ -10,7 +10,8 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup tools demo sweep test verify hard survive speed tables check format docs schema clean
+.PHONY: help setup tools demo sweep test verify hard survive speed tables check format docs pictures schema \
+    clean
 
 help: ## list the commands
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -67,6 +68,9 @@ docs: tools ## write generated pages and the drawing, build the site docs/_build
 	$(BIN)/python bench/actuator_drawing.py
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html
 	@echo "docs: open docs/_build/html/index.html"
+
+pictures: setup ## do what the tutorial says and take its pictures; a minute
+	$(BIN)/python -m bench.tutorial_pictures
 
 schema: setup ## rewrite the JSON schema that editors use
 	$(BIN)/fiberbend schema > cases/case.schema.json

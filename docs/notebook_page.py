@@ -40,7 +40,13 @@ def executed(notebook: Path = NOTEBOOK) -> Any:
         # this Python's kernel, whatever kernels the user has
         write_kernel_spec(str(kernels / "python3"))
         specs = KernelSpecManager(kernel_dirs=[str(kernels)], ensure_native_kernel=False)
-        manager = AsyncKernelManager(kernel_name="python3", kernel_spec_manager=specs)
+        # sockets in this folder instead of ports that the machine could listen to
+        manager = AsyncKernelManager(
+            kernel_name="python3",
+            kernel_spec_manager=specs,
+            transport="ipc",
+            connection_file=str(Path(folder) / "kernel.json"),
+        )
         here = Path(folder) / "work"
         here.mkdir()
         path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
