@@ -167,7 +167,9 @@ def bent(ax: Any) -> None:
     for z in (0.0, LENGTH):
         end = np.array(_bent(np.array(z), 0.0, radius))
         ax.plot([centre[0], end[0]], [centre[1], end[1]], color=INK, lw=0.7, ls=":")
-    ax.add_patch(Arc(centre, 30, 30, theta1=90 - math.degrees(angle), theta2=90, color=INK, lw=1.2))
+    ax.add_patch(
+        Arc((0.0, -radius), 30, 30, theta1=90 - math.degrees(angle), theta2=90, color=INK, lw=1.2)
+    )
     ax.text(centre[0] + 12.5, centre[1] + 11.5, "θ", fontsize=14, color=INK)
     tip = _bent(np.array(LENGTH + CAP), middle, radius)
     ax.plot(*tip, "o", color="#0b5394", ms=6)

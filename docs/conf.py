@@ -51,7 +51,9 @@ def names_of_python() -> str:
     for name in (name for name in offered if not name.startswith("_")):
         what = getattr(fiberbend, name)
         if inspect.isclass(what):
-            lines += [f".. autoclass:: fiberbend.{name}", "   :members:", ""]
+            # a case has a page of its own, an error needs no more than its name
+            ours = what.__module__.startswith("fiberbend.api")
+            lines += [f".. autoclass:: fiberbend.{name}", *["   :members:"] * ours, ""]
         elif callable(what):
             lines += [f".. autofunction:: fiberbend.{name}", ""]
     return "\n".join(lines)

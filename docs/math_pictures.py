@@ -16,11 +16,12 @@ SIZE = 100.0
 LETTERS = {Outline.MOVETO: "M", Outline.LINETO: "L", Outline.CURVE3: "Q", Outline.CURVE4: "C"}
 
 
-def picture(formula: str) -> str:
+def picture(formula: str, scale: float = 1.0) -> str:
     """A formula as an SVG that takes size and colour of the text around it.
 
     Args:
         formula: LaTeX, as far as matplotlib's mathtext reads it.
+        scale: size of its letters over that of the text around it.
 
     Raises:
         ValueError: what mathtext cannot read.
@@ -29,6 +30,7 @@ def picture(formula: str) -> str:
     box = outline.get_extents()
     left, right = min(box.x0, 0) - 2, box.x1 + 2
     low, high = min(box.y0, 0) - 2, max(box.y1, SIZE / 2) + 2
+    em = scale / SIZE
     drawn = []
     for points, code in outline.iter_segments():
         if code == Outline.CLOSEPOLY:
@@ -42,7 +44,7 @@ def picture(formula: str) -> str:
     return (
         f'<svg role="img" aria-label="{html.escape(formula, quote=True)}" '
         f'viewBox="{left:.1f} {-high:.1f} {right - left:.1f} {high - low:.1f}" '
-        f'style="height:{(high - low) / SIZE:.3f}em;vertical-align:{low / SIZE:.3f}em;'
+        f'style="height:{(high - low) * em:.3f}em;vertical-align:{low * em:.3f}em;'
         f'max-width:100%;fill:currentColor"><path d="{"".join(drawn)}"/></svg>'
     )
 
@@ -53,10 +55,10 @@ def _inline(translator: Any, node: nodes.Element) -> None:
 
 
 def _block(translator: Any, node: nodes.Element) -> None:
-    lines = [line for line in node.astext().split(r"\\") if line.strip()]
-    shown = "".join(
-        f'<div style="margin:0.6em 0 0.6em 2em">{picture(line)}</div>' for line in lines
-    )
+    # mathtext has no display style: fractions in full size, and room beside the sign of an integral
+    text = node.astext().replace(r"\frac", r"\dfrac").replace(r"int ", r"int\; ")
+    lines = [picture(line, 1.15) for line in text.split(r"\\") if line.strip()]
+    shown = "".join(f'<div style="margin:0.6em 0 0.6em 2em">{line}</div>' for line in lines)
     translator.body.append(f'<div class="formula">{shown}</div>')
     raise nodes.SkipNode
 
