@@ -46,17 +46,18 @@ def names_of_python() -> str:
 
     import fiberbend
 
-    offered = getattr(fiberbend, "__all__", ["run"])
-    lines: list[str] = []
-    for name in (name for name in offered if not name.startswith("_")):
-        what = getattr(fiberbend, name)
-        if inspect.isclass(what):
-            # a case has a page of its own, an error needs no more than its name
-            ours = what.__module__.startswith("fiberbend.api")
-            lines += [f".. autoclass:: fiberbend.{name}", *["   :members:"] * ours, ""]
-        elif callable(what):
-            lines += [f".. autofunction:: fiberbend.{name}", ""]
-    return "\n".join(lines)
+    offered = {name: getattr(fiberbend, name) for name in getattr(fiberbend, "__all__", ["run"])}
+    functions, results, others = [], [], []
+    for name, what in offered.items():
+        if inspect.isfunction(what):
+            functions += [f".. autofunction:: fiberbend.{name}", ""]
+        elif inspect.isclass(what) and what.__module__.startswith("fiberbend.api"):
+            results += [f".. autoclass:: fiberbend.{name}", "   :members:", ""]
+        elif inspect.isclass(what):
+            # nobody makes these by calling them: a case comes from a file, an error from a check
+            words = inspect.cleandoc(what.__doc__ or "").partition("\n")[0]
+            others += [f".. py:class:: fiberbend.{name}", "   :no-index:", "", f"   {words}", ""]
+    return "\n".join([*functions, *results, *others])
 
 
 def setup(app: Any) -> None:
