@@ -4,7 +4,7 @@ A fenced block `console` or `bash` has commands, `python` a script, `yaml` a cas
 A comment on the line above a block says more of it:
 
     <!-- slow -->            not run: its command lines are checked word by word
-    <!-- fails 1 -->         its commands end with this exit code
+    <!-- fails 1 -->         its commands end with this exit code, and print what the block shows
     <!-- file: trial.csv --> its text is that of a file in the reader's folder
     <!-- from: PATH -->      the picture below is the one that the commands leave there
 """
@@ -50,6 +50,11 @@ class Block:
     slow: bool = False
     code: int = 0
     file: str = ""
+
+    def shown(self) -> list[str]:
+        """What a console shows beside the commands, in pieces where `…` leaves something out."""
+        lines = [line for line in self.text.splitlines() if not line.startswith("$ ")]
+        return [" ".join(piece.split()) for piece in " ".join(lines).split("…") if piece.strip()]
 
     def commands(self) -> list[str]:
         """Its command lines, those that go on after a backslash as one; no comments, no output."""
@@ -196,7 +201,7 @@ class Reader:
         check = Checker(self.folder)
         scripts = []
         for block in blocks(page):
-            where = f"{page.relative_to(ROOT)}:{block.line}"
+            where = f"{page.name}:{block.line}"
             if block.file:
                 path = self.folder / block.file
                 path.parent.mkdir(parents=True, exist_ok=True)
@@ -206,7 +211,9 @@ class Reader:
                     if block.slow:
                         check.command(command, where)
                     else:
-                        self.run(command, block.code)
+                        printed = " ".join(self.run(command, block.code).split())
+                        for piece in block.shown() if block.code else ():
+                            assert piece in printed, f"{where}: {piece!r} is not in {printed!r}"
             elif block.language == "python":
                 check.script(block.text, where)
                 if not block.slow:

@@ -83,6 +83,15 @@ def test_a_command_that_fails_is_found(line: str, tmp_path: Path) -> None:
         Reader(tmp_path / "reader").run(block.commands()[0], block.code)
 
 
+def test_a_message_that_is_not_printed_is_found(tmp_path: Path) -> None:
+    page = ROOT / "docs" / "when_it_fails.md"
+    made = tmp_path / "page.md"
+    wrong = page.read_text(encoding="utf-8").replace("actuator.wall: 3, expected", "wall: 3, wants")
+    made.write_text(wrong[: wrong.index("A key does not exist")], encoding="utf-8")
+    with pytest.raises(AssertionError, match="wall: 3, wants"):
+        Reader(tmp_path / "reader").follow(made)
+
+
 @pytest.mark.parametrize("text", ["    fiberbend run\n", "```\nfiberbend run\n```\n"])
 def test_a_block_without_a_language_is_refused(text: str, tmp_path: Path) -> None:
     page = tmp_path / "page.md"
