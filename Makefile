@@ -10,13 +10,17 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo sweep test verify hard survive speed tables check format docs schema clean
+.PHONY: help setup tools demo sweep test verify hard survive speed tables check format docs pictures schema \
+    clean
 
 help: ## list the commands
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
 
 setup: ## install what is needed; under a second when nothing is to do
 	@./setup.sh
+
+tools: setup ## install what docs, notebook and the test in a browser need as well
+	@./setup.sh tools
 
 demo: setup ## bend the baseline actuator: curves, pictures and fields in runs/free_bending
 	$(MPIRUN) $(BIN)/fiberbend run cases/free_bending.yaml --out runs/free_bending --overwrite
@@ -25,7 +29,7 @@ SWEEP ?= cases/sweeps/radius_length_wall.yaml
 sweep: setup ## solve SWEEP=cases/sweeps/….yaml, resumable; make -j2 sweep or JOBS=2: in parallel
 	$(BIN)/fiberbend sweep $(SWEEP) -j $(or $(JOBS),$(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
-test: setup ## run the tests, two at a time
+test: tools ## run the tests, two at a time
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(RANKS) --dist worksteal
 
 verify: setup ## run the slow convergence ladders against exact solutions
@@ -58,12 +62,19 @@ format: setup ## put the code in its format
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-docs: setup ## rewrite the tables of columns in README and docs
+docs: tools ## write generated pages and the drawing, build the site docs/_build/html
 	$(BIN)/python bench/columns.py
+	$(BIN)/python bench/pages.py
+	$(BIN)/python bench/actuator_drawing.py
+	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html
+	@echo "docs: open docs/_build/html/index.html"
+
+pictures: setup ## do what the tutorial says and take its pictures; a minute
+	$(BIN)/python -m bench.tutorial_pictures
 
 schema: setup ## rewrite the JSON schema that editors use
 	$(BIN)/fiberbend schema > cases/case.schema.json
 
 clean: ## remove .venv, caches and runs
-	rm -rf .venv runs build *.egg-info .pytest_cache .mypy_cache .ruff_cache
+	rm -rf .venv runs build docs/_build docs/_generated *.egg-info .pytest_cache .mypy_cache .ruff_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

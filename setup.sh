@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Installs Debian's FEniCSx and the Python environment .venv; does nothing when both are in place.
+# `./setup.sh tools` adds what the documentation, the notebook and the test in a browser need.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -10,8 +11,12 @@ mapfile -t packages < apt-packages.txt
 inputs=(pyproject.toml requirements.txt constraints.txt apt-packages.txt setup.sh)
 key=$({ pwd; cat "${inputs[@]}"; } | sha256sum)
 
+TOOLS_STAMP=.venv/tools.stamp
+mapfile -t tool_packages < apt-packages-docs.txt
+
+# Which of its arguments are not installed.
 missing_packages() {
-    comm -23 <(printf '%s\n' "${packages[@]}" | sort) \
+    comm -23 <(printf '%s\n' "$@" | sort) \
         <(dpkg-query -W -f '${db:Status-Abbrev}${Package}\n' 2>/dev/null | sed -n 's/^ii //p' | sort -u)
 }
 
@@ -32,23 +37,56 @@ pip() {
     .venv/bin/python -m pip install -qq --disable-pip-version-check --no-compile "$@"
 }
 
-command -v dpkg-query >/dev/null || fail "this is not a Debian machine; Debian 12 is what is supported."
-missing=$(missing_packages)
-if [[ -z $missing && -x .venv/bin/fiberbend && -f $STAMP && $(<"$STAMP") == "$key" ]]; then
-    exit 0
-fi
+# Sets as_root to what makes a command root's; fails where nothing does.
+become_root() {
+    as_root=()
+    [[ $(id -u) -eq 0 ]] && return
+    command -v sudo >/dev/null && { sudo -n true 2>/dev/null || [[ -t 0 ]]; } || return 1
+    as_root=(sudo)
+}
 
+install_tools() {
+    local tools_key missing
+    tools_key=$({ pwd; cat setup.sh requirements.txt requirements-docs.txt; } | sha256sum)
+    if ! [[ -f $TOOLS_STAMP && $(<"$TOOLS_STAMP") == "$tools_key" ]]; then
+        echo "setup: installing what documentation and notebook need into .venv"
+        pip --no-deps --requirement requirements-docs.txt ||
+            fail "pip could not install the packages of requirements-docs.txt."
+        printf '%s\n' "$tools_key" > "$TOOLS_STAMP"
+    fi
+    # Only the test in a browser needs these: without them it is skipped, all else works.
+    missing=$(missing_packages "${tool_packages[@]}")
+    [[ -n $missing ]] || return 0
+    if ! become_root; then
+        echo "setup: the test in a browser will be skipped: installing $(echo $missing) needs root" \
+            "or sudo. An administrator can run:  apt-get install --no-install-recommends" \
+            $missing >&2
+        return 0
+    fi
+    echo "setup: installing Debian packages for the test in a browser:" $missing
+    apt install $missing || { apt update && apt install $missing; } ||
+        echo "setup: the test in a browser will be skipped: apt-get could not install" $missing >&2
+}
+
+finish() {
+    [[ $mode == base ]] || install_tools
+    exit 0
+}
+
+mode=${1:-base}
+[[ $# -le 1 && $mode =~ ^(base|tools)$ ]] || fail "usage: ./setup.sh [tools]"
+command -v dpkg-query >/dev/null || fail "this is not a Debian machine; Debian 12 is what is supported."
 log=$(mktemp)
 trap 'rm -f "$log"; kill $(jobs -p) 2>/dev/null || true' EXIT
-as_root=()
+missing=$(missing_packages "${packages[@]}")
+if [[ -z $missing && -x .venv/bin/fiberbend && -f $STAMP && $(<"$STAMP") == "$key" ]]; then
+    finish
+fi
+
 if [[ -n $missing ]]; then
-    if [[ $(id -u) -ne 0 ]]; then
-        if ! command -v sudo >/dev/null || ! { sudo -n true 2>/dev/null || [[ -t 0 ]]; }; then
-            fail "these Debian packages are missing, and installing them needs root or sudo. Let an
+    become_root ||
+        fail "these Debian packages are missing, and installing them needs root or sudo. Let an
 administrator run:  apt-get install --no-install-recommends $(echo $missing)"
-        fi
-        as_root=(sudo)
-    fi
     echo "setup: installing Debian packages, some minutes:" $missing
     apt update || fail "apt-get update failed; is the network up?"
 fi
@@ -60,6 +98,7 @@ echo "setup: installing Python packages into .venv"
 if ! grep -qsF "$PWD/.venv" .venv/pyvenv.cfg || ! .venv/bin/python -c '' 2>/dev/null; then
     $PYTHON -m venv --clear --system-site-packages .venv
 fi
+rm -f "$STAMP" "$TOOLS_STAMP"
 # Beside apt, which takes minutes: a complete list without dependencies needs nothing of Debian's.
 pip --no-deps --requirement requirements.txt &
 python_packages=$!
@@ -79,3 +118,4 @@ env -u PYTHONDONTWRITEBYTECODE .venv/bin/python -c \
     fail "the installed packages do not import."
 printf '%s\n' "$key" > "$STAMP"
 echo "setup: done"
+finish

@@ -1,4 +1,4 @@
-"""Write the tables of columns in README.md and docs/crosscheck.md from `fiberbend.columns`."""
+"""Write the tables of columns in docs/ from `fiberbend.columns`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fiberbend.models.choice import MODELS
 
 ROOT = Path(__file__).resolve().parent.parent
 BEGIN, END = "<!-- columns, by `make docs` -->", "<!-- end of columns -->"
-PAGES = {"README.md": False, "docs/crosscheck.md": True}
+PAGES = {"docs/columns.md": False, "docs/crosscheck.md": True}
 """Pages, and whether they list the columns of other models beside a run or the run's own."""
 
 

@@ -22,9 +22,9 @@ STIFFNESS = 66.0
 """MPa/mm: what a case with roof and post takes for these materials by default."""
 HEAD = """# Tip force by contact
 
-`OPENBLAS_NUM_THREADS=1 python bench/contact.py` makes this page. Obstacles are rigid, without
-friction, and only push. Winding smeared, elements of 4 mm; floor 2 mm, pitch 3 mm and caps of
-15 mm, of which the paper states the last only.
+`OPENBLAS_NUM_THREADS=1 python bench/contact.py` makes this page. Obstacles are rigid, have no
+friction, and only push. The winding is smeared, elements are 4 mm long. The floor has 2 mm, the
+pitch 3 mm, the caps 15 mm. The paper states only the last of these.
 """
 
 
@@ -41,10 +41,10 @@ def fig11(actuators: Sequence[Fig11]) -> list[str]:
         "",
         "![the baseline between roof and post, side view](images/contact_blocked.png)",
         "",
-        "F L_f lies near κ P and at half the moment of a section kept straight. The nearness is a "
-        "coincidence: rubber inside the winding passes the pressure on, so that the acting area "
-        "reaches the winding (straight section and cell); but the tip's soft cap, which turns, "
-        "passes only half of that moment on to the post, and the roof takes the rest.",
+        "F L_f is close to κ P, and half of the moment of a section that is kept straight. The "
+        "first is a coincidence. Rubber inside the winding passes the pressure on, so the "
+        "acting area reaches up to the winding (straight section and cell). But the tip's soft "
+        "cap turns and passes only half of that moment on to the post. The roof takes the rest.",
         "",
     ]
     for found in actuators:
@@ -139,18 +139,19 @@ def causes(actuators: Sequence[Fig11]) -> list[str]:
     return [
         "## Why held and pushed differ",
         "",
-        "- The crown is round. Held, the rims of the strip carry, which lie w²/(8 r) under the "
-        "highest line (0.18 mm for w = 4 mm and r = 11 mm); a level roof has to squeeze the soft "
-        "sheath before it reaches them. Pushed is less by a force that hardly grows (0.03 to "
-        "0.04 N with a radius of 8 mm), a share that falls.",
-        "- Strips can pull. Held, the roof keeps the middle up; pushed, the middle sags away from "
-        "it, and a body that is bent the other way takes more moment. Pushed is more by a share "
-        "that grows, and wins with a radius of 6 mm.",
-        "- Obstacles yield: the next table but one.",
+        "- The crown is round. In the held case the rims of the strip carry, which are w²/(8 r) "
+        "below the highest line (0.18 mm for w = 4 mm and r = 11 mm). A level roof has to "
+        "squeeze the soft sheath before it reaches them. So the pushed force is smaller by an "
+        "amount that hardly grows (0.03 to 0.04 N with a radius of 8 mm), and its share falls.",
+        "- Strips can pull. In the held case the roof keeps the middle up. In the pushed case "
+        "the middle sags away from it, and a body that is bent the other way takes more moment. "
+        "So the pushed force is greater by a share that grows, and with a radius of 6 mm this "
+        "effect prevails.",
+        "- Obstacles yield a little; see the last row of the table of tops.",
         "",
-        "Upward force of the roof, N, and moment of roof and post beyond half the length, N mm, "
-        "which is that of a section kept straight, and more by its share of the free bend where "
-        "the body sags:",
+        "The next table has the upward force of the roof in N, and the moment of roof and post "
+        "beyond half the length in N mm. This moment is that of a section kept straight. Where "
+        "the body sags it is greater, by its share of the free bend.",
         "",
         *table(
             [
@@ -164,8 +165,9 @@ def causes(actuators: Sequence[Fig11]) -> list[str]:
             ],
             _roof(actuators),
         ),
-        "Narrower strips and a level top take the loss away; what is left there is the softness "
-        "of the obstacles. Chamber of 24 mm with caps of 6 mm, where the share is greatest, N "
+        "Narrower strips and a level top remove the loss. What is left is the softness of the "
+        "obstacles. "
+        "Chamber of 24 mm with caps of 6 mm, where the share is greatest, N "
         "and %:",
         "",
         *table(
@@ -208,10 +210,11 @@ def stiffness() -> list[str]:
     return [
         "## What the obstacles' stiffness costs",
         "",
-        "A penalty: under a pressure p an obstacle yields by p/k. By default k "
-        "is a hundred times the modulus by the thickness of what touches, that is of the sheath, "
-        "7.6 MPa/mm here; between roof and post, where nothing else yields, with the modulus of "
-        "the wall, 66 MPa/mm. The short actuator at 60 kPa; off in % of the value for k → ∞. "
+        "Contact is a penalty: under a pressure p an obstacle yields by p/k. By default k is a "
+        "hundred times the modulus over the thickness of what touches. This is the sheath, so k "
+        "is 7.6 MPa/mm here. Between roof and post, where nothing else yields, the modulus is "
+        "that of the wall, and k is 66 MPa/mm. "
+        "The short actuator at 60 kPa; off in % of the value for k → ∞. "
         "Between roof and post:",
         "",
         *table(["k, MPa/mm", "tip, N", "roof, N", "tip off, %", "roof off, %"], _off(held)),
@@ -228,9 +231,10 @@ def grasps() -> tuple[list[str], Solved, Solved]:
         "## Meeting an object",
         "",
         "`cases/grasp.yaml`: a bar of 50 mm across the way of the tip; `cases/grasp_table.yaml`: a "
-        "table 40 mm under the floor. Force on the body, N; nothing before touch. A march sees a "
-        "touch coming and ends its step there, and starts anew from the linear response after "
-        "it: this, and obstacles no stiffer than needed, spare most failed steps.",
+        "table 40 mm under the floor. Force on the body, N; nothing before touch. The "
+        "load stepping sees a touch coming, ends its step there, and starts again from the "
+        "linear response. Together with obstacles that are no stiffer than needed, this avoids "
+        "most failed steps.",
         "",
         "![an actuator around a bar and on a table](images/contact_grasp.png)",
         "",

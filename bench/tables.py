@@ -81,7 +81,7 @@ def free_bending() -> list[str]:
         ]
         rows.append(["… its middle, P at a uniform angle", "", "", "", *share])
     return [
-        "## Free bending: P in kPa at 90, 180, 270 and 360°",
+        "# Free bending: P in kPa at 90, 180, 270 and 360°",
         "",
         "'Its middle' is the pressure at which L times the curvature of the middle half would "
         "reach the angle (proportionally from the state at hand): what models of uniform bending "
@@ -112,7 +112,7 @@ def winding() -> list[str]:
             row += [result.last("pressure_kPa"), float(small["angle_deg"])]
         rows.append(row)
     return [
-        "## Discrete winding, pitch 3 mm: P at 90° and θ at 2 kPa against the elements' length",
+        "# Discrete winding, pitch 3 mm: P at 90° and θ at 2 kPa against the elements' length",
         "",
         f"From the smeared value ({SECTION[90]} kPa) toward the cell's ({CELL[90]} kPa) as the "
         "elements resolve the turns. A ribbon of the fiber's width converges; a line goes on "
@@ -167,7 +167,7 @@ def blocked() -> list[str]:
             ]
         )
     return [
-        "## Blocked tip at 100 kPa",
+        "# Blocked tip at 100 kPa",
         "",
         "κ P is eq. (21) of Polygerinos et al. 2015; an independent section model kept straight "
         "gives 94 N mm. The tip is guided, not glued: its cap rotates (column) and the sheath "
@@ -225,7 +225,7 @@ def causes() -> list[str]:
             ]
         )
     return [
-        "## Blocked tip at 100 kPa: what the tip force depends on",
+        "# Blocked tip at 100 kPa: what the tip force depends on",
         "",
         "Winding smeared, elements of 3 mm. Kept straight, the section carries 94 N mm (an "
         "independent section model); κ P of eq. (21) is 54.24 N mm.",
