@@ -211,7 +211,7 @@ class _Run:
             kernels.versions(),
         )
         run |= record.of_effects(case, recorder.rows) | record.beside(check)
-        run |= _on_rank_0(self.comm, lambda: record.strain(case, assembly, recording.last))
+        run |= launch.on_rank_0(self.comm, lambda: record.strain(case, assembly, recording.last))
         if self.folder is not None:
             self.folder.write_history(rows)
             self.folder.write_run(**run)
