@@ -10,11 +10,13 @@ from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
 from fiberbend.schema.problems import CaseError, Problem
 
-_FINE = 3
-"""Elements through a thickness, so that arcs are drawn round."""
-
 if TYPE_CHECKING:
     from fiberbend.drawing.blueprint import Blueprint
+    from fiberbend.states.snapshot import ModelMesh
+
+_FINE = 3
+"""Elements through a thickness, so that arcs are drawn round."""
+_LAYERS = 40
 
 
 def facts(case: Case) -> Iterator[tuple[str, str]]:
@@ -57,6 +59,7 @@ def blueprint(case: Case) -> Blueprint:
     import dataclasses
 
     from fiberbend.drawing.blueprint import Blueprint
+    from fiberbend.results.scenery import scenery
     from geometry.bodies.extrude import section_quadrilaterals
 
     actuator = convert.dimensions(case.actuator)
@@ -65,7 +68,6 @@ def blueprint(case: Case) -> Blueprint:
         section = section_quadrilaterals(actuator, size)
     except ValueError as error:
         raise CaseError([Problem("actuator", str(error))]) from None
-    shapes = [effect.obstacle_shapes(actuator) for effect in case.effects]
     turns = case.turns
     return Blueprint(
         title=case.title,
@@ -76,8 +78,31 @@ def blueprint(case: Case) -> Blueprint:
         curves=[curve for effect in case.effects for curve in effect.curves(actuator)],
         winding=_winding(case),
         pitch=None if turns is None else turns.pitch,
-        obstacles={name: shape for found in shapes for name, shape in found.items()},
-        space=None,
+        scenery=scenery(case),
+        space=_in_space(case),
+    )
+
+
+def _in_space(case: Case) -> ModelMesh:
+    """The whole body at rest in elements that are long: everything is straight."""
+    import dataclasses
+
+    from fiberbend.states.snapshot import ModelMesh
+    from geometry.bodies.extrude import hexahedral_body
+
+    actuator, site = convert.dimensions(case.actuator), convert.site(case)
+    size = dataclasses.replace(
+        convert.mesh_size(case.mesh, True), section=1, axial=case.actuator.length / _LAYERS
+    )
+    mesh = hexahedral_body(actuator, dataclasses.replace(size, element="hexahedron"))
+    laid = (effect.laid(mesh, actuator) for effect in case.effects)
+    turns = case.turns
+    return ModelMesh(
+        mesh=mesh,
+        materials={name: site.materials[name] for name in mesh.regions},
+        fibers=next((fibers for fibers in laid if fibers is not None), None),
+        smeared=turns is not None and not turns.discrete,
+        title=case.title,
     )
 
 

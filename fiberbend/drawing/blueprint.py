@@ -6,14 +6,18 @@ matplotlib is imported where it is used.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.page import COLORS, NAMES, Image, figure, literal, save
-from fiberbend.states.obstacles import Bar, Box, Shape, Sheet
-from fiberbend.states.snapshot import Target
+from fiberbend.drawing.obstacles import Scenery
+from fiberbend.drawing.page import COLORS, NAMES, figure, literal, nice_above, save
+from fiberbend.drawing.panel import Panel
+from fiberbend.drawing.renderer import Renderer
+from fiberbend.drawing.rest import rest_image, write_on
+from fiberbend.states.obstacles import Bar, Box, Sheet
+from fiberbend.states.snapshot import ModelMesh, Target
 from geometry.mesh.data import Floats, MeshData, facet_positions
 
 SIZE = (1400, 1000)
@@ -40,8 +44,8 @@ class Blueprint:
         curves: axes of the fibers, (n, 3) each, mm.
         winding: words on the winding, empty without one.
         pitch: of the winding, mm, or None.
-        obstacles: by their names.
-        space: the actuator drawn in space, or None where nothing can be drawn.
+        scenery: the obstacles.
+        space: the body in space.
     """
 
     title: str
@@ -52,8 +56,8 @@ class Blueprint:
     curves: Sequence[Floats]
     winding: str
     pitch: float | None
-    obstacles: Mapping[str, Shape]
-    space: Image | None
+    scenery: Scenery
+    space: ModelMesh
 
     def save(self, target: Target) -> None:
         """Draw the page as PNG into a path or a file open for writing bytes."""
@@ -61,10 +65,7 @@ class Blueprint:
         page.text(0.5, 0.972, literal(f"{self.title}: at rest"), ha="center", fontsize=17)
         self._side(page.add_axes((0.04, 0.56, 0.92, 0.38)))
         self._cut(page.add_axes((0.03, 0.08, 0.43, 0.45)))
-        if self.space is not None:
-            axes = page.add_axes((0.48, 0.08, 0.50, 0.45))
-            axes.imshow(self.space)
-            axes.set_axis_off()
+        self._oblique(page, (0.48, 0.08, 0.50, 0.45))
         self._legend(page)
         save(page, target)
 
@@ -90,6 +91,20 @@ class Blueprint:
                 found.append((name, low[i], high[i]))
         return found
 
+    def _oblique(self, page: Any, box: tuple[float, float, float, float]) -> None:
+        """The body in space, cut open step by step, with axes and scale."""
+        with Renderer() as renderer:
+            rest = rest_image(self.space, renderer, self.scenery, 2 * round(box[2] * SIZE[0]))
+        axes = page.add_axes(box)
+        axes.imshow(rest.image)
+        axes.set_axis_off()
+        axes.autoscale(False)
+        size = (rest.image.shape[1], rest.image.shape[0])
+        panel = Panel(page, axes, rest.image, rest.view, size, (0, 0))
+        # the other drawings have the dimensions
+        write_on(panel, dataclasses.replace(rest, lengths=[]), self.space, self.scenery)
+        panel.scale(box[0] * SIZE[0], box[1] * SIZE[1] - 10, nice_above(70 / panel.per_mm))
+
     # --- from the side -------------------------------------------------------------------------
 
     def _side(self, axes: Any) -> None:
@@ -114,7 +129,9 @@ class Blueprint:
         _dimension(axes, (0.0, row), (self.length, row), f"length {self.length:g} mm")
         _dimension(axes, (self.length, row), (end, row), f"cap {self.cap:g} mm")
         if self.pitch is not None and self.pitch < self.length:
-            boxes = [shape.high[1] for shape in self.obstacles.values() if isinstance(shape, Box)]
+            boxes = [
+                shape.high[1] for shape in self.scenery.shapes.values() if isinstance(shape, Box)
+            ]
             above, at = max([top, *boxes]) + 0.15 * high, 0.1 * self.length
             _arrow(axes, (at, above), (at + self.pitch, above))
             axes.text(at + 1.5 * self.pitch, above, f"pitch {self.pitch:g} mm", **_TEXT)
@@ -144,7 +161,7 @@ class Blueprint:
     def _extent(self) -> tuple[Floats, Floats]:
         """Least and greatest z and y of the obstacles that have an end of their own, mm."""
         points = [np.zeros((1, 3))]
-        for shape in self.obstacles.values():
+        for shape in self.scenery.shapes.values():
             if not isinstance(shape, Sheet):
                 points.append(np.asarray(shape.surface(np.zeros((1, 3))).points))
             else:
@@ -169,7 +186,7 @@ class Blueprint:
         from matplotlib.patches import Circle, Rectangle
 
         look: dict[str, Any] = {"facecolor": _OBSTACLE, "edgecolor": _OBSTACLE, "alpha": 0.55}
-        for name, shape in self.obstacles.items():
+        for name, shape in self.scenery.shapes.items():
             label: dict[str, Any] = {"color": _OBSTACLE, "fontsize": 12, "ha": "center"}
             if isinstance(shape, Box):
                 (_, y0, z0), (_, y1, z1) = shape.low, shape.high
@@ -246,7 +263,7 @@ class Blueprint:
         ]
         if self.winding:
             handles.append(Line2D([], [], label=self.winding, **_THREAD))
-        if self.obstacles:
+        if self.scenery.shapes:
             handles.append(Patch(facecolor=_OBSTACLE, alpha=0.55, label="rigid obstacles"))
         page.legend(
             handles=handles, loc="lower center", ncols=len(handles), frameon=False, fontsize=12

@@ -53,7 +53,7 @@ def test_every_obstacle_is_drawn(name: str, tmp_path: Path) -> None:
     assert colors is not None
     # the obstacles' own brown over white, alone in the upper half
     brown = sum(n for n, (r, g, b) in colors if 15 < r - g < 80 and 25 < g - b < 70)
-    has = bool(blueprint(read_case(case)).obstacles)
+    has = bool(blueprint(read_case(case)).scenery.shapes)
     assert (brown > 300) == has
 
 
