@@ -114,7 +114,7 @@ def _lines(case: Case, model: MeshedModel, model_mesh: ModelMesh, path: Path) ->
     yield f"surfaces: {', '.join(name for name, pairs in mesh.facets.items() if len(pairs))}"
     if model_mesh.lines is not None:
         count = len({*model_mesh.lines.curve.tolist()})
-        yield f"fibers: {count} curve{'s' if count > 1 else ''}"
+        yield f"fibers: {count} curve{'s' if count > 1 else ''} with nodes of their own"
     elif model_mesh.fibers is not None:
         yield "fibers: none, the winding is spread over the surface 'winding'"
 
