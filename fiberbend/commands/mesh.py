@@ -7,8 +7,9 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from fiberbend.process import signals
 from fiberbend.reader.arguments import CaseFile, Changes
-from fiberbend.running.launch import say
+from fiberbend.running import launch
 
 _OUT = (
     "File to write, lengths in mm: .msh (gmsh: a physical group for each name), .vtu (VTK: an "
@@ -24,7 +25,7 @@ def mesh(
     out: Annotated[Path, Parameter(help=_OUT)],
     settings: Changes = (),
     overwrite: Annotated[bool, Parameter(help="Replace a file that is there.")] = False,
-) -> None:
+) -> int:
     """Write the mesh of a case's model with its regions, surfaces and fibers.
 
     A section writes its quadrilaterals, a cell its slice, a body its hexahedra or tetrahedra; where
@@ -34,5 +35,12 @@ def mesh(
     from fiberbend.results.mesh_file import check_target, write_mesh_file
 
     check_target(out, overwrite)
-    for line in write_mesh_file(read_case(case, settings), out, overwrite):
-        say(line)
+    checked = read_case(case, settings)
+    try:
+        with signals.raising():
+            lines = write_mesh_file(checked, out, overwrite)
+    except KeyboardInterrupt as error:
+        return launch.stopped(signals.stop_of(error))
+    for line in lines:
+        launch.say(line)
+    return 0

@@ -55,10 +55,10 @@ def write_mesh_file(case: Case, path: Path, overwrite: bool = False) -> list[str
         What was written, and what the file leaves out, a line each.
 
     Raises:
-        CaseError: a file that cannot be written, or a model without elements.
-        MeshError: gmsh failed.
+        CaseError: a file that cannot be written, a model without elements, or gmsh failed.
     """
     from fiberbend.states.mesh_file import write_mesh
+    from geometry.mesh.errors import MeshError
 
     check_target(path, overwrite)
     model = choose_model(case)[0]
@@ -67,7 +67,10 @@ def write_mesh_file(case: Case, path: Path, overwrite: bool = False) -> list[str
         names = [name for name, other in MODELS.items() if other.elements() is not None]
         text = f"{model.name} has no elements, expected {', '.join(names[:-1])} or {names[-1]}"
         raise CaseError([Problem("model", text)])
-    model_mesh = mesh_of(case, elements)
+    try:
+        model_mesh = mesh_of(case, elements)
+    except MeshError as error:
+        raise CaseError([Problem("mesh", str(error))]) from None
     handle, part = remains.begin(path)
     os.close(handle)
     whole = Path(part).with_suffix(path.suffix)
@@ -111,7 +114,7 @@ def _lines(case: Case, model: MeshedModel, model_mesh: ModelMesh, path: Path) ->
     yield f"surfaces: {', '.join(name for name, pairs in mesh.facets.items() if len(pairs))}"
     if model_mesh.lines is not None:
         count = len({*model_mesh.lines.curve.tolist()})
-        yield f"fibers: {count} curve{'s' if count > 1 else ''}"
+        yield f"fibers: {count} curve{'s' if count > 1 else ''} with nodes of their own"
     elif model_mesh.fibers is not None:
         yield "fibers: none, the winding is spread over the surface 'winding'"
 

@@ -68,12 +68,10 @@ class Halves:
         Args:
             fields: of the half, as `split_nodes` copies its nodes.
         """
-        whole, copies = self._whole, self._copies
-        half_copies = split_nodes(self._half.mesh)
-        source = np.empty(len(copies.node), dtype=np.int64)
-        source[copies.cells.ravel()] = self.at_cells(half_copies.cells).ravel()
+        whole, source = self._whole, self._source
         stress = fields.cauchy[source]
-        shear = np.where(whole.image, -1.0, np.where(whole.plane, 0.0, 1.0))[copies.node]
+        shear = np.where(whole.image, -1.0, np.where(whole.plane, 0.0, 1.0))
+        shear = shear[self._copies.node]
         stress[:, 0, 1:] *= shear[:, None]
         stress[:, 1:, 0] *= shear[:, None]
         return NodalFields(
@@ -92,6 +90,14 @@ class Halves:
     @functools.cached_property
     def _copies(self) -> SplitNodes:
         return split_nodes(self._whole.mesh)
+
+    @functools.cached_property
+    def _source(self) -> Ints:
+        """The copy of a node of the half that each copy of the whole is an image of."""
+        source = np.empty(len(self._copies.node), dtype=np.int64)
+        cells = self.at_cells(split_nodes(self._half.mesh).cells)
+        source[self._copies.cells.ravel()] = cells.ravel()
+        return source
 
 
 def _both_windings(fibers: EmbeddedFibers, half: MeshData) -> tuple[Ints, EmbeddedFibers]:

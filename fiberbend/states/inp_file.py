@@ -93,8 +93,8 @@ def _remarks(parts: Named, mesh: MeshData, element: str, count: int) -> Iterator
         yield text + shape
     if len(parts.fibers):
         yield (
-            f"fibers are straight trusses {TRUSS} with nodes of their own, two for a piece within "
-            "an element: *EMBEDDED ELEMENT ties them to the body"
+            f"fibers are straight trusses {TRUSS}, two for a piece within an element: "
+            "*EMBEDDED ELEMENT ties them to the body"
         )
     yield (
         f"incompressible rubber wants hybrid elements in Abaqus: {element}H in place of {element}"

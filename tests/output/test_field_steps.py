@@ -10,6 +10,8 @@ import pyvista as pv
 
 from fiberbend import run
 from fiberbend.columns import ANGLE, PRESSURE, STEP
+from fiberbend.models.choice import choose_model
+from fiberbend.plan.estimate import drawing_seconds
 from fiberbend.plan.plan import make_plan
 from fiberbend.reader.reader import parse_case, read_case
 from fiberbend.results.fields import obstacles
@@ -82,3 +84,14 @@ def test_a_plan_says_which_settings_of_fields_are_not_used() -> None:
     hand["effects"][1]["winding"]["pattern"] = "single-helix-right"
     # half a turn makes its section whole anyway
     assert not_used(hand) == "output.field_halves"
+
+
+def test_a_plan_counts_the_time_of_all_fields() -> None:
+    def seconds(**output: Any) -> float:
+        case = parse_case(section(**output))
+        return drawing_seconds(case, choose_model(case)[0])
+
+    few, every = seconds(), seconds(field_steps="all")
+    assert every > few > 0
+    assert seconds(field_halves="both") == pytest.approx(2 * few)
+    assert seconds(fields=False, field_steps="all") == 0.0

@@ -65,7 +65,10 @@ def test_fields_of_the_file(tmp_path: Path) -> None:
     state = dataclasses.replace(
         snapshot(scene, 45.0), multiplier=np.full(scene.mesh.cells.shape, -0.25)
     )
-    write_grid(body_grid(scene, state), tmp_path / "body.vtu")
+    grid = body_grid(scene, state)
+    write_grid(grid, tmp_path / "body.vtu")
+    # the file is in single precision, what is written stays as it is
+    assert grid.point_data["displacement_mm"].dtype == np.float64
     read = pv.read(tmp_path / "body.vtu")
     warped = read.points + read.point_data["displacement_mm"]
     assert warped == pytest.approx(bent(read.points, SHORT.length, np.pi / 4), abs=1e-4)
