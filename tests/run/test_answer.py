@@ -458,4 +458,4 @@ def test_a_resumed_run_goes_on_with_its_log(tmp_path: Path) -> None:
     assert both.startswith(first)
     assert "resumed after step" in both[len(first) :]
     run_case(case, folder, overwrite=True)
-    assert "resumed" not in (folder / "run.log").read_text(encoding="utf-8")
+    assert "resumed after" not in (folder / "run.log").read_text(encoding="utf-8")
