@@ -57,6 +57,8 @@ def blas() -> dict[str, Any] | None:
 def commit(source: Path) -> str | None:
     """The git commit of a source tree, read without git; None where it is not one.
 
+    What has been changed since that commit does not show.
+
     Args:
         source: folder that has `.git` in it.
     """

@@ -305,7 +305,7 @@ def _strain(run: Mapping[str, Any]) -> Iterator[Entry]:
         if found.get(f"{axis}_mm") is not None
     ]
     strain = f"{100 * found['nominal']:.0f} %, logarithmic {found['logarithmic']:.3f}"
-    yield Entry("greatest strain", strain, f"{found['place']}; at rest {', '.join(at)}")
+    yield Entry("greatest strain", strain, f"at the end, {found['place']}; at rest {', '.join(at)}")
 
 
 # --- how far to trust it ----------------------------------------------------------------------

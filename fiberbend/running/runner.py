@@ -88,6 +88,7 @@ def run_case(
         )
         result = _solve(case, folder, progress, comm, resume, force)
         progress.log(f"{result.status}{': ' if result.reason else ''}{result.reason}")
+        progress.log(f"results in {out}")
         return result
 
 

@@ -405,7 +405,8 @@ def test_a_section_answers_from_its_folder_as_on_the_screen(tmp_path: Path) -> N
     log = (tmp_path / "run" / "run.log").read_text(encoding="utf-8").splitlines()
     for line in (*printed, "mesh …", "882 unknowns: 36 steps"):
         assert any(line in entry for entry in log), line
-    assert log[-1].endswith("  converged")
+    assert log[-2].endswith("  converged")
+    assert log[-1].endswith(f"  results in {tmp_path / 'run'}")
 
 
 def test_a_verbose_run_says_phases_counts_and_comparisons(tmp_path: Path) -> None:
@@ -457,4 +458,4 @@ def test_a_resumed_run_goes_on_with_its_log(tmp_path: Path) -> None:
     assert both.startswith(first)
     assert "resumed after step" in both[len(first) :]
     run_case(case, folder, overwrite=True)
-    assert "resumed" not in (folder / "run.log").read_text(encoding="utf-8")
+    assert "resumed after" not in (folder / "run.log").read_text(encoding="utf-8")
