@@ -52,8 +52,7 @@ def run(
         settings: changes to the case, such as `["actuator.wall=3 mm"]` or
             `{"actuator.wall": "3 mm"}`.
         resume: go on with an interrupted run in `out`.
-        states: keep the states of a run without `out`; some 50 to 120 bytes for a node and load
-            step.
+        states: keep the states of a run without `out`; some 50 bytes for a node and load step.
 
     Returns:
         What was computed; look at its `status` and `reason`: a run that failed or stopped early

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import shutil
+import os
+import tempfile
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
@@ -334,9 +335,7 @@ class Result(RunResult):
         return RunData(name, self.case.resolved(), self.rows)
 
     def report(self, out: Path | str | None = None) -> Path:
-        """Write the run's page, one HTML file that needs no network.
-
-        Under mpirun rank 0 writes.
+        """Write the run's page, one HTML file that needs no network; under mpirun from rank 0.
 
         Args:
             out: the file; report.html in the run folder unless given.
@@ -345,29 +344,37 @@ class Result(RunResult):
             Where it is.
 
         Raises:
-            CaseError: a run without a folder, and no `out`.
+            CaseError: a run without a folder, and no `out`; or states that do not fit the case.
         """
-        from fiberbend.report.run_page import write_report
+        from fiberbend.report.run_page import report, write_report
 
-        if out is None and self.folder is None:
+        if self.folder is not None and out is None:
+            write_report(RunFolder(self.folder, rank() == 0), self.case, self.rows, self.run)
+            return self.folder / REPORT
+        if out is None:
             text = "a run without a folder, expected the name of a file"
             raise CaseError([Problem("out", text)])
-        path = self.folder or self.kept_in
-        if path is None:
-            text = "a run without folder and states, expected a run with `out`"
-            raise CaseError([Problem("report", text)])
-        folder = RunFolder(path, writes=rank() == 0)
-        if self.folder is None:
-            # the page offers them as downloads
-            folder.write_case(self.case)
-            folder.write_history(self.rows)
-            folder.write_run(**self.run)
-        write_report(folder, self.case, self.rows, self.run)
-        if out is None:
-            return path / REPORT
-        if folder.writes:
-            shutil.copyfile(path / REPORT, out)
-        return Path(out)
+        target = Path(out)
+        if rank() == 0:
+            with tempfile.TemporaryDirectory() as nothing:
+                path = self.folder or self.kept_in or Path(nothing)
+                if self.folder is None:
+                    # the page contains them as downloads
+                    folder = RunFolder(path, durable=False)
+                    folder.write_case(self.case)
+                    folder.write_history(self.rows)
+                    folder.write_run(**self.run)
+                page = report(path, self.case, self.rows, self.run, links_to(self.folder, target))
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(page, encoding="utf-8")
+        return target
+
+
+def links_to(folder: Path | None, page: Path) -> str:
+    """What leads from a page to a folder, "runs/finger/"; empty without one, and in it."""
+    if folder is None or folder.resolve() == page.resolve().parent:
+        return ""
+    return Path(os.path.relpath(folder.resolve(), page.resolve().parent)).as_posix() + "/"
 
 
 def _along(state: Kept, key: str) -> float:

@@ -114,6 +114,27 @@ class Sweep:
             raise CaseError([Problem("point", text)])
         return self.points[str(named[0]["point"])]
 
+    def report(self, out: Path | str | None = None) -> Path:
+        """Write the sweep's page, one HTML file that needs no network.
+
+        Args:
+            out: the file; report.html in the folder of the sweep unless given.
+
+        Returns:
+            Where it is.
+
+        Raises:
+            CaseError: the sweep has no table yet.
+        """
+        from fiberbend.api.result import REPORT, links_to
+        from fiberbend.report.sweep_page import sweep_report
+
+        target = self.folder / REPORT if out is None else Path(out)
+        page = sweep_report(self.folder, links=links_to(self.folder, target))
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(page, encoding="utf-8")
+        return target
+
     def __len__(self) -> int:
         return len(self.rows)
 

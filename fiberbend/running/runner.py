@@ -33,6 +33,7 @@ from fiberbend.running import launch, messages, record, restart
 from fiberbend.running.assembly import Assembly, assemble
 from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording, ended, shows_states, unmet
+from fiberbend.running.launch import on_rank_0 as _on_rank_0
 from fiberbend.running.progress import Progress
 from fiberbend.running.warm import SectionStates, section_guides, section_states
 from fiberbend.schema.problems import CaseError
@@ -109,7 +110,7 @@ def _solve(
     if model is None:
         from fiberbend.running.analytic import run_analytic
 
-        return launch.on_rank_0(comm, lambda: run_analytic(case, folder, progress))  # type: ignore[no-any-return]
+        return _on_rank_0(comm, lambda: run_analytic(case, folder, progress))  # type: ignore[no-any-return]
     if model.shared:
         whole = _whole(case)
         # asked now: later the half body takes of the memory that is free
@@ -125,7 +126,7 @@ def _solve(
             return run.go(False)
     # too small to share: one rank solves it
     alone = _Run(case, model, folder, progress, MPI.COMM_SELF, scratch)
-    return launch.on_rank_0(comm, lambda: alone.go(False))  # type: ignore[no-any-return]
+    return _on_rank_0(comm, lambda: alone.go(False))  # type: ignore[no-any-return]
 
 
 def _whole(case: Case) -> Case:
@@ -172,7 +173,7 @@ class _Run:
         # before this run takes of the memory that is free
         known = doubts(case)
         progress.phase("mesh")
-        mesh = launch.on_rank_0(self.comm, lambda: self._mesh(again))
+        mesh = _on_rank_0(self.comm, lambda: self._mesh(again))
         section = self._section()
         progress.phase("compile")
 
@@ -286,9 +287,7 @@ class _Run:
         if not (self.model.ends and section_guides(self.case)):
             return None
         self.progress.phase("section")
-        states: SectionStates | None = launch.on_rank_0(
-            self.comm, lambda: section_states(self.case)
-        )
+        states: SectionStates | None = _on_rank_0(self.comm, lambda: section_states(self.case))
         return states
 
     def _recording(self, assembly: Assembly, again: bool) -> tuple[Recorder, Recording]:
@@ -350,7 +349,7 @@ class _Run:
             assert model is not None
             return _Run(beside, model, None, Progress(quiet=True), MPI.COMM_SELF).go(False)
 
-        check: Check = launch.on_rank_0(
+        check: Check = _on_rank_0(
             self.comm,
             lambda: check_run(self.case, self.model, rows, solve, known),
         )

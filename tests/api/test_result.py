@@ -331,7 +331,7 @@ def test_run_refuses_what_it_cannot_do() -> None:
     assert "out: nothing" in refusal(fiberbend.run, section(), resume=True)
 
 
-def test_report_and_answer_are_asked_of_their_own_modules(
+def test_report_is_written_by_its_own_module(
     bent: Result, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     import sys
@@ -339,21 +339,27 @@ def test_report_and_answer_are_asked_of_their_own_modules(
 
     given: list[Any] = []
 
-    def write_report(target: Any, case: Any, rows: Any, run: Any) -> None:
-        given.append((case, rows, run))
-        assert (target.path / "history.csv").exists()
-        target.write_text("report.html", "page")
+    def report(path: Path, case: Any, rows: Any, run: Any, links: str = "") -> str:
+        given.append((path, case, rows, run, links))
+        assert all((path / name).exists() for name in ("history.csv", "run.json", "mesh.npz"))
+        return "page"
+
+    def write_report(target: Any, *of: Any) -> None:
+        target.write_text("report.html", report(target.path, *of))
 
     module = types.ModuleType("fiberbend.report.run_page")
-    module.write_report = write_report  # type: ignore[attr-defined]
+    module.report, module.write_report = report, write_report  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "fiberbend.report.run_page", module)
-    loaded = fiberbend.load(folder)
+    shutil.copytree(folder, tmp_path / "run")
+    loaded = fiberbend.load(tmp_path / "run")
     assert isinstance(loaded, Result)
-    assert loaded.report() == folder / "report.html"
-    assert loaded.report(tmp_path / "one.html").read_text() == "page"
+    assert loaded.report() == tmp_path / "run" / "report.html"
+    assert loaded.report().read_text() == "page"
+    assert loaded.report(tmp_path / "pages" / "one.html").read_text() == "page"
+    assert given[-1][4] == "../run/"
     assert "out: a run without a folder" in refusal(bent.report)
     assert bent.report(str(tmp_path / "two.html")).read_text() == "page"
-    assert given[-1] == (bent.case, bent.rows, bent.run)
+    assert given[-1] == (bent.kept_in, bent.case, bent.rows, bent.run, "")
 
 
 def test_plot_is_drawn_by_its_own_module(
