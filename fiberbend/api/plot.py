@@ -23,7 +23,8 @@ from fiberbend.api.runs import (
     words_of,
 )
 from fiberbend.drawing.overlay import Curve, draw_overlay
-from fiberbend.drawing.page import Style, own_style, save
+from fiberbend.drawing.page import own_style, save
+from fiberbend.drawing.style import Style
 from fiberbend.process import remains
 from fiberbend.results.folder import CASE_FILE, FILES
 from fiberbend.schema.problems import CaseError, Problem, found

@@ -55,7 +55,7 @@ def plot(
         open: Show the figure.
     """
     from fiberbend.api.plot import Plot, select, write
-    from fiberbend.drawing.page import Style
+    from fiberbend.drawing.style import Style
 
     if not runs:
         raise CaseError([Problem("RUN", "none, expected the folder of a run or of a sweep")])

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fiberbend import columns as col
-from fiberbend.drawing.page import Style, literal
+from fiberbend.drawing.page import literal
+from fiberbend.drawing.style import Style
 from geometry.mesh.data import Floats
 
 BLUE, RED = "#1f5a99", "#c0392b"
