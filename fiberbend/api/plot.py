@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import io
+import itertools
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,12 +16,15 @@ from fiberbend.api.runs import (
     SweepData,
     axis_label,
     check_column,
+    common_label,
     names_of,
     read_source,
     unit_of,
+    words_of,
 )
 from fiberbend.drawing.overlay import Curve, draw_overlay
-from fiberbend.drawing.page import Style, own_style, save
+from fiberbend.drawing.page import own_style, save
+from fiberbend.drawing.style import Style
 from fiberbend.process import remains
 from fiberbend.results.folder import CASE_FILE, FILES
 from fiberbend.schema.problems import CaseError, Problem, found
@@ -32,6 +36,7 @@ PAPER = Style("pdf", width=85.0, dpi=300.0, font_size=8.0)
 """One column of a journal."""
 Source = Path | str | RunData
 """A run or sweep folder, or a run that is in no folder."""
+Columns = tuple[str, ...]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -39,19 +44,19 @@ class Plot:
     """What a figure shows.
 
     Attributes:
-        x: column along the lower axis.
+        x: columns along the lower axis, of one unit.
         y: columns along the left axis, of one unit.
         curves: runs first, measured points last.
     """
 
-    x: str
+    x: tuple[str, ...]
     y: tuple[str, ...]
     curves: tuple[Curve, ...]
 
     @property
     def name(self) -> str:
         """Name of a file for it, without an ending: "pressure_angle"."""
-        return "_".join(_short(name) for name in (self.x, *self.y))
+        return "_".join(_short(name) for name in (self.x[0], *self.y))
 
     def draw(self, style: Style) -> Any:
         """A matplotlib figure.
@@ -59,14 +64,10 @@ class Plot:
         Raises:
             CaseError: the page is too small for its text.
         """
-        up = axis_label(self.y[0])
-        if len(self.y) > 1:
-            up = " and ".join(axis_label(name).rsplit(" (", 1)[0] for name in self.y)
-            unit = unit_of(self.y[0])
-            up = f"{up} ({unit})" if unit else up
+        up = axis_label(self.y[0]) if len(self.y) == 1 else common_label(self.y)
         try:
             with own_style():
-                return draw_overlay(self.curves, axis_label(self.x), up, style)
+                return draw_overlay(self.curves, axis_label(self.x[0]), up, style)
         except ValueError as error:
             width, height = (25.4 * inch for inch in style.inches)
             text = f"{width:.4g} mm × {height:.4g} mm at {style.font_size:g} pt: {error}"
@@ -76,7 +77,7 @@ class Plot:
 
 def plot(
     runs: Source | Sequence[Source],
-    x: str = "",
+    x: str | Sequence[str] = "",
     y: str | Sequence[str] = "",
     measured: Path | str | Sequence[Path | str] = (),
     target: Path | str | None = None,
@@ -88,7 +89,8 @@ def plot(
     Args:
         runs: run folders, sweep folders, or runs without a folder.
         x: column of history.csv along the lower axis, or of a sweep's sweep.csv; the pressure
-            unless given.
+            unless given. Several of one unit, such as "pressure_kPa" and "section_kPa", show a run
+            beside other models.
         y: one or several columns of one unit; by default the tip force of a blocked tip, the force
             of contact of a body that touches something, and the bending angle of any other run.
         measured: CSV files of measured points with the columns x and y.
@@ -113,7 +115,7 @@ def plot(
 
 def select(
     runs: Source | Sequence[Source],
-    x: str = "",
+    x: str | Sequence[str] = "",
     y: str | Sequence[str] = "",
     measured: Path | str | Sequence[Path | str] = (),
     labels: Sequence[str] = (),
@@ -125,28 +127,26 @@ def select(
     ]
     if not sources:
         raise CaseError([Problem("runs", "none, expected the folder of a run or of a sweep")])
-    asked = tuple(filter(None, [y] if isinstance(y, str) else y))
-    names = [x, *asked] if x else [*asked]
+    across, up = (tuple(filter(None, [c] if isinstance(c, str) else c)) for c in (x, y))
     all_runs = [run for s in sources for run in (s.points if isinstance(s, SweepData) else [s])]
     in_runs = {name for run in all_runs for name in run.columns}
     sweeps = [source for source in sources if isinstance(source, SweepData)]
     if sweeps and any(
-        name not in in_runs and any(name in s.header for s in sweeps) for name in names
+        name not in in_runs and any(name in s.header for s in sweeps) for name in across + up
     ):
-        x, asked, curves = _of_tables(sources, x, asked)
+        across, up, curves = _of_tables(sources, across, up)
     else:
-        x, asked, curves = _of_runs(all_runs, x, asked)
+        across, up, curves = _of_runs(all_runs, across, up)
     files = [measured] if isinstance(measured, Path | str) else list(measured)
     case = all_runs[0].case if all_runs else None
     for file in map(Path, files):
         label = "measured" if len(files) == 1 else f"measured, {file.stem}"
-        across, up = zip(*_measured(file, x, asked, case), strict=True)
-        curves.append(Curve(label, across, up, measured=True))
+        curves.append(_curve(label, _measured(file, across, up, case), measured=True))
     if len(labels) > len(curves):
         text = f"{len(labels)} labels, expected at most {len(curves)}, one for each curve"
         raise CaseError([Problem("labels", text)])
     named = [dataclasses.replace(c, label=text) for c, text in zip(curves, labels, strict=False)]
-    return Plot(x, asked, (*named, *curves[len(named) :]))
+    return Plot(across, up, (*named, *curves[len(named) :]))
 
 
 def write(figure: Any, target: Path, style: Style) -> None:
@@ -177,8 +177,8 @@ def _owned(folder: Path) -> bool:
 
 
 def _of_runs(
-    runs: Sequence[RunData], x: str, y: tuple[str, ...]
-) -> tuple[str, tuple[str, ...], list[Curve]]:
+    runs: Sequence[RunData], x: Columns, y: Columns
+) -> tuple[Columns, Columns, list[Curve]]:
     """Curves of the histories of runs."""
     if not y:
         leading = {run.leading: run.name for run in runs}
@@ -190,29 +190,29 @@ def _of_runs(
     if not x:
         # where other loads act at one pressure, there is nothing to see over it
         inflated = any(len({*run.pairs(col.PRESSURE, col.PRESSURE)}) > 1 for run in runs)
-        x = col.PRESSURE if inflated else col.STEP
-        x = col.ANGLE if y == (col.PRESSURE,) else x
-    _one_unit(y)
+        x = (col.PRESSURE,) if inflated else (col.STEP,)
+        x = (col.ANGLE,) if y == (col.PRESSURE,) else x
+    _one_unit(x, y)
     for run in runs:
-        for place, name in (("x", x), *(("y", name) for name in y)):
+        for place, name in _places(x, y):
             check_column(place, name, run.columns, f"the history of {run.name}")
     curves = []
     for run, label in zip(runs, names_of(runs), strict=True):
-        for name in y:
-            pairs = run.pairs(x, name)
+        for along, name in itertools.product(x, y):
+            pairs = run.pairs(along, name)
             if not pairs:
-                text = f"{found(name)}, no row of {run.name} has it beside {x}"
+                text = f"{found(name)}, no row of {run.name} has it beside {along}"
                 raise CaseError([Problem("y", f"{text}, expected columns of the same rows")])
-            across, up = zip(*pairs, strict=True)
             parts = [label] if len(runs) > 1 else []
-            parts += [axis_label(name).rsplit(" (", 1)[0]] if len(y) > 1 else []
-            curves.append(Curve(", ".join(parts) or label, across, up))
+            parts += [run.teller(along)] if len(x) > 1 else []
+            parts += [words_of(name)] if len(y) > 1 else []
+            curves.append(_curve(", ".join(parts) or label, pairs))
     return x, y, curves
 
 
 def _of_tables(
-    sources: Sequence[RunData | SweepData], x: str, y: tuple[str, ...]
-) -> tuple[str, tuple[str, ...], list[Curve]]:
+    sources: Sequence[RunData | SweepData], x: Columns, y: Columns
+) -> tuple[Columns, Columns, list[Curve]]:
     """Curves of the tables of sweeps."""
     curves = []
     for source in sources:
@@ -222,58 +222,70 @@ def _of_tables(
             )
             raise CaseError([Problem(source.name, text)])
         where = f"{TABLE} of {source.name}"
-        x = x or next(iter(source.varied), "")
+        x = x or tuple(source.varied[:1])
         if not y:
             raise CaseError(
                 [Problem("y", f"not given, expected one of {', '.join(source.numbers)}")]
             )
-        for place, name in (("x", x), *(("y", name) for name in y)):
+        for place, name in _places(x, y):
             check_column(place, name, source.numbers, where)
-        for name in y:
-            for shared, pairs in source.curves(x, name).items():
+        for along, name in itertools.product(x, y):
+            for shared, pairs in source.curves(along, name).items():
                 parts = [source.name] if len(sources) > 1 else []
-                parts += [axis_label(name).rsplit(" (", 1)[0]] if len(y) > 1 else []
+                parts += [words_of(along)] if len(x) > 1 else []
+                parts += [words_of(name)] if len(y) > 1 else []
                 parts += [shared] if shared else []
-                across, up = zip(*pairs, strict=True)
-                curves.append(Curve(", ".join(parts) or source.name, across, up))
-    _one_unit(y)
+                curves.append(_curve(", ".join(parts) or source.name, pairs))
+    _one_unit(x, y)
     if not curves:
         raise CaseError([Problem("y", f"{found(y[0])}, no point has it, expected solved points")])
     return x, y, curves
 
 
-def _one_unit(y: Sequence[str]) -> None:
-    units = {name: unit_of(name) for name in y}
-    if len({*units.values()}) > 1:
-        given = ", ".join(f"{name} in {unit or 'no unit'}" for name, unit in units.items())
-        raise CaseError([Problem("y", f"{given}, expected columns of one unit")])
+def _curve(label: str, pairs: Sequence[tuple[float, float]], measured: bool = False) -> Curve:
+    across, up = zip(*pairs, strict=True)
+    return Curve(label, across, up, measured)
+
+
+def _places(x: Columns, y: Columns) -> list[tuple[str, str]]:
+    return [*(("x", name) for name in x), *(("y", name) for name in y)]
+
+
+def _one_unit(x: Columns, y: Columns) -> None:
+    for place, names in (("x", x), ("y", y)):
+        units = {name: unit_of(name) for name in names}
+        if len({*units.values()}) > 1:
+            given = ", ".join(f"{name} in {unit or 'no unit'}" for name, unit in units.items())
+            raise CaseError([Problem(place, f"{given}, expected columns of one unit")])
 
 
 def _measured(
-    file: Path, x: str, y: Sequence[str], case: Mapping[str, Any] | None
+    file: Path, x: Columns, y: Columns, case: Mapping[str, Any] | None
 ) -> list[tuple[float, float]]:
-    """Measured points: as a case reads them where it can, other columns by their names."""
+    """Measured points: as a case reads them where it can, other columns by their names.
+
+    Of several columns those are measured that are named first.
+    """
     from analytic.table import read_columns
 
-    if len(y) > 1:
-        raise CaseError([Problem("measured", f"{len(y)} columns y, expected one beside a file")])
-    checked = _with_measured(case, file, (x, y[0])) if case is not None else None
+    pair = (x[0], y[0])
+    checked = _with_measured(case, file, pair) if case is not None else None
     if checked is not None:
         from fiberbend.case.measured import read_measured
 
         points = read_measured(checked)
         if points is not None:
             pressure, value = points.shown()
-            order = (pressure, value) if x == col.PRESSURE else (value, pressure)
+            order = (pressure, value) if x[0] == col.PRESSURE else (value, pressure)
             return list(zip(*(part.tolist() for part in order), strict=True))
     try:
-        return [(a, b) for a, b in read_columns(file, (x, y[0]))]
+        return [(a, b) for a, b in read_columns(file, pair)]
     except FileNotFoundError:
-        text = f"no such file, expected a CSV file with columns {x} and {y[0]}"
+        text = f"no such file, expected a CSV file with columns {x[0]} and {y[0]}"
     except OSError as error:
-        text = f"{error.strerror}, expected a CSV file with columns {x} and {y[0]}"
+        text = f"{error.strerror}, expected a CSV file with columns {x[0]} and {y[0]}"
     except ValueError as error:
-        text = f"{error}, expected columns {x} and {y[0]}"
+        text = f"{error}, expected columns {x[0]} and {y[0]}"
     raise CaseError([Problem(str(file), text)])
 
 
@@ -286,14 +298,15 @@ def _with_measured(case: Mapping[str, Any], file: Path, columns: tuple[str, str]
     from fiberbend.case.measured import expected_quantity
     from fiberbend.reader.reader import parse_case
 
+    output = {key: value for key, value in case.get("output", {}).items() if key != "measured"}
     try:
-        plain = parse_case(dict(case))
+        plain = parse_case({**case, "output": output})
     except CaseError:
         # of another version
         return None
     if {*columns} != {col.PRESSURE, expected_quantity(plain.straight)}:
         return None
-    output = {**case.get("output", {}), "measured": str(file.absolute())}
+    output["measured"] = str(file.absolute())
     try:
         return parse_case({**case, "output": output})
     except CaseError as error:

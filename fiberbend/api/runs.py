@@ -34,6 +34,18 @@ _WORDS = {
     col.MOMENT: "moment kept straight",
     col.STEP: "load step",
 }
+_KINDS = {
+    "kPa": "pressure",
+    "MPa": "pressure",
+    "°": "angle",
+    "mm": "length",
+    "mm²": "area",
+    "mm³": "volume",
+    "N": "force",
+    "N mm": "moment",
+    "mJ": "energy",
+    "s": "time",
+}
 _UNITS = {
     "kPa": "kPa",
     "MPa": "MPa",
@@ -86,6 +98,17 @@ class RunData:
         if turned.get(col.ANGLE, 0.0) <= SMALL_ANGLE < turned.get(col.TWIST, 0.0):
             return col.TWIST
         return col.ANGLE
+
+    def teller(self, name: str) -> str:
+        """Who gives a column: another model beside the run, or the run's own."""
+        try:
+            beside = col.column(name).beside
+        except KeyError:
+            beside = False
+        if beside:
+            return words_of(name)
+        model = self.case.get("model", "auto")
+        return words_of(name) if name != col.PRESSURE or model == "auto" else str(model)
 
     def pairs(self, x: str, y: str) -> list[tuple[float, float]]:
         """Values of two columns in the rows that have both."""
@@ -248,12 +271,22 @@ def axis_label(name: str) -> str:
         unit = col.column(name).unit
     except KeyError:
         unit = unit_of(name)
+    return f"{words_of(name)} ({unit})" if unit else words_of(name)
+
+
+def common_label(names: Sequence[str]) -> str:
+    """Several columns of one unit as the name of an axis: "force (N)"."""
+    unit = unit_of(names[0])
+    return f"{_KINDS[unit]} ({unit})" if unit else "value"
+
+
+def words_of(name: str) -> str:
+    """A column in words, without its unit: "chamber volume"."""
     end = name.rsplit("_", 1)[-1]
     stem = name.removesuffix(f"_{end}") if end in _UNITS else name
     force = _FORCE.fullmatch(name)
     words = f"force of the {force[1]}" if force else _WORDS.get(name, stem)
-    words = words.replace("_", " ")
-    return f"{words} ({unit})" if unit else words
+    return words.replace("_", " ")
 
 
 def unit_of(name: str) -> str:

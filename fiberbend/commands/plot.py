@@ -20,7 +20,7 @@ _FONT = (2.0, 72.0)
 
 def plot(
     *runs: Annotated[Path, Parameter(name="RUN")],
-    x: Annotated[str, Parameter(metavar="COLUMN")] = "",
+    x: Annotated[tuple[str, ...], Parameter(consume_multiple=False, metavar="COLUMN")] = (),
     y: Annotated[tuple[str, ...], Parameter(consume_multiple=False, metavar="COLUMN")] = (),
     measured: Annotated[tuple[Path, ...], Parameter(consume_multiple=False, metavar="CSV")] = (),
     label: Annotated[tuple[str, ...], Parameter(consume_multiple=False, metavar="TEXT")] = (),
@@ -39,10 +39,10 @@ def plot(
 
     Args:
         runs: Folders of runs or sweeps; each point of a sweep is a curve.
-        x: Column along the lower axis, of history.csv or of a sweep's sweep.csv; pressure_kPa by
-            default.
+        x: Column along the lower axis, of history.csv or of a sweep's sweep.csv; repeatable, such
+            as pressure_kPa and section_kPa; pressure_kPa by default.
         y: Column along the left axis; repeatable, of one unit.
-        measured: CSV file of measured points; repeatable.
+        measured: CSV file of measured points with the columns x and y; repeatable.
         label: Name of a curve in the legend, in the order of the curves; repeatable. By default
             what differs between the runs, or their titles.
         format: pdf by default, or as --out ends.
@@ -55,7 +55,7 @@ def plot(
         open: Show the figure.
     """
     from fiberbend.api.plot import Plot, select, write
-    from fiberbend.drawing.page import Style
+    from fiberbend.drawing.style import Style
 
     if not runs:
         raise CaseError([Problem("RUN", "none, expected the folder of a run or of a sweep")])

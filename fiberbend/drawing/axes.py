@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fiberbend import columns as col
-from fiberbend.drawing.page import Style, literal
+from fiberbend.drawing.page import literal
+from fiberbend.drawing.style import Style
 from geometry.mesh.data import Floats
 
 BLUE, RED = "#1f5a99", "#c0392b"
@@ -120,6 +121,12 @@ def fit(axes: Any, style: Style, below: float = 0.0) -> None:
     renderer = page.canvas.get_renderer()
     width, height = page.bbox.width, page.bbox.height
     pad = 0.7 * _pixels(style.font_size, page)
+    for axis, room in ((axes.xaxis, width), (axes.yaxis, height)):
+        box = axis.label.get_window_extent(renderer)
+        # the middle of the axes is not that of the page
+        part = max(box.width, box.height) / (0.8 * room)
+        if part > 1:
+            axis.label.set_fontsize(axis.label.get_fontsize() / part)
     # other sizes may have other ticks, whose texts may be wider
     for _ in range(2):
         outer, inner = axes.get_tightbbox(renderer), axes.get_window_extent(renderer)

@@ -18,7 +18,8 @@ from fiberbend import columns as col
 from fiberbend.drawing import tip_path
 from fiberbend.drawing.axes import BLUE, RED, Room, complete, fit, legend, new_axes, whole_rows
 from fiberbend.drawing.overlay import MODELS, Overlay
-from fiberbend.drawing.page import DEFAULT, Style, any_sign, literal, save
+from fiberbend.drawing.page import any_sign, literal, save
+from fiberbend.drawing.style import DEFAULT, Style
 from fiberbend.states.obstacles import Shape
 from fiberbend.states.snapshot import Target, Write
 from geometry.mesh.data import Floats

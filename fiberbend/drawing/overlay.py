@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from fiberbend.drawing.axes import Room, fit, legend, new_axes
-from fiberbend.drawing.page import Style, any_sign, literal
+from fiberbend.drawing.page import any_sign, literal
+from fiberbend.drawing.style import Style
 from geometry.mesh.data import Floats
 
 MODELS = ("section", "analytic", "analytic_winding", "analytic_paper")

@@ -6,22 +6,21 @@ matplotlib is imported where it is used, and without its global state.
 from __future__ import annotations
 
 import contextlib
-import dataclasses
 import math
 import textwrap
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fiberbend.drawing.panel import STRIP, Panel
 from fiberbend.drawing.renderer import Image, View
+from fiberbend.drawing.style import DEFAULT, DPI, NO_DATE, SAME_FILE, Style, empty
 from fiberbend.states.snapshot import Target
 
 Box = tuple[float, float, float, float]
-Format = Literal["png", "svg", "pdf"]
 
 COLORS = {
     "wall": "#9ecae1",
@@ -39,74 +38,8 @@ NAMES = {"layer": "strain-limiting layer", "fiber": "fibers", "winding": SMEARED
 WARN = "#b01818"
 """Colour of what has to be said of a state."""
 _HEADING, _REMARK = 17, 11.5
-_DPI = 100
-_INCH = 25.4
-_FONT = 13.0
-_SHAPE = 0.7
-"""Height over width of a picture whose height is not given."""
 _LONGEST = 120
 """Characters of a line of text; the end of a title, which tells pictures apart, is kept."""
-_SAME_FILE = {
-    # letters stay letters: text in a SVG, whole TrueType fonts in a PDF
-    "pdf.fonttype": 42,
-    "svg.fonttype": "none",
-    # the same picture is the same file
-    "svg.hashsalt": "fiberbend",
-}
-_NO_DATE: dict[str, dict[str, Any]] = {
-    "png": {},
-    "svg": {"Date": None},
-    "pdf": {"CreationDate": None, "ModDate": None},
-}
-
-
-@dataclasses.dataclass(frozen=True)
-class Style:
-    """Format, size and letters of a picture; the defaults are those of the pictures of a run.
-
-    Attributes:
-        format: of the file.
-        width: of the picture, mm.
-        height: of the picture, mm; by default 0.7 of its width.
-        dpi: pixels per inch of a PNG, and of images within a SVG or a PDF.
-        font_size: size of the names of axes, pt; other text and all lines are in proportion.
-
-    Raises:
-        ValueError: a size that is not above zero.
-    """
-
-    format: Format = "png"
-    width: float = 254.0
-    height: float | None = None
-    dpi: float = float(_DPI)
-    font_size: float = _FONT
-
-    def __post_init__(self) -> None:
-        if self.format not in _NO_DATE:
-            raise ValueError(f"format {self.format!r}, expected {' or '.join(_NO_DATE)}")
-        for name in ("width", "height", "dpi", "font_size"):
-            value = getattr(self, name)
-            if value is not None and not 0 < value < math.inf:
-                raise ValueError(f"{name} {value!r}, expected a number above zero")
-
-    @property
-    def inches(self) -> tuple[float, float]:
-        """Width and height."""
-        height = self.height if self.height is not None else _SHAPE * self.width
-        return self.width / _INCH, height / _INCH
-
-    @property
-    def scale(self) -> float:
-        """What sizes in points are multiplied with; 1 for the pictures of a run."""
-        return self.font_size / _FONT
-
-    def figure(self) -> Any:
-        """An empty matplotlib figure of this size that needs no display."""
-        return _figure(self.inches, self.dpi)
-
-
-DEFAULT = Style()
-"""How the pictures of a run are drawn."""
 
 
 @contextlib.contextmanager
@@ -137,16 +70,7 @@ def literal(text: str) -> str:
 
 def figure(size: tuple[int, int]) -> Any:
     """A matplotlib figure of a size in pixels that needs no display."""
-    return _figure((size[0] / _DPI, size[1] / _DPI), _DPI)
-
-
-def _figure(inches: tuple[float, float], dpi: float) -> Any:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    page = Figure(figsize=inches, dpi=dpi)
-    FigureCanvasAgg(page)
-    return page
+    return empty((size[0] / DPI, size[1] / DPI), DPI)
 
 
 def heading(page: Any, title: str) -> None:
@@ -161,7 +85,7 @@ def heading(page: Any, title: str) -> None:
 
 def wrap(text: str, width: float, fontsize: float) -> str:
     """A text in lines of a width in pixels."""
-    return "\n".join(textwrap.wrap(text, max(12, int(width / (0.55 * fontsize * _DPI / 72)))))
+    return "\n".join(textwrap.wrap(text, max(12, int(width / (0.55 * fontsize * DPI / 72)))))
 
 
 def colormap() -> Any:
@@ -183,13 +107,13 @@ def save(page: Any, target: Target, style: Style = DEFAULT) -> None:
     import matplotlib
 
     quick = {"pil_kwargs": {"compress_level": 4}} if style.format == "png" else {}
-    with any_sign(), matplotlib.rc_context(_SAME_FILE):
+    with any_sign(), matplotlib.rc_context(SAME_FILE):
         page.savefig(
             target,
             format=style.format,
             dpi=style.dpi,
             facecolor="white",
-            metadata=_NO_DATE[style.format],
+            metadata=NO_DATE[style.format],
             **quick,
         )
 

@@ -24,7 +24,8 @@ from fiberbend.drawing.axes import (
     paper,
     whole_rows,
 )
-from fiberbend.drawing.page import DEFAULT, Style, literal, save
+from fiberbend.drawing.page import literal, save
+from fiberbend.drawing.style import DEFAULT, Style
 from fiberbend.states.obstacles import Bar, Box, Shape, Sheet
 from fiberbend.states.snapshot import Target
 from geometry.mesh.data import Floats

@@ -15,7 +15,7 @@ from fiberbend.case import convert
 from fiberbend.compare.check import crosscheck
 from fiberbend.drawing import curves, tip_path
 from fiberbend.drawing.curves import contact_forces, draw_plots, plot_contact_force
-from fiberbend.drawing.page import Style
+from fiberbend.drawing.style import Style
 from fiberbend.drawing.tip_path import plot_tip_path
 from fiberbend.models.choice import choose_model
 from fiberbend.reader.reader import parse_case

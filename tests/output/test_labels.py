@@ -16,7 +16,7 @@ import pytest
 from fiberbend.drawing import curves, tip_path
 from fiberbend.drawing.curves import plot_pressure_angle, plot_tip_force
 from fiberbend.drawing.overlay import MODELS, Line, Overlay, Points
-from fiberbend.drawing.page import Style
+from fiberbend.drawing.style import Style
 from tests.output.test_pictures import is_drawn
 
 LABELS = ("section model", "analytic (own rubber)", "analytic (area to winding)", "analytic (μ̄)")

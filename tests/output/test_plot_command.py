@@ -78,7 +78,7 @@ def history(folder: Path, *names: str) -> list[list[float]]:
 
 def test_a_run_shows_angle_over_pressure_and_a_blocked_one_its_force(runs: Path) -> None:
     shown = select(runs / "thin")
-    assert (shown.x, shown.y, shown.name) == (col.PRESSURE, (col.ANGLE,), "pressure_angle")
+    assert (shown.x, shown.y, shown.name) == ((col.PRESSURE,), (col.ANGLE,), "pressure_angle")
     (curve,) = shown.curves
     assert [list(curve.across), list(curve.up)] == history(
         runs / "thin", "pressure_kPa", "angle_deg"
@@ -105,7 +105,7 @@ def test_a_run_that_touches_something_shows_the_force_of_it() -> None:
 def test_a_run_at_one_pressure_is_shown_over_its_load_steps() -> None:
     rows = [{**row, col.PRESSURE: 0.0} for row in contact_rows()]
     shown = select(RunData("hanging", {}, rows))
-    assert (shown.x, shown.name) == (col.STEP, "step_angle")
+    assert (shown.x, shown.name) == ((col.STEP,), "step_angle")
     assert list(shown.curves[0].across) == [row[col.STEP] for row in rows]
 
 
@@ -205,8 +205,18 @@ def test_any_column_over_any_other(runs: Path) -> None:
     assert [curve.label for curve in shown.curves] == [
         f"wall {wall} mm, tip {axis}" for wall in (2, 3) for axis in "zy"
     ]
-    assert shown.draw(PAPER).axes[0].get_ylabel() == "tip z and tip y (mm)"
-    assert select(runs / "thin", y="pressure_kPa").x == col.ANGLE
+    assert shown.draw(PAPER).axes[0].get_ylabel() == "length (mm)"
+    assert select(runs / "thin", y="pressure_kPa").x == (col.ANGLE,)
+
+
+def test_a_run_beside_other_models(runs: Path) -> None:
+    names = ["pressure_kPa", "analytic_winding_kPa"]
+    shown = select(runs / "thin", x=names)
+    assert [curve.label for curve in shown.curves] == ["analytic", "analytic winding"]
+    assert shown.name == "pressure_angle"
+    assert [list(curve.across) for curve in shown.curves] == history(runs / "thin", *names)
+    text = refusal(runs / "thin", x=["pressure_kPa", "tip_y_mm"], y="angle_deg")
+    assert text == "x: pressure_kPa in kPa, tip_y_mm in mm, expected columns of one unit"
 
 
 def test_axes_have_units() -> None:
@@ -248,7 +258,7 @@ def test_what_cannot_be_drawn_is_refused(runs: Path, tmp_path: Path) -> None:
     shutil.copy(thin / "case.resolved.yaml", tmp_path / "begun")
     assert "contains no history.csv" in refusal(tmp_path / "begun")
     (tmp_path / "begun" / "history.csv").write_text("pressure_kPa,angle_deg\n1,x\n")
-    assert "cannot be read" in refusal(tmp_path / "begun")
+    assert f"{tmp_path}/begun/history.csv" in refusal(tmp_path / "begun")
     assert "none, expected the folder" in refusal([])
 
 
@@ -309,10 +319,10 @@ def test_measured_points_that_are_none_are_refused(runs: Path, tmp_path: Path) -
     for x, y in ((col.PRESSURE, col.ANGLE), ("tip_z_mm", "tip_y_mm")):
         text = refusal(runs / "thin", x=x, y=y, measured=tmp_path / "none.csv")
         assert "no such file" in text
-        file.write_text("pressure_kPa,angle\n1,2\n")
+        file.write_text("pressure_kPa,other\n1,2\n")
         text = refusal(runs / "thin", x=x, y=y, measured=file)
         assert text.startswith(f"{file}: ")
-        assert "expected columns" in text
+        assert "expected" in text
 
 
 def test_points_of_a_sweep_are_curves(sweep: Path) -> None:
@@ -336,7 +346,7 @@ def test_columns_of_a_sweep_over_each_other(sweep: Path) -> None:
         assert list(curve.across) == [2.0, 3.0]
         assert list(curve.up) == [table[wall, radius] for wall in (2.0, 3.0)]
     # without x over the field that varies first
-    assert select(sweep, y="pressure_90deg_kPa").x == "wall_mm"
+    assert select(sweep, y="pressure_90deg_kPa").x == ("wall_mm",)
     assert "did you mean wall_mm" in refusal(sweep, x="wal_mm", y="pressure_90deg_kPa")
 
 
@@ -394,3 +404,13 @@ def test_examples_of_the_help_can_be_read(capsys: pytest.CaptureFixture[str]) ->
         _, bound, _ = app.parse_args(shlex.split(line), exit_on_error=False, print_error=False)
         assert all(isinstance(run, Path) for run in bound.args)
         assert bound.args
+
+
+def test_a_long_name_of_an_axis_is_written_smaller() -> None:
+    name = "contact_" + 9 * "a_very_long_name_" + "area_mm2"
+    rows = [{**row, name: row[col.PRESSURE]} for row in contact_rows()]
+    figure = select(RunData("run", {}, rows), y=name).draw(PAPER)
+    label = figure.axes[0].yaxis.label
+    box = label.get_window_extent(figure.canvas.get_renderer())
+    assert 0 < box.y0 < box.y1 < figure.bbox.height
+    assert label.get_fontsize() < PAPER.font_size
