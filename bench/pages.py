@@ -33,14 +33,15 @@ An editor checks the file while you type if its first line names the schema:
 ```
 
 The file `cases/case.schema.json` is this schema; `fiberbend schema` prints it.
-[](models.md) says which model supports which effect.
+[Models, and when to trust each](models.md) says which model supports which effect.
 
 """
 COMMANDS_HEAD = """# The commands
 
 <!-- Written by `make docs` from the help of the commands; do not edit by hand. -->
 
-`fiberbend COMMAND --help` prints the same texts. Exit codes are explained in [](when_it_fails.md).
+`fiberbend COMMAND --help` prints the same texts. Exit codes are explained in
+[When it fails](when_it_fails.md).
 
 """
 

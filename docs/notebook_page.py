@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import logging
 import os
 import sys
 import tempfile
@@ -31,7 +32,6 @@ def executed(notebook: Path = NOTEBOOK) -> Any:
     import nbformat
     from ipykernel.kernelspec import write_kernel_spec
     from jupyter_client.kernelspec import KernelSpecManager
-    from jupyter_client.manager import AsyncKernelManager
     from nbclient import NotebookClient
 
     cells = nbformat.read(notebook, as_version=4)
@@ -40,23 +40,23 @@ def executed(notebook: Path = NOTEBOOK) -> Any:
         # this Python's kernel, whatever kernels the user has
         write_kernel_spec(str(kernels / "python3"))
         specs = KernelSpecManager(kernel_dirs=[str(kernels)], ensure_native_kernel=False)
-        # sockets in this folder instead of ports that the machine could listen to
-        manager = AsyncKernelManager(
-            kernel_name="python3",
-            kernel_spec_manager=specs,
-            transport="ipc",
-            connection_file=str(Path(folder) / "kernel.json"),
-        )
         here = Path(folder) / "work"
         here.mkdir()
         path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
         client = NotebookClient(
             cells,
-            km=manager,
+            kernel_name="python3",
             timeout=SECONDS,
             resources={"metadata": {"path": str(here)}},
             store_widget_state=False,
         )
+        client.log.setLevel(logging.ERROR)
+        # made by the client, which then stops the kernel as well
+        manager = client.create_kernel_manager()
+        manager.kernel_spec_manager = specs
+        # sockets in this folder instead of ports that the machine could listen to
+        manager.transport = "ipc"
+        manager.connection_file = str(Path(folder) / "kernel.json")
         client.execute(env=os.environ | {"PYTHONPATH": path, "IPYTHONDIR": folder})
     return cells
 

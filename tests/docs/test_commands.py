@@ -41,9 +41,23 @@ def test_commands_within_sentences_exist(name: str) -> None:
 def test_links_to_files_lead_somewhere(name: str) -> None:
     page = PAGES[name]
     text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    assert "[](" not in text, "a link without words is not seen where the page is not built"
     for target in re.findall(r"\]\(([^)#\s]+)[^)]*\)", text):
         if not re.match(r"\w+:", target):
             assert (page.parent / target).exists(), f"{name}: {target}"
+
+
+def test_reasons_and_warnings_on_the_page_are_those_of_the_code() -> None:
+    text = (ROOT / "docs" / "when_it_fails.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `([^`]+)` \|", text[text.index("## No solution") :], re.MULTILINE)
+    sources = [
+        path.read_text(encoding="utf-8")
+        for folder in ("fem", "fiberbend")
+        for path in (ROOT / folder).rglob("*.py")
+    ]
+    assert len(rows) >= 15
+    for row in rows:
+        assert any(row in source for source in sources), row
 
 
 def test_the_readme_is_short() -> None:
