@@ -28,7 +28,8 @@ _TOUCHES = 0.3
 """Distance in mm from the nearest point of the body up to which others count as its touch, too."""
 _MOST = 4000
 """Points of the body that are asked for their distance from an obstacle."""
-_ROOM = 0.085
+_ROOM, _BESIDE = 0.085, 0.12
+"""Room for what is written beside obstacles, as parts of a picture's width: at least, at most."""
 _NO_FORCE = 1e-6
 """Part of the greatest force in a run that is round-off."""
 _STRAIGHT = 0.05
@@ -105,6 +106,14 @@ class Obstacles:
         if not self.solids:
             return frame(body, toward, aspect)
         return frame(np.concatenate([body, self.points]), toward, aspect, _ROOM)
+
+    def margin(self, width: int) -> int:
+        """Pixels beside all that is drawn in which something may be written.
+
+        Args:
+            width: of the picture, pixels.
+        """
+        return round(_BESIDE * width) if self.solids else 6
 
     def behind(self, view: View) -> list[Drawable]:
         """Obstacles that never hide or tint the body: moved away from the viewer."""
