@@ -135,7 +135,7 @@ class Obstacles:
         return layers
 
     def touch(self, name: str, body: Floats) -> Floats:
-        """Middle of where the body is nearest to an obstacle, (3,), mm.
+        """The point of an obstacle in the middle of where the body is nearest to it, (3,), mm.
 
         Args:
             name: of the obstacle.
@@ -147,8 +147,8 @@ class Obstacles:
         cloud = pv.PolyData(np.asarray(body, dtype=float))
         distance = np.asarray(cloud.compute_implicit_distance(solid)["implicit_distance"])
         near = distance <= distance.min() + _TOUCHES
-        middle: Floats = body[near].mean(axis=0)
-        return middle
+        _, point = solid.find_closest_cell(body[near].mean(axis=0), return_closest_point=True)
+        return np.asarray(point)
 
 
 def write_forces(

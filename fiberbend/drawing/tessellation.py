@@ -16,7 +16,6 @@ from geometry.mesh.data import (
 )
 from geometry.mesh.reference import shape_functions
 
-
 _SHOWN = 0.995
 """Part of the drawn points whose values lie within the colour bar."""
 _EDGE_ON = 0.2
