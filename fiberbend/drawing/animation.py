@@ -11,7 +11,7 @@ from fiberbend.drawing.obstacles import Obstacles, Scenery, write_forces
 from fiberbend.drawing.page import Page, colormap, nice_above
 from fiberbend.drawing.renderer import FROM_THE_SIDE, Drawable, Image, Renderer, View
 from fiberbend.drawing.surfaces import BodySurfaces
-from fiberbend.drawing.tessellation import Tessellation
+from fiberbend.drawing.tessellation import Tessellation, greatest_seen
 from fiberbend.states.snapshot import ModelMesh, Snapshot, Target
 from geometry.mesh.data import Floats
 
@@ -70,7 +70,9 @@ class Animation:
             corners.append(_extremes(self._surfaces.points(state)))
         if not values:
             raise ValueError("no state to draw")
-        high = nice_above(max(float(np.quantile(value, 0.998)) for value in values))
+        rest = self._mesh.nodes[self._mesh.cells]
+        peaks = (greatest_seen(self._skin, rest, value, FROM_THE_SIDE) for value in values)
+        high = nice_above(max(peaks))
         every = np.concatenate(corners)
         obstacles = Obstacles(self._scenery, every)
         view = obstacles.frame(every, FROM_THE_SIDE, SIZE[0] / _BAND)

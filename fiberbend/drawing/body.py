@@ -18,7 +18,7 @@ from fiberbend.drawing.renderer import (
     frame,
 )
 from fiberbend.drawing.surfaces import BodySurfaces
-from fiberbend.drawing.tessellation import Tessellation
+from fiberbend.drawing.tessellation import Tessellation, greatest_seen
 from fiberbend.states.recovery import NodalFields, recover, split_nodes
 from fiberbend.states.snapshot import (
     ModelMesh,
@@ -92,7 +92,6 @@ class BodyPictures:
         view = self._obstacles.frame(rest, _WHOLE, SIZE[0] / _BAND)
         top = self._renderer.draw(
             surfaces.parts(surfaces.peeled | peeled)
-            + surfaces.smeared_winding(z < _PEELED * length)
             + surfaces.fiber_tubes()
             + self._obstacles.seen_through(),
             view,
@@ -106,7 +105,6 @@ class BodyPictures:
         close = frame(both, _OBLIQUE, SIZE[0] / _BAND)
         piece = self._renderer.draw(
             surfaces.parts(inside & (surfaces.peeled | ~bare), level=6)
-            + surfaces.smeared_winding(inside & bare)
             + surfaces.fiber_tubes(low=start, high=float(points[:, 2].max())),
             close,
             (SIZE[0], _BAND),
@@ -166,6 +164,7 @@ class BodyPictures:
             [self._scenery.caption(state) for state in states],
             [self._view] * len(states),
             [state.remark for state in states],
+            margin=self._obstacles.margin(SIZE[0]),
         )
         for panel, state in zip(page.panels, states, strict=True):
             write_forces(panel, self._obstacles, self._surfaces.points(state), state, 9)
@@ -188,8 +187,8 @@ class BodyPictures:
         return self._images[number]
 
     def _peak(self, strain: Floats) -> float:
-        """Strain at the upper end of the colours: the drawn surface's, short of single peaks."""
-        return float(np.quantile(self._skin.interpolate(strain), 0.998))
+        mesh, values = self.model_mesh.mesh, self._skin.interpolate(strain)
+        return greatest_seen(self._skin, mesh.nodes[mesh.cells], values, FROM_THE_SIDE)
 
     def _strain_label(self) -> str:
         return "maximum principal logarithmic strain" + self._surfaces.remark

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fiberbend.drawing.obstacles import Scenery
-from fiberbend.drawing.page import figure, literal, nice_above, save, wrap
+from fiberbend.drawing.page import WARN, figure, heading, nice_above, save
 from fiberbend.drawing.renderer import Renderer
 from fiberbend.drawing.side_by_side import SideBySide
 from fiberbend.states.bend import in_frame
@@ -145,14 +145,17 @@ def plot_tension(
     scenery = scenery or Scenery()
     page = figure(_PLOT)
     rows = (len(snapshots) + 4) // 4
-    axes = page.add_axes((0.09, 0.12, 0.81, 0.77 - 0.04 * rows))
+    remarks = dict.fromkeys(state.remark for state in snapshots if state.remark)
+    top = 0.925 - 0.035 * len(remarks)
+    axes = page.add_axes((0.09, 0.12, 0.81, top - 0.155 - 0.04 * rows))
+    for number, remark in enumerate(remarks):
+        place = {"x": 0.5, "y": 0.905 - 0.035 * number, "ha": "center", "va": "center"}
+        page.text(s=remark, fontsize=11.5, color=WARN, **place)
     shades = colormaps["viridis"](np.linspace(0.0, 0.85, len(snapshots)))
     is_ribbon = False
     for state, color in zip(snapshots, shades, strict=True):
         s, tension = tension_along(model_mesh, state, actuator)
-        label = scenery.caption(state) + (
-            f"\n{wrap(state.remark, 330, 10)}" if state.remark else ""
-        )
+        label = scenery.caption(state)
         is_ribbon = len(tension) > 1
         axes.fill_between(s, tension.min(axis=0), tension.max(axis=0), color=color, **_BAND)
         axes.plot(s, tension.mean(axis=0), color=color, linewidth=2.2, label=label)
@@ -162,8 +165,7 @@ def plot_tension(
     axes.axhline(0.0, color="0.5", linewidth=0.8)
     _name_pieces(axes, actuator, model_mesh.mesh.half)
     extent = "to the middle of the floor" if model_mesh.mesh.half else "once around"
-    title = literal(f"{model_mesh.title}: tension of the fiber")
-    page.text(0.5, 0.95, title, ha="center", fontsize=15)
+    heading(page, f"{model_mesh.title}: tension of the fiber")
     axes.set_xlabel(f"distance along the outline from the crown {extent} (mm)", fontsize=13)
     axes.set_ylabel("axial force (N)", fontsize=13)
     strain = axes.secondary_yaxis(

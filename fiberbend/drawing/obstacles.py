@@ -28,7 +28,8 @@ _TOUCHES = 0.3
 """Distance in mm from the nearest point of the body up to which others count as its touch, too."""
 _MOST = 4000
 """Points of the body that are asked for their distance from an obstacle."""
-_ROOM = 0.085
+_ROOM, _BESIDE = 0.085, 0.12
+"""Room for what is written beside obstacles, as parts of a picture's width: at least, at most."""
 _NO_FORCE = 1e-6
 """Part of the greatest force in a run that is round-off."""
 _STRAIGHT = 0.05
@@ -106,6 +107,14 @@ class Obstacles:
             return frame(body, toward, aspect)
         return frame(np.concatenate([body, self.points]), toward, aspect, _ROOM)
 
+    def margin(self, width: int) -> int:
+        """Pixels beside all that is drawn in which something may be written.
+
+        Args:
+            width: of the picture, pixels.
+        """
+        return round(_BESIDE * width) if self.solids else 6
+
     def behind(self, view: View) -> list[Drawable]:
         """Obstacles that never hide or tint the body: moved away from the viewer."""
         away = -view.axes[2] * 4 * view.width
@@ -126,7 +135,7 @@ class Obstacles:
         return layers
 
     def touch(self, name: str, body: Floats) -> Floats:
-        """Middle of where the body is nearest to an obstacle, (3,), mm.
+        """The point of an obstacle in the middle of where the body is nearest to it, (3,), mm.
 
         Args:
             name: of the obstacle.
@@ -138,8 +147,8 @@ class Obstacles:
         cloud = pv.PolyData(np.asarray(body, dtype=float))
         distance = np.asarray(cloud.compute_implicit_distance(solid)["implicit_distance"])
         near = distance <= distance.min() + _TOUCHES
-        middle: Floats = body[near].mean(axis=0)
-        return middle
+        _, point = solid.find_closest_cell(body[near].mean(axis=0), return_closest_point=True)
+        return np.asarray(point)
 
 
 def write_forces(

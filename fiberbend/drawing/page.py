@@ -38,6 +38,8 @@ NAMES = {"layer": "strain-limiting layer", "fiber": "fibers", "winding": SMEARED
 WARN = "#b01818"
 """Colour of what has to be said of a state."""
 _HEADING, _REMARK = 17, 11.5
+_FLAT = 0.5
+"""Height over width of images that stand in two columns at most."""
 _LONGEST = 120
 """Characters of a line of text; the end of a title, which tells pictures apart, is kept."""
 
@@ -157,6 +159,7 @@ class Page:
         captions: Sequence[str],
         views: Sequence[View],
         remarks: Sequence[str] = (),
+        margin: int = 6,
     ) -> Page:
         """Images of one scale in up to four columns, cropped alike, each with caption and scale.
 
@@ -167,8 +170,13 @@ class Page:
             captions: text above each panel.
             views: from where each is seen.
             remarks: what has to be said of each, in red below its caption.
+            margin: pixels of the images to be shown around what is drawn.
         """
+        box = _bounds(np.any([_filled(image) for image in images], axis=0), margin)
+        shown = images[0][box].shape
         columns = columns_of(len(images))
+        if shown[0] < _FLAT * shown[1]:
+            columns = min(columns, 2)
         rows = math.ceil(len(images) / columns)
         across = width / columns
         wrapped = [wrap(remark, 0.96 * across, _REMARK) for remark in remarks]
@@ -176,9 +184,6 @@ class Page:
         lines = max(text.count("\n") + 1 for text in captions)
         noted = max(text.count("\n") + 1 if text else 0 for text in wrapped)
         head = 12 + 24 * lines + 19 * noted
-        filled = np.any([_filled(image) for image in images], axis=0)
-        box = _bounds(filled)
-        shown = images[0][box].shape
         room = 0.94 * across * shown[0] / shown[1]
         tall = head + room + STRIP + 8
         height = round(56 + rows * tall + 84)

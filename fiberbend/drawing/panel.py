@@ -87,21 +87,24 @@ class Panel:
             sum(bar) / 2, line - 8, f"{length:g} mm", ha="center", va="top", fontsize=11, color=_INK
         )
 
-    def length(self, text: str, ends: Floats, fontsize: float = 11) -> None:
-        """A dimension: a line with two arrow heads and a text in its middle.
+    def length(self, text: str, ends: Floats, body: Floats, fontsize: float = 11) -> None:
+        """A dimension: a line with two arrow heads, and a text on the side away from the body.
 
         Args:
             text: one line.
             ends: (2, 3), mm.
+            body: middle of the body, (3,), mm.
             fontsize: in points.
         """
         start, end = self.at(ends)
         style = {"arrowstyle": "<|-|>", "color": "0.3", "shrinkA": 0, "shrinkB": 0, "lw": 0.9}
         self.axes.annotate("", tuple(start), tuple(end), arrowprops=style, annotation_clip=False)
-        box = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}
-        self.axes.text(
-            *(start + end) / 2, text, ha="center", va="center", fontsize=fontsize, bbox=box
-        )
+        middle, along = (start + end) / 2, end - start
+        across = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-9)
+        across *= np.sign(across @ (middle - self.at(body[None])[0])) or 1.0
+        room = np.abs(across) @ (np.array(self._extent(text, fontsize)) / 2)
+        place = middle + room * across
+        self.axes.text(*place, text, ha="center", va="center", fontsize=fontsize, color=_INK)
 
     def name(self, text: str, point: Floats, fontsize: float = 11, color: str = _INK) -> None:
         """Write a text near a point, where it covers nothing that is drawn.

@@ -19,8 +19,8 @@ _FAR = 1000.0
 """Distance of the camera from the middle of its view, mm, beside twice the width of that."""
 _EDGE, _EDGE_GREY = 0.75, 40
 """How much of the grey of a line covers what is under it, and that grey."""
-_CREASE, _STEP = 1.2, 4.0
-"""Change of slope across a pixel that is drawn as a line, and how many of them are a step."""
+_CREASE, _STEP = 0.8, 6.0
+"""Turn of a surface across a pixel that is drawn as a line, and depth of a step, in pixels."""
 
 FROM_THE_SIDE = (-1.0, 0.0, 0.0)
 """Where the viewer stands: z points to the right, y up."""
@@ -238,14 +238,14 @@ def _edges(depth: Floats, pixel: float) -> NDArray[np.bool_]:
     """
     edges = np.zeros(depth.shape, dtype=bool)
     inner = depth[1:-1, 1:-1]
-    least = _CREASE * pixel
     for one, other in (
         (depth[:-2, 1:-1], depth[2:, 1:-1]),
         (depth[1:-1, :-2], depth[1:-1, 2:]),
     ):
-        bend = one + other - 2 * inner
-        # a corner that is seen from within is no step: the step's far side has no line
-        edges[1:-1, 1:-1] |= (bend > least) | ((bend < -least) & (bend > -_STEP * least))
+        bend, slope = (one + other - 2 * inner) / pixel, (other - one) / (2 * pixel)
+        # by the turn of the surface: where it is steep, facets of a round one differ much in slope
+        turns = np.abs(bend) > _CREASE * (1 + slope**2)
+        edges[1:-1, 1:-1] |= (bend > _STEP) | (turns & (bend > -_STEP))
     return edges
 
 

@@ -21,8 +21,8 @@ _TALLEST = 760
 _FROM = (-1.0, 0.38, -0.3)
 _BARE, _OPEN = 0.3, 0.62
 """Parts of the chamber's length from which on the sheath, and then the near half, is left out."""
-_OFF = 0.35
-"""Distance of a dimension from the body, in heights of the body."""
+_APART = 0.03
+"""Distance of a dimension from the body and from another one, as a part of the picture's width."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -62,7 +62,9 @@ def rest_image(
     surfaces = BodySurfaces(model_mesh)
     points = surfaces.points(None)
     obstacles = Obstacles(scenery or Scenery(), points)
-    lengths = _lengths(surfaces, points, {} if scenery is None else scenery.lengths)
+    right = View(_FROM, np.zeros(3), 1.0).axes[0]
+    wide = float(np.ptp(np.concatenate([points, obstacles.points]) @ right))
+    lengths = _lengths(surfaces, points, _APART * wide, {} if scenery is None else scenery.lengths)
     every = np.concatenate([points, obstacles.points, *(ends for _, ends in lengths)])
     view = frame(every, _FROM, 1.0, margin=0.0)
     right, up, _ = view.axes
@@ -117,9 +119,10 @@ def write_on(
         model_mesh: the body in space.
         scenery: has the obstacles.
     """
-    for text, ends in rest.lengths:
-        panel.length(text, ends)
     points = BodySurfaces(model_mesh).points(None)
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    for text, ends in rest.lengths:
+        panel.length(text, ends, middle)
     write_forces(panel, Obstacles(scenery or Scenery(), points), points)
 
 
@@ -136,7 +139,6 @@ def _layers(surfaces: BodySurfaces) -> list[Drawable]:
         layers += surfaces.parts(opened, open_at_mirror=True)
     else:
         layers = surfaces.parts(shown & (~opened | (middle[:, 0] > 0)))
-    layers += surfaces.smeared_winding((z > start) & ~opened)
     return layers + surfaces.winding_line() + surfaces.fiber_tubes(near=end)
 
 
@@ -147,18 +149,17 @@ def _chamber(surfaces: BodySurfaces) -> tuple[float, float]:
 
 
 def _lengths(
-    surfaces: BodySurfaces, points: Floats, known: Mapping[str, float]
+    surfaces: BodySurfaces, points: Floats, off: float, known: Mapping[str, float]
 ) -> list[tuple[str, Floats]]:
     """Length of the chamber, of the whole where it has caps, height and width, with their ends."""
     low, high = points.min(axis=0), points.max(axis=0)
     wide, tall, long = high - low
-    off = _OFF * tall
     start, end = _chamber(surfaces)
     side, below, front = low[0], low[1] - off, low[2] - off
     length = known.get("chamber", end - start)
     found = [(f"chamber {length:.6g} mm", [[side, below, start], [side, below, end]])]
     if long > (1 + 1e-6) * (end - start):
-        lower, whole = below - 0.8 * off, known.get("whole", long)
+        lower, whole = below - off, known.get("whole", long)
         found.append((f"{whole:.6g} mm", [[side, lower, low[2]], [side, lower, high[2]]]))
     height, width = known.get("height", tall), known.get("width", wide)
     found.append((f"{height:.6g} mm", [[high[0], low[1], front], [high[0], high[1], front]]))

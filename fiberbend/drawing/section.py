@@ -261,7 +261,7 @@ class Sections:
             clipped = np.clip(value, scale.vmin, scale.vmax)
             self._paint(axes, moved, clipped, scale, colormap())
             _draw_lines(axes, cut.outlines(state), color=_LINE, linewidth=0.8)
-        page.color_bar(scale, label, extend)
+        page.color_bar(scale, f"{label}, {SMEARED}" if self._smeared else label, extend)
         page.scale()
         page.save(target)
 

@@ -20,8 +20,6 @@ from geometry.mesh.data import Floats, Ints
 from geometry.winding.segments import EmbeddedFibers
 
 _FIBER_RADIUS = 0.2
-_LIFT = 0.08
-"""Distance in mm of a smeared winding from the rubber in a picture."""
 _ON_PLANE = 1e-9
 """Part of its width by which a body may miss the plane x = 0."""
 _MIRROR = np.array([-1.0, 1.0, 1.0])
@@ -86,8 +84,7 @@ class BodySurfaces:
             pairs = pairs[~on_mirror(self.mesh, pairs)]
         if chamber:
             return pairs
-        key, inner = (each @ [8, 1] for each in (pairs, self.mesh.facets["chamber"]))
-        return pairs[~np.isin(key, inner)]
+        return pairs[~self._is_in(pairs, "chamber")]
 
     def parts(
         self,
@@ -96,7 +93,7 @@ class BodySurfaces:
         open_at_mirror: bool = False,
         level: int = 3,
     ) -> list[Drawable]:
-        """The surface of some cells, one drawable per region.
+        """The surface of some cells, one drawable per region, and one of a smeared winding.
 
         Args:
             cells: True for those to draw, (m,).
@@ -104,35 +101,22 @@ class BodySurfaces:
             open_at_mirror: draw the half with its facets in the mirror plane, not the whole.
             level: pieces along an edge.
         """
-        mesh, layers = self.mesh, []
+        mesh = self.mesh
+        layers: dict[str, list[Ints]] = {}
         for name in mesh.regions:
             chosen = cells & self._region(name)
             pairs = boundary_facets(mesh, chosen) if open_at_mirror else self.outside(chosen)
+            wound = self._is_wound(pairs)
+            layers.setdefault(name, []).append(pairs[~wound])
+            layers.setdefault("winding", []).append(pairs[wound])
+        found = []
+        for name, parts in layers.items():
+            pairs = np.concatenate(parts)
             if len(pairs):
                 skin = Tessellation(mesh, pairs, level)
                 data = self.surface(skin, state, mesh.half and not open_at_mirror)
-                layers.append(Drawable(data, color=COLORS.get(name, "#999999")))
-        return layers
-
-    def smeared_winding(
-        self, cells: Mask, state: Snapshot | None = None, mirror: bool = True
-    ) -> list[Drawable]:
-        """The surface over which a winding is smeared, where it has no sheath over it.
-
-        Args:
-            cells: True for the cells inside it that are drawn, (m,).
-            state: the state; None: undeformed.
-            mirror: with its mirror image in x = 0, of a half body.
-        """
-        pairs = self.mesh.facets.get("winding", np.zeros((0, 2), dtype=np.int64))
-        pairs = pairs[cells[pairs[:, 0]]]
-        if not self.smeared or not len(pairs):
-            return []
-        skin = Tessellation(self.mesh, pairs)
-        data = self.surface(skin, state, self.mesh.half and mirror)
-        # a little outside of the rubber on which it lies
-        data.points += _LIFT * data.point_data.active_normals
-        return [Drawable(data, color=COLORS["winding"])]
+                found.append(Drawable(data, color=COLORS.get(name, "#999999")))
+        return found
 
     def winding_line(self, state: Snapshot | None = None) -> list[Drawable]:
         """The line in which a smeared winding meets the plane x = 0.
@@ -213,6 +197,16 @@ class BodySurfaces:
             image = fiber_lines(mesh, _select(fibers, kept & (fibers.z < near)), moved)
             lines.append(image.reflect((1, 0, 0)))
         return [Drawable(data, color=COLORS["fiber"], radius=_FIBER_RADIUS) for data in lines]
+
+    def _is_wound(self, pairs: Ints) -> Mask:
+        """True for the facets over which a winding is smeared, (k,)."""
+        return self._is_in(pairs, "winding") & self.smeared
+
+    def _is_in(self, pairs: Ints, surface: str) -> Mask:
+        """True for the facets of a named surface, (k,)."""
+        key, named = (each @ [8, 1] for each in (pairs, self.mesh.facets[surface]))
+        found: Mask = np.isin(key, named)
+        return found
 
     def _region(self, name: str) -> Mask:
         number = self.mesh.regions.get(name, -1)

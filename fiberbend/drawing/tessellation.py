@@ -16,6 +16,11 @@ from geometry.mesh.data import (
 )
 from geometry.mesh.reference import shape_functions
 
+_SHOWN = 0.995
+"""Part of the drawn points whose values lie within the colour bar."""
+_EDGE_ON = 0.2
+"""A surface is hardly seen whose normal has less than this along the view."""
+
 
 def boundary_facets(mesh: MeshData, cells: NDArray[np.bool_]) -> Ints:
     """Facets that belong to exactly one of some cells.
@@ -118,6 +123,21 @@ class Tessellation:
         normals = np.concatenate(parts)
         size = np.linalg.norm(normals, axis=1, keepdims=True)
         return normals / np.where(size > 0, size, 1.0)
+
+
+def greatest_seen(
+    skin: Tessellation, nodes: Floats, values: Floats, toward: tuple[float, float, float]
+) -> float:
+    """Greatest of the values that a viewer sees, single peaks left out.
+
+    Args:
+        skin: the drawn surface.
+        nodes: positions at rest of the nodes of every cell, (m, k, 3), mm.
+        values: at the drawn points, (n,).
+        toward: direction to the viewer, or from him: of a half, its mirror image is seen.
+    """
+    seen = np.abs(skin.normals(nodes) @ toward) > _EDGE_ON * np.linalg.norm(toward)
+    return float(np.quantile(values[seen] if seen.any() else values, _SHOWN))
 
 
 def _square(level: int) -> tuple[Floats, Ints]:

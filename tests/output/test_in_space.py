@@ -13,7 +13,7 @@ import pytest
 from fiberbend.drawing.animation import SIZE, Animation
 from fiberbend.drawing.body import draw_pictures
 from fiberbend.drawing.obstacles import Obstacles, Scenery, write_forces
-from fiberbend.drawing.page import SMEARED, WARN, Page, colormap
+from fiberbend.drawing.page import COLORS, SMEARED, WARN, Page, colormap
 from fiberbend.drawing.panel import Panel, free_place
 from fiberbend.drawing.renderer import FROM_THE_SIDE, Drawable, Renderer, View, frame
 from fiberbend.drawing.rest import draw_rest, rest_image
@@ -21,7 +21,7 @@ from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.reader.reader import parse_case
 from fiberbend.results.scenery import scenery
 from fiberbend.states.labels import short_number
-from fiberbend.states.obstacles import Bar, Box, Sheet
+from fiberbend.states.obstacles import Bar, Box, Shape, Sheet
 from fiberbend.states.recovery import recover, split_nodes
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.mesh.data import Floats
@@ -157,7 +157,10 @@ def test_digits_of_captions(value: float, text: str) -> None:
 def test_obstacles_neither_hide_nor_tint_the_body(renderer: Renderer) -> None:
     box = block(0.5)
     points = np.asarray(box.points)
-    shapes = {"plane": Sheet((-5.0, 0.0, 0.0), (1.0, 0.2, 0.0)), "bar": Bar((4.0, 3.0), 3.0)}
+    shapes: dict[str, Shape] = {
+        "plane": Sheet((-5.0, 0.0, 0.0), (1.0, 0.2, 0.0)),
+        "bar": Bar((4.0, 3.0), 3.0),
+    }
     obstacles = Obstacles(Scenery(shapes), points)
     view = obstacles.frame(points, FROM_THE_SIDE, 4 / 3)
     body = [Drawable(box, scalars="value")]
@@ -186,7 +189,7 @@ def test_touch_is_where_the_body_is_nearest() -> None:
     scene = model_mesh()
     points = BodySurfaces(scene).points(snapshot(scene, 60.0))
     low = points[points[:, 1].argmin()]
-    shapes = {
+    shapes: dict[str, Shape] = {
         "plane": Sheet((0.0, low[1] - 1, 0.0), (0.0, 1.0, 0.0)),
         "roof": Box((-2.0, 20.0, -4.0), (2.0, 22.0, 4.0)),
     }
@@ -204,7 +207,10 @@ def test_names_and_forces_are_written_beside_the_body(renderer: Renderer) -> Non
     surfaces = BodySurfaces(scene)
     points = surfaces.points(state)
     low = float(points[:, 1].min())
-    shapes = {"plane": Sheet((0.0, low, 0.0), (0.0, 1.0, 0.0)), "cylinder": Bar((-8.0, 4.0), 3.0)}
+    shapes: dict[str, Shape] = {
+        "plane": Sheet((0.0, low, 0.0), (0.0, 1.0, 0.0)),
+        "cylinder": Bar((-8.0, 4.0), 3.0),
+    }
     forces = {state.step: {"plane": (0.0, 1.25, 0.0), "cylinder": (0.0, 0.0, 0.0)}}
     obstacles = Obstacles(Scenery(shapes, forces), points)
     view = obstacles.frame(points, FROM_THE_SIDE, 4 / 3)
@@ -238,7 +244,7 @@ WINDING = {"winding": {"pattern": "double-helix", "pitch": "3 mm", "fiber": "kev
 
 def test_forces_of_roof_and_post_come_from_the_history() -> None:
     blocked = case(effects=[{"pressure": {"to": "9 kPa"}}, WINDING, {"blocked-tip": {}}])
-    rows = [
+    rows: list[dict[str, Any]] = [
         {"step": 0, "tip_force_N": None},
         {"step": 1, "tip_force_N": 0.5, "roof_force_N": 0.75},
     ]
@@ -252,7 +258,7 @@ def test_forces_of_roof_and_post_come_from_the_history() -> None:
 def test_forces_of_obstacles_come_from_the_history() -> None:
     contact = {"contact": {"cylinder": {"center": ["-30 mm", "10 mm"], "radius": "8 mm"}}}
     touched = case(effects=[{"pressure": {"to": "9 kPa"}}, WINDING, contact])
-    rows = [
+    rows: list[dict[str, Any]] = [
         {"step": 0},
         {"step": 1, "contact_cylinder_y_N": 0.3, "contact_cylinder_z_N": 0.4, "tip_force_N": None},
     ]
@@ -297,18 +303,23 @@ def test_a_smeared_winding_is_shown_as_a_surface() -> None:
     lines = model_mesh()
     spread = dataclasses.replace(lines, smeared=True)
     assert BodySurfaces(lines).names[-1] == "fiber"
-    assert not BodySurfaces(lines).smeared_winding(np.ones(len(lines.mesh.cells), dtype=bool))
     surfaces = BodySurfaces(spread)
     assert surfaces.names[-1] == "winding"
     assert surfaces.remark == f", {SMEARED}"
     assert not surfaces.fiber_tubes()
-    (layer,) = surfaces.smeared_winding(np.ones(len(spread.mesh.cells), dtype=bool))
-    # the winding lies at radius a + t = 10 over the chamber's length, a little lifted
+
+    def wound(surfaces: BodySurfaces) -> list[Drawable]:
+        return [
+            layer for layer in surfaces.parts(surfaces.peeled) if layer.color == COLORS["winding"]
+        ]
+
+    assert not wound(BodySurfaces(lines))
+    (layer,) = wound(surfaces)
+    # the winding lies at radius a + t = 10 over the chamber's length
     points = np.asarray(layer.data.points)
-    assert np.abs(points[:, 0]).max() == pytest.approx(10.0, abs=0.1)
+    assert np.abs(points[:, 0]).max() == pytest.approx(10.0)
     assert (points[:, 2].min(), points[:, 2].max()) == pytest.approx((0.0, 24.0))
-    bare = dataclasses.replace(lines, fibers=None)
-    assert "winding" not in BodySurfaces(bare).names
+    assert set(BodySurfaces(dataclasses.replace(lines, fibers=None)).names) == set(lines.materials)
 
 
 # --- at rest ---------------------------------------------------------------------------------
@@ -363,6 +374,7 @@ def test_animation_has_a_frame_for_every_state(renderer: Renderer) -> None:
     file = io.BytesIO()
     Animation(scene, renderer, ROOF).write(file, frames(scene, states), lambda: states)
     assert file.getbuffer().nbytes < 4_000_000
+    gif: Any
     with Image.open(file) as gif:
         assert (gif.size, gif.n_frames, gif.info["loop"]) == (SIZE, 4, 0)
         pages = []
