@@ -32,6 +32,7 @@ from fiberbend.running import launch, messages, record, restart
 from fiberbend.running.assembly import Assembly, assemble
 from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording, ended, unmet
+from fiberbend.running.outputs import draw, write_page
 from fiberbend.running.progress import Progress
 from fiberbend.running.warm import SectionStates, section_guides, section_states
 from fiberbend.schema.problems import CaseError
@@ -220,9 +221,11 @@ class _Run:
             if self.comm.rank == 0:
                 why = f"{status}: {reason}" if reason else None
                 self._draw(assembly, recording, why, rows, check)
-                run["wall_s"] = self._wall(assembly)
-                run["warnings"] = list(recording.warnings)
-                self._page(assembly, recording, rows, run)
+                if case.output.report:
+                    progress.phase("report")
+                run |= {"wall_s": self._wall(assembly), "warnings": list(recording.warnings)}
+                self.folder.write_run(**run)
+                write_page(self.folder, case, rows, run, progress.message)
         self.comm.barrier()
         self._report(run, check)
         return RunResult(status, reason, rows, run, self.folder.path if self.folder else None)
@@ -363,25 +366,6 @@ class _Run:
             say(line)
         say_warnings(run["warnings"], say)
 
-    def _page(
-        self,
-        assembly: Assembly,
-        recording: Recording,
-        rows: list[dict[str, Any]],
-        run: dict[str, Any],
-    ) -> None:
-        """The report, on rank 0, from the folder as it is now."""
-        from fiberbend.running import outputs
-
-        assert self.folder is not None
-        self.progress.phase("report")
-        run["wall_s"] = self._wall(assembly)
-        self.folder.write_run(**run)
-        outputs.write_page(self.folder, self.case, rows, run, lambda text: recording.warn([text]))
-        if run["warnings"] != recording.warnings:
-            run["warnings"] = list(recording.warnings)
-            self.folder.write_run(**run)
-
     def _draw(
         self,
         assembly: Assembly,
@@ -391,8 +375,6 @@ class _Run:
         check: Check | None,
     ) -> None:
         """Fields, pictures and plots, on rank 0."""
-        from fiberbend.running import outputs
-
         assert self.folder is not None
         model_mesh = ModelMesh(
             mesh=assembly.scene.domain.data,
@@ -402,7 +384,7 @@ class _Run:
             title=self.case.title,
             uniform=not self.model.ends,
         )
-        outputs.draw(
+        draw(
             self.folder,
             self.case,
             model_mesh,

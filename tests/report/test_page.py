@@ -231,7 +231,10 @@ def test_a_page_that_cannot_be_made_costs_a_line_not_the_results(
     result = fiberbend.run(parse_case(closed_form()), tmp_path / "run", quiet=False)
     assert result.status == "converged"
     assert (tmp_path / "run" / "history.csv").exists()
-    assert "no report, writing it failed: RuntimeError: no page today" in capsys.readouterr().out
+    text = "no report, writing it failed: RuntimeError: no page today"
+    assert text in capsys.readouterr().out
+    assert text in json.loads((tmp_path / "run" / "run.json").read_text())["warnings"]
+    assert text in result.run["warnings"]
 
 
 def test_the_command_writes_the_page_where_it_is_asked_to(folder: Path, tmp_path: Path) -> None:
