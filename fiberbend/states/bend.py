@@ -84,11 +84,8 @@ class Bend:
         Returns:
             Array (n, 3), mm.
         """
-        # a body put together of sections has many nodes at few stations
-        stations, which = np.unique(z, return_inverse=True)
-        rotation, place = self.line.turning(stations)
-        turned = np.einsum("nij,nj->ni", rotation[which], position - self.line.centre)
-        placed: Floats = place[which] + turned
+        rotation, place = self.line.turning(z)
+        placed: Floats = place + np.einsum("nij,nj->ni", rotation, position - self.line.centre)
         placed[:, 1] += self.height
         return placed
 
