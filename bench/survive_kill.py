@@ -101,7 +101,7 @@ def killed(case: Path, out: Path, like: Whole, moments: list[float]) -> Killed:
     """Kill a run at some moments, one after the other, and go on to its end."""
     phases, faults = [], []
     for moment in moments:
-        process = launch(like.ranks, ["run", case, "--out", out, *_on(out)])
+        process = launch(like.ranks, ["run", case, "--out", out, "--verbose", *_on(out)])
         time.sleep(moment)
         phases.append(_phase(kill(process)))
         faults += [

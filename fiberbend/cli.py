@@ -158,7 +158,9 @@ def plan(case: CaseFile, /, *, settings: Changes = (), force: bool = False) -> i
 @app.command(
     help_epilogue="""Examples:
   fiberbend run cases/section.yaml
+  fiberbend run cases/section.yaml --verbose
   fiberbend run cases/section.yaml --out runs/thick --set actuator.wall="3 mm"
+  fiberbend run cases/section.yaml --quiet --overwrite
   mpirun -n 4 fiberbend run cases/free_bending.yaml --resume
 """
 )
@@ -171,9 +173,13 @@ def run(
     overwrite: bool = False,
     resume: bool = False,
     quiet: bool = False,
+    verbose: Annotated[bool, Parameter(name=("--verbose", "-v"))] = False,
     force: bool = False,
 ) -> int:
-    """Solve a case.
+    """Solve a case, and print what it answers.
+
+    Its folder gets the curves (history.csv), how they were computed (run.json),
+    what was printed (run.log), and report.html, pictures and fields as asked.
 
     Args:
         case: Case file.
@@ -181,18 +187,22 @@ def run(
         out: Run folder; runs/CASE unless given.
         overwrite: Replace an earlier run.
         resume: Go on with an interrupted run.
-        quiet: No progress.
+        quiet: No progress; the answer alone.
+        verbose: Print phases, cut-backs, counts and comparisons with other models too.
         force: Run whether there is enough memory or not.
     """
     from fiberbend.reader.reader import read_case
+    from fiberbend.results.folder import REPORT
     from fiberbend.running.progress import Progress
     from fiberbend.schema.problems import CaseError
 
     if overwrite and resume:
         raise CycloptsError(msg="--resume and --overwrite together, expected one of them")
+    if quiet and verbose:
+        raise CycloptsError(msg="--quiet and --verbose together, expected one of them")
     checked = read_case(case, settings)
     folder = out or Path("runs") / case.stem
-    progress = Progress(quiet=quiet)
+    progress = Progress(quiet=quiet, verbose=verbose, answers=True)
     try:
         launch.start_mpi()
         from fiberbend.running.runner import run_case
@@ -220,6 +230,8 @@ def run(
     if result.status != "converged":
         say(f"{result.status}: {result.reason}", sys.stderr)
     say(f"results in {folder}")
+    if (folder / REPORT).exists():
+        say(f"report in {folder / REPORT}")
     return FAILED if result.status == "failed" else 0
 
 

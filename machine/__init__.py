@@ -1,1 +1,1 @@
-"""The computer that a run finds: which of its folders can be used and trusted."""
+"""The computer that a run finds: folders that can be trusted, processor, BLAS, and commit."""

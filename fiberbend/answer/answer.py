@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from fiberbend import columns as col
-from fiberbend.answer.numbers import quantity
+from fiberbend.answer.numbers import number, quantity
 from fiberbend.answer.touch import touches
 from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
@@ -20,6 +21,9 @@ WIDTH = 100
 """Columns of the printed answer."""
 _SAME = 1e-6
 """Part of an asked angle or pressure by which a row may miss it."""
+_HARD = "\u00a0"
+_TOGETHER = re.compile(r"(?<==) (?=-?\d)|(?<=[a-z]) (?==)|(?<=\d) (?=(?:[a-zA-Z]+³?|%)(?:\W|$))")
+"""Spaces within "x = 8 mm"."""
 _SEEN = 5e-3
 """Degrees and millimetres that are shown; less is round-off."""
 
@@ -97,27 +101,28 @@ def lines(found: Answer, verbose: bool = False) -> list[str]:
         found: the answer.
         verbose: with the comparisons.
     """
-    text = textwrap.wrap(found.title, WIDTH)
-    text += textwrap.wrap(found.sentence, WIDTH)
+    text = [*_wrapped(found.title), *_wrapped(found.sentence)]
     width = max((len(entry.label) for entry in found.entries), default=0)
     for entry in found.entries:
         note = f" ({entry.note})" if entry.note else ""
-        text += textwrap.wrap(
-            f"  {entry.label:<{width}}  {entry.value}{note}",
-            WIDTH,
-            subsequent_indent=" " * (width + 6),
-            break_on_hyphens=False,
-        )
+        text += _wrapped(f"  {entry.label:<{width}}  {entry.value}{note}", width + 6)
     if verbose:
         for line in found.comparisons:
-            text += textwrap.wrap(line, WIDTH, subsequent_indent="  ", break_on_hyphens=False)
-    text += textwrap.wrap(found.trust, WIDTH, subsequent_indent="  ")
+            text += _wrapped(line, 2)
+    text += _wrapped(found.trust, 2)
     if found.warnings:
         number = len(found.warnings)
         text.append(f"{number} warning{'s' if number > 1 else ''}:")
         # a warning stays a line, which scripts can find
         text += [f"  {line}" for line in found.warnings]
     return text
+
+
+def _wrapped(text: str, indent: int = 0) -> list[str]:
+    """A text in lines of `WIDTH` columns; a number and its unit stay together."""
+    whole = _TOGETHER.sub(_HARD, text)
+    lines = textwrap.wrap(whole, WIDTH, subsequent_indent=" " * indent, break_on_hyphens=False)
+    return [line.replace(_HARD, " ") for line in lines]
 
 
 # --- how it ended -----------------------------------------------------------------------------
@@ -130,7 +135,13 @@ def _sentence(case: Case, model: ModelKind, rows: Sequence[col.Row], run: Mappin
         if case.straight and last.get(col.TIP_FORCE) is not None:
             force = quantity(last[col.TIP_FORCE], "N")
             pressure = quantity(last[col.PRESSURE], "kPa")
-            return f"The blocked tip presses with {force} at {pressure} ({model.name} model)."
+            if model.ends:
+                return (
+                    f"At {pressure} the tip presses on its post with {force} ({model.name} model)."
+                )
+            return (
+                f"Kept straight at {pressure}, the {model.name} model gives a tip force of {force}."
+            )
         if case.inflation is None:
             return f"The actuator ends at {here} ({model.name} model)."
         angle, pressure = quantity(last[col.ANGLE], "°"), quantity(last[col.PRESSURE], "kPa")
@@ -213,7 +224,7 @@ def _forces(case: Case, model: ModelKind, rows: Sequence[col.Row]) -> Iterator[E
         yield Entry(f"tip force at {at}", quantity(last[col.TIP_FORCE], "N"))
     yield Entry("this force is", _force_name(case, model))
     forces = ((col.ROOF_FORCE, "force of the roof", "N"), (col.AXIAL_FORCE, "axial force", "N"))
-    for key, label, unit in (*forces, (col.MOMENT, "moment that keeps it straight", "N mm")):
+    for key, label, unit in (*forces, (col.MOMENT, "bending moment", "N mm")):
         if last.get(key) is not None:
             yield Entry(label, quantity(last[key], unit))
 
@@ -273,12 +284,10 @@ def _critical(run: Mapping[str, Any]) -> Iterator[Entry]:
         before, beyond = point["unstable_modes_before"], point["unstable_modes_beyond"]
         if beyond <= before:
             continue
-        parts = []
-        if point.get(col.PRESSURE) is not None:
-            parts.append(quantity(point[col.PRESSURE], "kPa"))
-        if point.get(col.ANGLE) is not None:
-            parts.append(quantity(point[col.ANGLE], "°"))
-        load = point.get("load", "load")
+        load = point["load"]
+        parts = [f"{load} {number(point['value'])}"] if "value" in point else []
+        units = {col.PRESSURE: "kPa", col.ANGLE: "°"}
+        parts += [quantity(point[key], unit) for key, unit in units.items() if key in point]
         if point["kind"] == "limit":
             yield Entry("limit point", ", ".join(parts), f"beyond it the {load} falls")
         else:
@@ -296,7 +305,7 @@ def _strain(run: Mapping[str, Any]) -> Iterator[Entry]:
         if found.get(f"{axis}_mm") is not None
     ]
     strain = f"{100 * found['nominal']:.0f} %, logarithmic {found['logarithmic']:.3f}"
-    yield Entry("greatest strain", strain, f"{found['place']}; at rest {', '.join(at)}")
+    yield Entry("greatest strain", strain, f"at the end, {found['place']}; at rest {', '.join(at)}")
 
 
 # --- how far to trust it ----------------------------------------------------------------------
@@ -314,15 +323,17 @@ def _comparisons(run: Mapping[str, Any]) -> Iterator[str]:
 
 def _trust(run: Mapping[str, Any]) -> str:
     """One line: how it ended, the section model beside it, and how many warnings there are."""
-    parts = []
+    parts, warnings = [], run.get("warnings") or ()
     if run.get("status") != "converged":
-        parts.append("the values up to the end of the run are those of converged states")
+        parts.append("the values up to the end of the run are valid")
     beside = (run.get("crosscheck") or {}).get("section") or {}
-    if beside.get("text"):
-        parts.append(beside["text"])
-    number = len(run.get("warnings") or ())
-    if number:
-        parts.append(f"read the {'warning' if number == 1 else f'{number} warnings'} below")
+    text = beside.get("text")
+    # what is not expected stands among the warnings
+    if text and beside.get("band_percent") is not None and text not in warnings:
+        parts.append(text)
+    if warnings:
+        count = len(warnings)
+        parts.append(f"read the {'warning' if count == 1 else f'{count} warnings'} below")
     else:
         parts.append("no doubt beyond the expected error is known")
     return f"Trust: {'; '.join(parts)}."

@@ -81,7 +81,10 @@ def _where(gap: str, rows: Sequence[col.Row], first: int) -> tuple[str, str]:
                 for key, part in share.items()
             }
             steps = f"{first - 2} and {first - 1}"
-            return _state(at), f"its gaps in steps {steps} extrapolated, within step {first}"
+            return (
+                f"at {_state(at)}",
+                f"its gaps in steps {steps} extrapolated, within step {first}",
+            )
     return f"between {_state(before)} and {_state(now)}", f"within step {first}"
 
 
@@ -102,4 +105,5 @@ def _share(key: str, gap: str, rows: Sequence[col.Row], first: int) -> float:
 
 
 def _state(row: col.Row) -> str:
-    return f"{quantity(row[col.PRESSURE], 'kPa')}, {quantity(row[col.ANGLE], '°')}"
+    """Pressure and angle with three digits: steps are no finer."""
+    return f"{quantity(row[col.PRESSURE], 'kPa', 3)}, {quantity(row[col.ANGLE], '°', 3)}"

@@ -47,12 +47,14 @@ class Cause:
             None where there is no estimate.
         text: a sentence with the numbers behind it.
         direction: sign of its effect where there is no estimate; None where it may be either.
+        brief: what differences are expected for, where it is not its name.
     """
 
     name: str
     percent: float | None
     text: str
     direction: int | None = 0
+    brief: str = ""
 
     def explains(self, difference: float) -> bool:
         """Whether it accounts for a good part of a difference in per cent."""
@@ -107,7 +109,7 @@ def _ends(model: ModelKind, row: col.Row, other: OtherModel) -> list[Cause]:
     if side is not None and within is not None and abs(side - within) > _SIDEWAYS:
         turns.append(f"{side - within:+.1f}° in side angle")
     text = f"whole body {', '.join(turns)} beside its middle half"
-    return [Cause("end caps", percent, f"{text}: {percent:+.1f} %")]
+    return [Cause("end caps", percent, f"{text}: {percent:+.1f} %", brief="the end caps")]
 
 
 def _fibers(case: Case, model: ModelKind, row: col.Row) -> list[Cause]:
@@ -119,7 +121,8 @@ def _fibers(case: Case, model: ModelKind, row: col.Row) -> list[Cause]:
         f"rubber bulges between the turns of a pitch of {turns.pitch:g} mm, and no smeared "
         f"winding sees it: about {percent:+.1f} %"
     )
-    return [Cause("discrete winding", percent, text)]
+    brief = f"a pitch of {turns.pitch:g} mm"
+    return [Cause("discrete winding", percent, text, brief=brief)]
 
 
 def _of_closed_form(

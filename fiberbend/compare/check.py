@@ -20,7 +20,8 @@ from analytic.stress import Floats
 from fiberbend import columns as col
 from fiberbend.case.case import Case
 from fiberbend.case.measured import Measured
-from fiberbend.compare.causes import Cause, find_causes
+from fiberbend.compare.causes import find_causes
+from fiberbend.compare.comparison import Comparison
 from fiberbend.compare.others import (
     OtherModel,
     StraightSection,
@@ -30,6 +31,7 @@ from fiberbend.compare.others import (
 )
 from fiberbend.compare.unit_check import unit_remark
 from fiberbend.drawing.overlay import Line, Overlay, Points
+from fiberbend.models import lines
 from fiberbend.models.closed_form import dimensions, no_analytic
 from fiberbend.models.model import ModelKind
 from fiberbend.models.resolution import BULGING_PITCH, FARTHEST_PITCH, bulging
@@ -43,65 +45,11 @@ _SMEARED = 0.5
 _BULGING = 5.5
 _LEAST_ANGLE = 1.0
 _LEAST_LOSS = 0.5
+_LEAST_FORCE = -60.0
+"""Percent by which the tip force of a body, guided and under a soft sheath, is below that of the
+section kept straight at most; measured: 45 to 50 (docs/accuracy_blocked.md)."""
 _FULL = 0.4
 """Part of the greatest pressure from which a body lies firmly on roof and post."""
-
-
-@dataclasses.dataclass(frozen=True)
-class Comparison:
-    """A run beside one other model, or beside measured points.
-
-    Attributes:
-        name: as run.json calls the other one.
-        label: as a message calls it.
-        percent: the greatest difference, signed, in per cent of the other one.
-        at: where, such as "180.0°".
-        band: percent within which they are expected to agree; None where that is not known.
-        causes: estimates of what sets them apart there.
-        closed: the other one is a closed form.
-    """
-
-    name: str
-    label: str
-    percent: float
-    at: str
-    band: float | None
-    causes: tuple[Cause, ...] = ()
-    closed: bool = False
-
-    @property
-    def beyond(self) -> bool:
-        """Whether the greatest difference is beyond the band."""
-        return self.band is not None and abs(self.percent) > self.band
-
-    @property
-    def likely(self) -> list[Cause]:
-        """The causes that account for a good part of the difference."""
-        return [cause for cause in self.causes if cause.explains(self.percent)]
-
-    def entry(self) -> dict[str, Any]:
-        """Its entry of run.json."""
-        entry: dict[str, Any] = {
-            "greatest_percent": round(self.percent, 3),
-            "at": self.at,
-            "band_percent": self.band,
-            "beyond_band": self.beyond,
-        }
-        if self.causes:
-            entry["estimates_percent"] = {c.name: _rounded(c.percent) for c in self.causes}
-        if self.beyond:
-            entry["likely"] = [f"{c.name}: {c.text}" for c in self.likely] or ["unexplained"]
-        return entry
-
-    def line(self) -> str:
-        """Its line for the user."""
-        text = f"run against {self.label}: {self.percent:+.1f} % at {self.at}"
-        if self.band is None:
-            return text
-        if not self.beyond:
-            return f"{text}, within {self.band:g} %"
-        names = ", ".join(cause.name for cause in self.likely)
-        return f"{text}, BEYOND {self.band:g} %: {'likely ' + names if names else 'unexplained'}"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -135,7 +83,12 @@ class Check:
     def entry(self) -> dict[str, Any]:
         """The entry 'crosscheck' of run.json."""
         entry: dict[str, Any] = {c.name: c.entry() for c in self.comparisons}
-        extra = {"missing": self.missing, "remarks": self.remarks, "calibration": self.calibration}
+        extra = {
+            "missing": self.missing,
+            "remarks": self.remarks,
+            "calibration": self.calibration,
+            "lines": self.lines(),
+        }
         return entry | {key: value for key, value in extra.items() if value}
 
     @property
@@ -146,12 +99,11 @@ class Check:
     def doubts(self) -> list[str]:
         """What casts doubt on the run, not on the other model.
 
-        A closed form is further off than its band on most cases, for reasons that are known; a
-        difference from the section model or from measured points, or one without a reason, is not
-        expected.
+        A closed form is further off than its band on most cases, for reasons that are known, and a
+        section kept straight has about twice the force of a body; a difference from the section
+        model or from measured points, or one without a reason, is not expected.
         """
-        unexpected = (c for c in self._shown if c.beyond and not (c.closed and c.likely))
-        return [*(c.line() for c in unexpected), *self.doubtful]
+        return [*(c.line() for c in self._shown if c.unexpected), *self.doubtful]
 
     def lines(self) -> list[str]:
         """A few lines for the user."""
@@ -209,13 +161,13 @@ def crosscheck(
         least = _FULL * np.abs(at).max()
     counts = np.abs(at) > least
     added: list[dict[str, Any]] = [{} for _ in rows]
-    lines, comparisons = [], []
+    drawn, comparisons = [], []
     for other in others:
         values = other.value(at)
         name = f"{other.name}_{'tip_force_N' if blocked else 'kPa'}"
         for row, value in zip(added, values, strict=True):
             row[name] = None if np.isnan(value) else float(value)
-        lines += _drawn(other, at, blocked)
+        drawn += _drawn(other, at, blocked)
         worst = _worst(run, values, counts)
         if worst is not None:
             index, percent = worst
@@ -226,7 +178,14 @@ def crosscheck(
                 causes = find_causes(case, model, rows[index], other, float(values[index]))
             comparisons.append(
                 Comparison(
-                    other.name, other.label, percent, where, limit, tuple(causes), bool(other.line)
+                    other.name,
+                    other.label,
+                    percent,
+                    where,
+                    limit,
+                    tuple(causes),
+                    _limits(model, other, blocked, percent),
+                    "force" if blocked else "pressure",
                 )
             )
     points: tuple[Points, ...] = ()
@@ -241,7 +200,8 @@ def crosscheck(
         found = [text for text in (outside, unit_remark(rows, points[0], blocked)) if text]
         remarks += found
         doubtful += found
-    overlay = Overlay(tuple(lines), points)
+    doubtful += _no_paper(case)
+    overlay = Overlay(tuple(drawn), points)
     reasons = {"section": no_section, "analytic": no_analytic(case) or ""}
     return Check(
         tuple(added),
@@ -283,6 +243,14 @@ def _limit(case: Case, model: ModelKind, other: OtherModel, blocked: bool) -> fl
     return PAPER_FORCE if blocked else PAPER_PRESSURE
 
 
+def _limits(model: ModelKind, other: OtherModel, blocked: bool, percent: float) -> str:
+    """Of what it is known that the run differs beyond its band; empty where that is a doubt."""
+    if other.line:
+        return "the closed form"
+    loses = blocked and model.ends and _LEAST_FORCE < percent < 0
+    return "a section kept straight" if loses else ""
+
+
 def _unresolved(
     case: Case, model: ModelKind, rows: Sequence[dict[str, Any]], others: Sequence[str]
 ) -> list[str]:
@@ -301,6 +269,12 @@ def _unresolved(
     ]
 
 
+def _no_paper(case: Case) -> list[str]:
+    """Why the paper's figures are not beside a run that asks for them."""
+    reason = no_analytic(case) if lines.PAPER in case.compare else None
+    return [f"compare: nothing of the paper is beside the run: {reason}"] if reason else []
+
+
 def _beside_measured(
     rows: Sequence[dict[str, Any]], columns: tuple[str, str], points: Points, blocked: bool
 ) -> tuple[Comparison | None, str]:
@@ -315,7 +289,11 @@ def _beside_measured(
     index, percent = worst
     where = f"{at[index]:.1f}{' kPa' if blocked else '°'}"
     limit = PAPER_FORCE if blocked else PAPER_PRESSURE
-    return Comparison("measured", points.label, percent, where, limit), remark
+    quantity = "force" if blocked else "pressure"
+    found = Comparison(
+        "measured", points.label, percent, where, limit, quantity=quantity, reference=True
+    )
+    return found, remark
 
 
 def _calibration(case: Case, measured: Measured) -> dict[str, Any]:
@@ -359,7 +337,3 @@ def _worst(run: Floats, other: Floats, counts: NDArray[np.bool_]) -> tuple[int, 
     percent = 100 * (run[where] / other[where] - 1)
     most = int(np.argmax(np.abs(percent)))
     return int(where[most]), float(percent[most])
-
-
-def _rounded(value: float | None) -> float | None:
-    return None if value is None else round(value, 3)

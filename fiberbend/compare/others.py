@@ -57,11 +57,15 @@ def bending_models(case: Case, model: str, section: Curve | None) -> list[OtherM
         case: the case.
         model: name of the run's own model, which is none of the others.
         section: P(θ) of the section model, where there is one.
+
+    The paper's own line is beside a case that asks for it.
     """
     others = []
     if section is not None:
         others.append(OtherModel("section", "section model", _through_curve(section)))
     for line, closed in analytic_curves(case).items():
+        if line == lines.PAPER and line not in case.compare:
+            continue
         others.append(OtherModel(lines.NAMES[line], lines.LABELS[line], _closed(closed), line))
     return [other for other in others if other.name != model]
 
@@ -78,7 +82,7 @@ def force_models(case: Case, model: str, straight: StraightSection | None) -> li
         others += [
             OtherModel(
                 lines.NAMES[lines.ZERO_FIT],
-                "κP/L_f",
+                "eq. (20) of the paper, κP/L_f" if lines.PAPER in case.compare else "κP/L_f",
                 _force(curves[lines.ZERO_FIT], lever),
                 lines.ZERO_FIT,
             ),

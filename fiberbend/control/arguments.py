@@ -89,7 +89,7 @@ def control(
         return launch.stopped(signals.stop_of(error))
     except BaseException as error:
         return launch.crash(error, folder)
-    for line in result.lines():
+    for line in result.lines("paper" in checked.compare):
         say(line)
     say(f"results in {folder}")
     return 0

@@ -178,7 +178,7 @@ def _write(result: ControlResult, case: Case, folder: RunFolder) -> None:
     folder.write_text("angle_filter.h", table_header(result.table, case.title, result.fit.source))
     with own_style():
         folder.write("control.png", functools.partial(plot_control, result, title=case.title))
-    folder.write_json(CONTROL_FILE, result.report())
+    folder.write_json(CONTROL_FILE, result.report("paper" in case.compare))
 
 
 def _off(mismatch: float) -> str:

@@ -57,28 +57,40 @@ class ControlResult:
     step_metrics: StepMetrics
     sine_metrics: SineMetrics
 
-    def lines(self) -> list[str]:
-        """The result as lines of text, beside the paper's numbers."""
+    def lines(self, paper: bool = False) -> list[str]:
+        """The result as lines of text.
+
+        Args:
+            paper: beside the paper's numbers.
+        """
         step, sine = self.step_metrics, self.sine_metrics
         low, high = np.degrees(self.settings.steps.levels)
         bottom, *_, top = np.degrees(self.settings.sine.levels)
+
+        def beside(text: str, name: str = "") -> str:
+            return f" ({name}{text})" if paper else ""
+
         return [
             f"filter:  {self.fit.source}",
             f"         up to {math.degrees(self.fit.departure):.1f}° off the plant's own curve",
             f"         table of {len(self.table.angle)} points, error {self.table.error:.1e} rad",
-            f"steps:   {low:g} and {high:g}°: filling {shown_time(step.fill_s)} "
-            f"(paper {shown_time(PAPER['fill_s'])}), emptying {shown_time(step.vent_s)} "
-            f"({shown_time(PAPER['vent_s'])})",
-            f"         undesired switching {_percent(step.undesired)} of the time "
-            f"({_percent(PAPER['undesired_steps'])})",
+            f"steps:   {low:g} and {high:g}°: filling {shown_time(step.fill_s)}"
+            f"{beside(shown_time(PAPER['fill_s']), 'paper ')}, emptying {shown_time(step.vent_s)}"
+            f"{beside(shown_time(PAPER['vent_s']))}",
+            f"         undesired switching {_percent(step.undesired)} of the time"
+            f"{beside(_percent(PAPER['undesired_steps']))}",
             f"sine:    {bottom:g} to {top:g}°, {self.settings.sine.frequency:g} Hz: delay "
-            f"{shown_time(sine.delay_s)} ({shown_time(PAPER['delay_s'])})",
-            f"         undesired switching {_percent(sine.undesired)} of the time "
-            f"({_percent(PAPER['undesired_sine'])})",
+            f"{shown_time(sine.delay_s)}{beside(shown_time(PAPER['delay_s']))}",
+            f"         undesired switching {_percent(sine.undesired)} of the time"
+            f"{beside(_percent(PAPER['undesired_sine']))}",
         ]
 
-    def report(self) -> dict[str, Any]:
-        """Content of control.json."""
+    def report(self, paper: bool = False) -> dict[str, Any]:
+        """Content of control.json.
+
+        Args:
+            paper: beside the paper's numbers.
+        """
         settings, step, sine = self.settings, self.step_metrics, self.sine_metrics
         p, zone = settings.pneumatics, settings.controller.zone
         low, high = np.degrees(settings.steps.levels)
@@ -138,14 +150,15 @@ class ControlResult:
                 "error_rms_deg": math.degrees(sine.error_rad),
                 "plant_error_rms_deg": math.degrees(sine.plant_error_rad),
             },
-            "paper": {
+        }
+        if paper:
+            content["paper"] = {
                 "fill_ms": 1e3 * PAPER["fill_s"],
                 "vent_ms": 1e3 * PAPER["vent_s"],
                 "steps_undesired_percent": 100 * PAPER["undesired_steps"],
                 "delay_ms": 1e3 * PAPER["delay_s"],
                 "sine_undesired_percent": 100 * PAPER["undesired_sine"],
-            },
-        }
+            }
         return {name: _rounded(value) for name, value in content.items()}
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
@@ -25,14 +25,6 @@ def doubts(case: Case) -> list[str]:
     """Every doubt that is known of a case's answer, before anything is solved."""
     model = choose_model(case)[0]
     return [*_model(case, model), *_winding(case, model), *_numbers(case)]
-
-
-def say_warnings(warnings: Sequence[str], say: Callable[[str], None]) -> None:
-    """The last lines of a run: everything that is doubtful of it, once more and together."""
-    if warnings:
-        say(f"{len(warnings)} warning{'s' if len(warnings) > 1 else ''}:")
-    for text in warnings:
-        say(f"  {text}")
 
 
 def _model(case: Case, model: ModelKind) -> Iterator[str]:

@@ -15,6 +15,8 @@ from fiberbend.plan.memory import shortage
 
 WIDTH = 100
 """Columns of a plan."""
+PAPER_SHAPE = "hemicircle"
+"""The section of the paper; its figures are beside no other one."""
 _INDENT = 13
 
 
@@ -155,3 +157,5 @@ def unused(case: Case, model: ModelKind) -> Iterator[str]:
         yield "solver.max_turn"
     if not model.ends and "support" in case.model_fields_set:
         yield "support"
+    if case.compare and case.actuator.section != PAPER_SHAPE:
+        yield "compare"

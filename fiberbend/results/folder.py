@@ -35,6 +35,10 @@ RUN_KEYS = (
     "peak_memory_MB",
     "ranks",
     "versions",
+    "command",
+    "commit",
+    "machine",
+    "blas",
 )
 """Keys that run.json always has; scripts rely on them."""
 
@@ -47,6 +51,8 @@ FIBERS = "fibers.npz"
 SNAPSHOTS = "snapshots"
 REPORT = "report.html"
 """The page with answer, curves and the body in space."""
+LOG = "run.log"
+"""What the run has said, a line at a time."""
 CHECKPOINT = "checkpoint.npz"
 CHECKPOINT_BEFORE = "checkpoint.before.npz"
 """The one before the last, for when that cannot be read."""
@@ -56,7 +62,7 @@ BLOCKED = "blocked"
 _OF_A_RUN = (
     *(CASE_FILE, RUN_FILE, HISTORY_FILE, MESH, CHECKPOINT, CHECKPOINT_BEFORE, "actuator.msh"),
     *("error.log", "error.rank*.log", f"{SNAPSHOTS}/*.npz"),
-    *(FIBERS, "run.log", "report.html"),
+    *(FIBERS, LOG, REPORT),
     *("fields/*.vtu", "fields/*.vtp", "fields/*.pvd"),
     *("pictures/rest.png", "pictures/animation.gif", "pictures/animation.mp4"),
     *("pictures/undeformed.png", "pictures/cut.png", "pictures/montage.png", "pictures/bent*.png"),
@@ -206,6 +212,19 @@ class RunFolder:
         if self.writes:
             with contextlib.suppress(FileNotFoundError):
                 os.replace(self.path / name, self.path / other)
+
+    def log(self, text: str) -> None:
+        """Append lines to the log, which a kill leaves readable.
+
+        A log that cannot be written costs itself, not the results.
+
+        Args:
+            text: whole lines.
+        """
+        if not self.writes:
+            return
+        with contextlib.suppress(OSError), (self.path / LOG).open("ab") as file:
+            file.write(text.encode())
 
     def write(self, name: str, fill: Callable[[IO[bytes]], object]) -> None:
         """Write a file under another name first, so that no reader ever sees half of it.

@@ -12,6 +12,7 @@ from analytic.inverse import first_angle
 from analytic.path import tip
 from analytic.stress import Floats
 from fiberbend import columns as col
+from fiberbend.answer.answer import answer
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.measured import read_measured
@@ -24,7 +25,7 @@ from fiberbend.models.closed_form import (
     no_analytic,
 )
 from fiberbend.models.result import Curve, RunResult
-from fiberbend.plan.doubts import doubts, say_warnings
+from fiberbend.plan.doubts import doubts
 from fiberbend.results.folder import RunFolder
 from fiberbend.running import launch, messages
 from fiberbend.running.outputs import draw_curves, write_page
@@ -116,9 +117,7 @@ def run_analytic(
                 progress.message,
             )
         write_page(folder, case, rows, run, progress.message)
-    for line in check.lines():
-        progress.message(line)
-    say_warnings(run["warnings"], progress.message)
+    progress.answer(answer(case, rows, run))
     return RunResult(status, reason, rows, run, folder.path if folder is not None else None)
 
 

@@ -22,6 +22,7 @@ from fiberbend.models.choice import meshed
 from fiberbend.models.model import MeshedModel, Observables
 from fiberbend.models.parts import SceneParts, build
 from fiberbend.running.approach import Approach
+from fiberbend.states.snapshot import ModelMesh
 from geometry.mesh.data import MeshData
 
 GUIDED_TURN = math.radians(90)
@@ -54,6 +55,17 @@ class Assembly:
     march: March
     ramps: list[Ramp]
     walls: Walls | None = None
+
+    def model_mesh(self, case: Case) -> ModelMesh:
+        """Mesh, materials and fibers as files and pictures show them."""
+        return ModelMesh(
+            mesh=self.scene.domain.data,
+            materials=self.parts.materials,
+            fibers=self.parts.fibers,
+            smeared=self.parts.smeared,
+            title=case.title,
+            uniform=not meshed(case).ends,
+        )
 
 
 def assemble(

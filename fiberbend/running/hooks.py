@@ -102,7 +102,7 @@ class Recording(Hook):
 
     def after_cutback(self, march: Marching, reason: str) -> None:
         """Report it."""
-        self._progress.message(f"increment cut back: {reason}")
+        self._progress.detail(f"increment cut back: {reason}")
 
     def remark(self, report: Report) -> None:
         """Warn of what has happened to the body so far."""
@@ -145,6 +145,12 @@ class Recording(Hook):
             self.snapshots.append(shot)
         arrays = {k: v for k, v in vars(shot).items() if v is not None}
         self._folder.write_arrays(f"{SNAPSHOTS}/{label}.npz", **arrays)
+
+    @property
+    def last(self) -> Snapshot | None:
+        """The last state; None where it was not kept."""
+        found = (shot for shot in self.snapshots if shot.step == self.rows[-1][col.STEP])
+        return next(found, None)
 
     def _fraction(self, number: int, state: State) -> float:
         """Part of all ramps that is done."""

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import platform
 import resource
+import shlex
+import sys
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from fiberbend import columns as col
+from fiberbend.answer.strain import greatest_strain
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
 from fiberbend.models.resolution import winding_remark
 from fiberbend.running import messages
 from fiberbend.running.assembly import Assembly
+from fiberbend.states.snapshot import Snapshot
 from fiberbend.version import __version__
+from machine import origin
 
 
 def versions(*libraries: Mapping[str, str]) -> dict[str, str]:
@@ -23,6 +29,31 @@ def versions(*libraries: Mapping[str, str]) -> dict[str, str]:
     for more in libraries:
         found |= more
     return found
+
+
+def provenance() -> dict[str, Any]:
+    """Command line, commit of the source, machine and BLAS: what else a result depends on."""
+    name, *arguments = sys.argv or [""]
+    program = Path(name).name
+    return {
+        "command": shlex.join(["fiberbend" if program == "__main__.py" else program, *arguments]),
+        "commit": origin.commit(Path(__file__).resolve().parents[2]),
+        "machine": origin.machine(),
+        "blas": origin.blas(),
+    }
+
+
+def header() -> list[str]:
+    """First lines of a log."""
+    known = provenance()
+    commit = f" (commit {known['commit'][:12]})" if known["commit"] else ""
+    machine, blas = known["machine"], known["blas"]
+    linear = f"; {blas['library']} {blas['kernel'] or ''}" if blas else ""
+    return [
+        known["command"],
+        f"fiberbend {__version__}{commit}, Python {platform.python_version()}, "
+        f"{machine['processor']}, {machine['usable_cores']} cores, {machine['system']}{linear}",
+    ]
 
 
 def peak_memory_mb() -> float:
@@ -61,6 +92,7 @@ def entries(
         "peak_memory_MB": round(memory_mb, 1),
         "ranks": ranks,
         "versions": versions(libraries),
+        **provenance(),
     }
 
 
@@ -92,6 +124,7 @@ def unfinished(
         "peak_memory_MB": round(peak_memory_mb(), 1),
         "ranks": ranks,
         "versions": versions(),
+        **provenance(),
     }
 
 
@@ -131,6 +164,19 @@ def doubts(case: Case, rows: Sequence[col.Row]) -> list[str]:
 def beside(check: Check | None) -> dict[str, Any]:
     """How the run compares with other models, where that is known."""
     return {} if check is None else {"crosscheck": check.entry()}
+
+
+def strain(case: Case, assembly: Assembly, last: Snapshot | None) -> dict[str, Any]:
+    """The greatest strain of the last state, where that is at hand; on rank 0.
+
+    Args:
+        case: the case.
+        assembly: its scene.
+        last: the last state, or None.
+    """
+    if last is None:
+        return {}
+    return {"greatest_strain": greatest_strain(case, assembly.model_mesh(case), last)}
 
 
 def cost(run: Mapping[str, Any]) -> list[str]:

@@ -18,12 +18,13 @@ from fem.march.march import ACROSS
 from fem.results.checkpoint import Archive
 from fem.scene import Scene
 from fiberbend import columns as col
+from fiberbend.answer.answer import answer
 from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
 from fiberbend.models.choice import choose_model
 from fiberbend.models.model import MeshedModel
 from fiberbend.models.result import RunResult
-from fiberbend.plan.doubts import doubts, say_warnings
+from fiberbend.plan.doubts import doubts
 from fiberbend.plan.memory import refuse_shortage
 from fiberbend.process.signals import Interrupted, stop_of
 from fiberbend.results.folder import MESH, RunFolder
@@ -36,7 +37,6 @@ from fiberbend.running.outputs import draw, write_page
 from fiberbend.running.progress import Progress
 from fiberbend.running.warm import SectionStates, section_guides, section_states
 from fiberbend.schema.problems import CaseError
-from fiberbend.states.snapshot import ModelMesh
 from geometry.mesh.data import MeshData
 
 GMSH_FILE = "actuator.msh"
@@ -74,7 +74,7 @@ def run_case(
         folder = RunFolder.resume(out, case, comm)
     else:
         folder = RunFolder.create(out, case, overwrite, comm)
-    with folder:
+    with folder, progress.logged(folder.log, record.header()):
         # in place of an end that is no more
         folder.write_run(
             status="running",
@@ -82,8 +82,12 @@ def run_case(
             model=choose_model(case)[0].name,
             ranks=comm.size,
             versions=record.versions(),
+            **record.provenance(),
         )
-        return _solve(case, folder, progress, comm, resume, force)
+        result = _solve(case, folder, progress, comm, resume, force)
+        progress.log(f"{result.status}{': ' if result.reason else ''}{result.reason}")
+        progress.log(f"results in {out}")
+        return result
 
 
 class _AcrossError(Exception):
@@ -215,6 +219,7 @@ class _Run:
             kernels.versions(),
         )
         run |= record.of_effects(case, recorder.rows) | record.beside(check)
+        run |= _on_rank_0(self.comm, lambda: record.strain(case, assembly, recording.last))
         if self.folder is not None:
             self.folder.write_history(rows)
             self.folder.write_run(**run)
@@ -227,7 +232,7 @@ class _Run:
                 self.folder.write_run(**run)
                 write_page(self.folder, case, rows, run, progress.message)
         self.comm.barrier()
-        self._report(run, check)
+        self._report(run, rows)
         return RunResult(status, reason, rows, run, self.folder.path if self.folder else None)
 
     @contextlib.contextmanager
@@ -262,6 +267,7 @@ class _Run:
                 launch.size(),
             )
             RunFolder(folder.path).write_run(**run)
+            self.progress.log(f"interrupted: {stop.reason}")
 
     # --- before the march ----------------------------------------------------------------------
 
@@ -359,12 +365,11 @@ class _Run:
         seconds = {name: round(value, 3) for name, value in self.progress.wall_s.items()}
         return seconds | {f"solve/{k}": round(v, 3) for k, v in assembly.newton.seconds.items()}
 
-    def _report(self, run: dict[str, Any], check: Check | None) -> None:
-        """Report the cost of the run, and the comparison with other models."""
-        say = self.progress.message
-        for line in (*(check.lines() if check is not None else ()), *record.cost(run)):
-            say(line)
-        say_warnings(run["warnings"], say)
+    def _report(self, run: dict[str, Any], rows: list[dict[str, Any]]) -> None:
+        """Report the cost of the run, and what it answers."""
+        for line in record.cost(run):
+            self.progress.detail(line)
+        self.progress.answer(answer(self.case, rows, run))
 
     def _draw(
         self,
@@ -376,18 +381,10 @@ class _Run:
     ) -> None:
         """Fields, pictures and plots, on rank 0."""
         assert self.folder is not None
-        model_mesh = ModelMesh(
-            mesh=assembly.scene.domain.data,
-            materials=assembly.parts.materials,
-            fibers=assembly.parts.fibers,
-            smeared=assembly.parts.smeared,
-            title=self.case.title,
-            uniform=not self.model.ends,
-        )
         draw(
             self.folder,
             self.case,
-            model_mesh,
+            assembly.model_mesh(self.case),
             recording.snapshots,
             rows,
             reason,

@@ -244,15 +244,41 @@ def recover(
         flat = onward @ values.reshape(*values.shape[:2], -1)
         return flat.reshape(*flat.shape[:2], *values.shape[2:])
 
-    # FᵀF is smooth and does not turn with the body; its principal values change places
-    squares = np.linalg.eigvalsh(at_nodes(f.swapaxes(-1, -2) @ f))[..., ::-1]
     return NodalFields(
         jacobian=nodes.average(at_nodes(np.linalg.det(f))),
-        stretches=nodes.average(np.sqrt(np.maximum(squares, _LEAST_STRETCH**2))),
+        stretches=nodes.average(_stretches(f, onward)),
         cauchy=nodes.average(at_nodes(stress)),
         multiplier=nodes.average(snapshot.multiplier),
         volume_error=volume_errors(model_mesh, snapshot),
     )
+
+
+def principal_stretches(mesh: MeshData, snapshot: Snapshot, nodes: SplitNodes) -> Floats:
+    """Principal stretches of a state as `recover` has them, and nothing else; descending, (n, 3).
+
+    Args:
+        mesh: of the model.
+        snapshot: the state.
+        nodes: `split_nodes` of the mesh.
+    """
+    points, onward = sampling(mesh.cell_type)
+    return nodes.average(_stretches(deformation_gradients(mesh, snapshot, points), onward))
+
+
+def _stretches(f: Floats, onward: Floats) -> Floats:
+    """Principal stretches at the nodes of every cell, descending, (m, k, 3).
+
+    FᵀF is smooth and does not turn with the body; its principal values change places.
+
+    Args:
+        f: deformation gradients at the points of `sampling`, (m, q, 3, 3).
+        onward: carries them on to the nodes, (k, q).
+    """
+    squares = (f.swapaxes(-1, -2) @ f).reshape(*f.shape[:2], 9)
+    at_nodes = (onward @ squares).reshape(len(f), len(onward), 3, 3)
+    values = np.linalg.eigvalsh(at_nodes)[..., ::-1]
+    stretches: Floats = np.sqrt(np.maximum(values, _LEAST_STRETCH**2))
+    return stretches
 
 
 def _inverse(matrices: Floats) -> Floats:

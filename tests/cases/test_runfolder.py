@@ -230,13 +230,14 @@ class _Terminal(io.StringIO):
         return True
 
 
-def _report(stream: io.StringIO, quiet: bool = False) -> Progress:
+def _report(stream: io.StringIO, quiet: bool = False, verbose: bool = False) -> Progress:
     times = iter(range(1000))
-    progress = Progress(quiet, stream, clock=lambda: 10.0 * next(times))
+    progress = Progress(quiet, stream, clock=lambda: 10.0 * next(times), verbose=verbose)
     progress.phase("mesh")
     progress.phase("solve")
     progress.step(1, 0.25, 50.0, 12.5, 4)
-    progress.message("step 2 cut back")
+    progress.message("the body buckles")
+    progress.detail("step 2 cut back")
     progress.step(2, 1.0, 200.0, 374.0, 5)
     progress.close()
     return progress
@@ -244,15 +245,55 @@ def _report(stream: io.StringIO, quiet: bool = False) -> Progress:
 
 def test_plain_lines() -> None:
     stream = io.StringIO()
-    progress = _report(stream)
+    progress = _report(stream, verbose=True)
     lines = stream.getvalue().splitlines()
     assert lines[:2] == ["mesh …", "solve …"]
     assert "P    50.00 kPa  θ   12.50°   4 iterations   25.0 %" in lines[2]
     assert lines[2].endswith("0:40 elapsed, about 0:30 to go")
-    assert lines[3] == "step 2 cut back"
-    assert "θ  374.00°" in lines[4]
+    assert lines[3:5] == ["the body buckles", "step 2 cut back"]
+    assert "θ  374.00°" in lines[5]
     assert list(progress.wall_s) == ["mesh", "solve"]
     assert progress.wall_s["mesh"] == 10.0
+
+
+def test_phases_and_cutbacks_are_for_who_asks() -> None:
+    stream = io.StringIO()
+    _report(stream)
+    lines = stream.getvalue().splitlines()
+    assert [line[:8] for line in lines] == ["step   1", "the body", "step   2"]
+
+
+@pytest.mark.parametrize("quiet", [True, False])
+def test_the_log_has_everything(quiet: bool) -> None:
+    written: list[str] = []
+    stream, times = io.StringIO(), iter(range(1000))
+    progress = Progress(quiet, stream, clock=lambda: 10.0 * next(times))
+
+    def run() -> None:
+        with progress.logged(written.append, ["fiberbend run it"]):
+            progress.phase("solve")
+            progress.step(1, 0.25, 50.0, 12.5, 4)
+            progress.message("the body buckles")
+            progress.detail("step 2 cut back")
+            raise ZeroDivisionError("nothing left to divide\nreally")
+
+    with pytest.raises(ZeroDivisionError):
+        run()
+    progress.message("after it")
+    assert bool(stream.getvalue()) != quiet
+    assert all(text.endswith("\n") and text.count("\n") == 1 for text in written)
+    texts = [text[13:].rstrip() for text in written]
+    assert re.match(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d", texts[0])
+    assert texts[1:3] == ["fiberbend run it", "solve …"]
+    assert texts[3].startswith("step   1  P    50.00 kPa  θ   12.50°   4 iterations   25.0 %")
+    assert texts[4:] == [
+        "the body buckles",
+        "step 2 cut back",
+        "ended by ZeroDivisionError: nothing left to divide",
+    ]
+    seconds = [float(text[:9]) for text in written]
+    assert seconds == sorted(seconds)
+    assert len(set(seconds)) == len(seconds)
 
 
 @pytest.mark.parametrize("stream", [io.StringIO(), _Terminal()])
@@ -281,9 +322,12 @@ def test_a_bar_on_a_terminal() -> None:
     assert "\x1b[" in stream.getvalue()
     assert "374.0°" in stream.getvalue()
     # the whole run's time, of the clock of the test, and of what is left once a speed is known
-    assert "12.5°  4 iter. 0:00:30 elapsed, --:-- to go" in plain(stream)
-    assert "374.0°  5 iter. 0:00:30 elapsed, 00:00 to go" in plain(stream)
-    assert "step 2 cut back" in stream.getvalue()
+    assert "12.5°  4 iter. 0:00:20 elapsed, --:-- to go" in plain(stream)
+    assert "374.0°  5 iter. 0:00:20 elapsed, 00:00 to go" in plain(stream)
+    # before the first step the phase
+    assert "solve … 0:00:20 elapsed" in plain(stream)
+    assert "the body buckles" in plain(stream)
+    assert "step 2 cut back" not in plain(stream)
 
 
 def test_quiet_and_other_ranks(monkeypatch: pytest.MonkeyPatch) -> None:

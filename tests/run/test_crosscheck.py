@@ -32,6 +32,7 @@ from fiberbend.compare.others import StraightSection
 from fiberbend.models.choice import MODELS
 from fiberbend.models.closed_form import analytic_curves
 from fiberbend.models.result import Curve, RunResult
+from fiberbend.plan.plan import make_plan
 from fiberbend.reader.reader import parse_case
 from fiberbend.running.runner import run_case
 
@@ -110,6 +111,34 @@ def test_columns_are_the_other_models_at_the_rows_angles() -> None:
     assert rows[3].keys() == {"step", "pressure_kPa", "angle_deg", "uniform_angle_deg"}
 
 
+def test_the_papers_own_line_is_beside_a_case_that_asks_for_it() -> None:
+    alone = case_of(compare=[])
+    check = crosscheck(alone, BODY, rows_of(), SECTION)
+    assert list(check.columns[3]) == ["section_kPa", "analytic_kPa", "analytic_winding_kPa"]
+    assert [c.name for c in check.comparisons] == ["section", "analytic", "analytic_winding"]
+    assert "paper" not in json.dumps(check.entry())
+    assert check.angles is not None
+    assert "analytic_paper" not in [line.name for line in check.angles.lines]
+    # a tip force has no line of its own there: κP/L_f is the paper's
+    for asked, label in ((["paper"], "eq. (20) of the paper, κP/L_f"), ([], "κP/L_f")):
+        case = case_of("blocked_tip", compare=asked)
+        check = crosscheck(case, BODY, blocked_rows(3.6, 8.9))
+        assert compared(check, "analytic").label == label
+
+
+def test_the_paper_has_nothing_on_other_sections() -> None:
+    box = {"section": "rectangle", "radius": None, "width": "16 mm", "height": "8 mm"}
+    check = crosscheck(case_of(actuator=box), BODY, rows_of(), SECTION)
+    (doubt,) = check.doubts()
+    assert doubt == (
+        "compare: nothing of the paper is beside the run: the closed form of bending is for a "
+        "hemicircle, not for a rectangle"
+    )
+    assert crosscheck(case_of(actuator=box, compare=[]), BODY, rows_of(), SECTION).doubts() == []
+    assert "compare" in dict(make_plan(case_of(actuator=box)).rows)["not used"][0]
+    assert "compare" not in str(dict(make_plan(case_of()).rows).get("not used"))
+
+
 def test_a_model_is_not_beside_itself() -> None:
     names = {
         model: [
@@ -130,7 +159,9 @@ def test_greatest_difference_and_where() -> None:
     section = compared(crosscheck(case_of(), BODY, rows, SECTION), "section")
     assert section.percent == pytest.approx(1.3)
     assert (section.at, section.band, section.beyond) == ("180.0°", 2.0, False)
-    assert section.line() == "run against section model: +1.3 % at 180.0°, within 2 %"
+    # 1/1.013 of the run's
+    wanted = "section model: pressure 1.3 % lower at 180.0°, as expected (within 2 %)"
+    assert section.line() == section.entry()["text"] == wanted
     # at rest, and close to it, a ratio of round-off says nothing
     rows[0] |= {"pressure_kPa": 1e-9, "angle_deg": 1e-6}
     assert compared(crosscheck(case_of(), BODY, rows, SECTION), "section").at == "180.0°"
@@ -164,7 +195,10 @@ def test_end_caps_are_seen_by_the_middle_of_the_body() -> None:
     assert compared(check, "section").beyond
     assert likely(check, "section") == []
     assert compared(check, "section").entry()["likely"] == ["unexplained"]
-    assert compared(check, "section").line().endswith("BEYOND 2 %: unexplained")
+    # the other one beside the run: 1/0.95
+    wanted = "section model: pressure 5.3 % higher at 90.0°, beyond the 2 % expected: unexplained"
+    assert compared(check, "section").line() == wanted
+    assert check.doubts() == [wanted]
 
 
 def test_discrete_winding_explains_more_pressure_and_not_less() -> None:
@@ -173,6 +207,10 @@ def test_discrete_winding_explains_more_pressure_and_not_less() -> None:
     stiffer = crosscheck(coarse, MODELS["cell"], rows_of(1.16), SECTION)
     assert compared(stiffer, "section").beyond
     assert likely(stiffer, "section") == ["discrete winding"]
+    within = crosscheck(discrete(), MODELS["cell"], rows_of(1.041), SECTION)
+    line = compared(within, "section").line()
+    assert line.startswith("section model: pressure 3.9 % lower at ")
+    assert line.endswith("°, as expected for a pitch of 3 mm")
     softer = crosscheck(coarse, MODELS["cell"], rows_of(0.8), SECTION)
     assert likely(softer, "section") == []
     smeared = crosscheck(case_of(), MODELS["cell"], rows_of(1.16), SECTION)
@@ -198,13 +236,21 @@ def test_acting_area_has_the_two_areas_and_the_one_between() -> None:
     assert analytic.percent < -20
     assert likely(check, "analytic") == ["acting area"]
     assert "between 542 mm³ of the chamber and 1021 mm³" in analytic.likely[0].text
+    # a known limit of the closed form is no doubt of the run, and no cry
+    line = analytic.line()
+    assert line.endswith(", by known limits of the closed form: acting area")
+    assert line.startswith("analytic (own rubber): pressure ")
+    assert " % higher at " in line
+    assert check.doubts() == []
     # the run needs more pressure than the closed form: the area cannot be the reason
     above = crosscheck(case_of(), MODELS["section"], rows_of(1.6))
     assert compared(above, "analytic").percent > 11
     assert likely(above, "analytic") == ["floor stiffness"]
     # so much less pressure that no area inside the winding explains it
-    below = crosscheck(case_of(), MODELS["section"], rows_of(0.3))
+    below = crosscheck(case_of(compare=[]), MODELS["section"], rows_of(0.3))
     assert likely(below, "analytic") == []
+    (doubt,) = below.doubts()
+    assert doubt.endswith("beyond the 11 % expected: unexplained")
 
 
 def test_effective_modulus_is_named_for_the_papers_line_only() -> None:
@@ -290,6 +336,17 @@ def test_force_of_a_blocked_tip() -> None:
     assert compared(check, "section").percent == pytest.approx(100 * (3.6 * 14 / 94 - 1))
     assert likely(check, "section") == ["guided tip", "soft sheath"]
     assert not compared(check, "analytic").beyond
+    # a body has about half the force of a section kept straight: known, and no doubt of the run
+    assert compared(check, "section").line() == (
+        "section model (M/L_f): force 86.5 % higher at 50.0 kPa, by known limits of a section kept "
+        "straight: guided tip, soft sheath"
+    )
+    assert check.doubts() == []
+    # much less than half is not known, whatever may lower it; nor is more
+    for force in (2.0, 9.0):
+        rows = blocked_rows(force, 8.9)
+        odd = crosscheck(case_of("blocked_tip"), BODY, rows, straight=straight)
+        assert any("section model (M/L_f)" in doubt for doubt in odd.doubts())
     # held as the section is: nothing to explain
     same = crosscheck(case_of("blocked_tip"), BODY, blocked_rows(94 / 14, 0.0), straight=straight)
     assert not compared(same, "section").beyond
@@ -346,6 +403,10 @@ def test_measured_forces() -> None:
     measured = Measured("tip_force_N", np.array([0.05, 0.1]), np.array([2.0, 4.0]), "force.csv")
     check = crosscheck(case_of("blocked_tip"), BODY, blocked_rows(3.6, 8.9), None, measured)
     assert compared(check, "measured").percent == pytest.approx(-10)
+    # a measurement is what the run is held to
+    line = compared(check, "measured").line()
+    assert line.startswith("run: force 10.0 % lower than measured (force.csv) at ")
+    assert line.endswith(" kPa, as expected (within 10.5 %)")
     assert not compared(check, "measured").beyond
     assert check.calibration is None
     assert check.forces is not None

@@ -54,7 +54,7 @@ def test_a_run_that_is_told_to_stop_keeps_its_steps(tmp_path: Path) -> None:
 def test_a_run_says_from_its_beginning_that_it_runs(tmp_path: Path) -> None:
     case, out = tmp_path / "case.yaml", tmp_path / "run"
     case.write_text(yaml.safe_dump(small(model="section")))
-    process = launch(1, ["run", case, "--out", out])
+    process = launch(1, ["run", case, "--out", out, "--verbose"])
     assert process.stdout is not None
     assert process.stdout.readline() == "mesh …\n"
     kill(process)

@@ -107,7 +107,12 @@ def test_doubts_stand_in_run_json_and_at_the_end(tmp_path: Path) -> None:
     run, printed = ran(case, tmp_path / "body")
     warnings = run["warnings"]
     assert warnings[0].startswith("winding NOT resolved (elements of 4 mm")
-    assert any(text.startswith("run against measured") and "BEYOND" in text for text in warnings)
+    assert any(
+        text.startswith("run: pressure ")
+        and "higher than measured (points.csv) at" in text
+        and text.endswith("beyond the 11 % expected: unexplained")
+        for text in warnings
+    )
     assert any("measured points lie beyond the run" in text for text in warnings)
     assert end_of(printed, len(warnings)) == warnings
 
