@@ -15,6 +15,7 @@ from fiberbend.answer.answer import answer
 from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
 from fiberbend.report import case_tables
+from fiberbend.report.case_tables import Line
 from fiberbend.report.page import (
     Download,
     Picture,
@@ -39,7 +40,8 @@ _PLANE = (col.TIP_Y, col.TIP_Z)
 _ASIDE = 1e-3
 """Part of the path's extent by which it leaves the plane of bending where that is shown."""
 _INSIDE = (HISTORY_FILE, CASE_FILE, RUN_FILE)
-_BESIDE = (*("run.log", "error.log", "actuator.msh", "fields/states.pvd", "fields/*.vt?"),)
+_BESIDE = ("run.log", "error.log", "actuator.msh", "fields/*.pvd", "fields/*.vtm", "fields/*.vt?")
+_MOST_FILES = 60
 _ROWS_KEYS = {col.STEP: "step", col.PRESSURE: "pressure_kpa", col.ANGLE: "angle_deg"}
 
 
@@ -131,7 +133,7 @@ def report(
         whole_table=case_tables.steps(known, case_tables.all_columns(known)),
         phases=_phases(run),
         counts=_counts(run),
-        machine=[(name, str(value)) for name, value in versions.items()],
+        made=list(_made(run)),
         downloads=list(_downloads(path, links)),
         cite=citation(),
         version=str(versions.get("fiberbend", "")),
@@ -261,9 +263,16 @@ def _counts(run: Mapping[str, Any]) -> list[str]:
     return counts if memory is None else [*counts, f"peak memory {memory:.0f} MB"]
 
 
+def _made(run: Mapping[str, Any]) -> Iterator[Line]:
+    """By which command, program and machine the run was made."""
+    for name in ("command", "commit", "machine", "blas", "versions"):
+        if run.get(name):
+            yield Line(name, case_tables.in_words(run[name]))
+
+
 def _downloads(path: Path, links: str) -> Iterator[Download]:
     for name in _INSIDE:
         if (path / name).exists():
             yield inside(path / name, path)
-    for file in _files(path, _BESIDE):
+    for file in _files(path, _BESIDE)[:_MOST_FILES]:
         yield beside(file, path, links)
