@@ -23,13 +23,14 @@ from fiberbend.report.page import (
     citation,
     data_address,
     inside,
+    is_picture,
     link,
     picture,
     render,
 )
 from fiberbend.results.folder import CASE_FILE, HISTORY_FILE, MESH, REPORT, RUN_FILE, RunFolder
 from fiberbend.results.space import Space
-from fiberbend.results.states import States, read_snapshot, snapshot_paths
+from fiberbend.results.states import DAMAGED, States, read_snapshot, snapshot_paths
 
 _MOST_PICTURES = 4_000_000
 """Bytes of pictures of the body that the page contains; further ones are links."""
@@ -161,7 +162,10 @@ def _states(
     states = States(path, case, rows, say=lambda _: None)
     if len(states) < 2:
         return None, None, "This run kept no load step: there is no body to be seen in space."
-    return states, Space(case, states.model_mesh), ""
+    try:
+        return states, Space(case, states.model_mesh), ""
+    except DAMAGED:
+        return None, None, f"{MESH} is damaged: there is no body to be seen in space."
 
 
 # --- pictures ---------------------------------------------------------------------------------
@@ -185,7 +189,7 @@ def _limited(path: Path, patterns: Sequence[str], links: str) -> list[Picture]:
     shown, room = [], _MOST_PICTURES
     for file in _files(path / "pictures", patterns):
         room -= file.stat().st_size
-        if room >= 0:
+        if room >= 0 and is_picture(file):
             shown.append(picture(file, _in_words(file)))
         else:
             shown.append(Picture(link(file, path, links), _in_words(file), inside=False))
