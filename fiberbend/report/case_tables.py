@@ -56,14 +56,14 @@ def dimensions(case: Case) -> Iterator[Line]:
 def materials(case: Case) -> Iterator[Line]:
     """The material of every part."""
     for part, material in case.resolved()["materials"].items():
-        yield Line(part, _in_words(material))
+        yield Line(part, in_words(material))
 
 
 def effects(case: Case) -> Iterator[Line]:
     """Every effect with its settings."""
     for entry in case.resolved()["effects"]:
         for name, settings in entry.items():
-            yield Line(name, _in_words(settings))
+            yield Line(name, in_words(settings))
 
 
 def case_text(case: Case) -> str:
@@ -111,6 +111,13 @@ def all_columns(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     return list(names)
 
 
+def in_words(value: Any) -> str:
+    """Settings, or other content of a YAML or JSON file, as a line of text."""
+    if isinstance(value, dict):
+        return ", ".join(f"{name}: {_inner(part)}" for name, part in value.items())
+    return _inner(value)
+
+
 def _number(value: Any) -> str:
     if value is None or value == "":
         return ""
@@ -119,16 +126,9 @@ def _number(value: Any) -> str:
     return text.replace("-", "−")
 
 
-def _in_words(value: Any) -> str:
-    """Settings as a line of text."""
-    if isinstance(value, dict):
-        return ", ".join(f"{name}: {_inner(part)}" for name, part in value.items())
-    return _inner(value)
-
-
 def _inner(value: Any) -> str:
     if isinstance(value, dict):
-        return f"({_in_words(value)})"
+        return f"({in_words(value)})"
     if isinstance(value, list):
         return f"[{', '.join(map(_inner, value))}]"
     if isinstance(value, bool):

@@ -77,6 +77,11 @@ def data_address(content: bytes, name: str) -> str:
     return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
 
 
+def is_picture(path: Path) -> bool:
+    """Whether a page can show a file as a picture: films are links."""
+    return _TYPES.get(path.suffix, "").startswith("image/")
+
+
 def picture(path: Path, text: str) -> Picture:
     """The picture of a file."""
     return Picture(data_address(path.read_bytes(), path.name), text, path.name)

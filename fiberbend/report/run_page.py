@@ -15,6 +15,7 @@ from fiberbend.answer.answer import answer
 from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
 from fiberbend.report import case_tables
+from fiberbend.report.case_tables import Line
 from fiberbend.report.page import (
     Download,
     Picture,
@@ -22,13 +23,14 @@ from fiberbend.report.page import (
     citation,
     data_address,
     inside,
+    is_picture,
     link,
     picture,
     render,
 )
 from fiberbend.results.folder import CASE_FILE, HISTORY_FILE, MESH, REPORT, RUN_FILE, RunFolder
 from fiberbend.results.space import Space
-from fiberbend.results.states import States, read_snapshot, snapshot_paths
+from fiberbend.results.states import DAMAGED, States, read_snapshot, snapshot_paths
 
 _MOST_PICTURES = 4_000_000
 """Bytes of pictures of the body that the page contains; further ones are links."""
@@ -39,7 +41,8 @@ _PLANE = (col.TIP_Y, col.TIP_Z)
 _ASIDE = 1e-3
 """Part of the path's extent by which it leaves the plane of bending where that is shown."""
 _INSIDE = (HISTORY_FILE, CASE_FILE, RUN_FILE)
-_BESIDE = (*("run.log", "error.log", "actuator.msh", "fields/states.pvd", "fields/*.vt?"),)
+_BESIDE = ("run.log", "error.log", "actuator.msh", "fields/*.pvd", "fields/*.vtm", "fields/*.vt?")
+_MOST_FILES = 60
 _ROWS_KEYS = {col.STEP: "step", col.PRESSURE: "pressure_kpa", col.ANGLE: "angle_deg"}
 
 
@@ -131,7 +134,7 @@ def report(
         whole_table=case_tables.steps(known, case_tables.all_columns(known)),
         phases=_phases(run),
         counts=_counts(run),
-        machine=[(name, str(value)) for name, value in versions.items()],
+        made=list(_made(run)),
         downloads=list(_downloads(path, links)),
         cite=citation(),
         version=str(versions.get("fiberbend", "")),
@@ -159,7 +162,10 @@ def _states(
     states = States(path, case, rows, say=lambda _: None)
     if len(states) < 2:
         return None, None, "This run kept no load step: there is no body to be seen in space."
-    return states, Space(case, states.model_mesh), ""
+    try:
+        return states, Space(case, states.model_mesh), ""
+    except DAMAGED:
+        return None, None, f"{MESH} is damaged: there is no body to be seen in space."
 
 
 # --- pictures ---------------------------------------------------------------------------------
@@ -183,7 +189,7 @@ def _limited(path: Path, patterns: Sequence[str], links: str) -> list[Picture]:
     shown, room = [], _MOST_PICTURES
     for file in _files(path / "pictures", patterns):
         room -= file.stat().st_size
-        if room >= 0:
+        if room >= 0 and is_picture(file):
             shown.append(picture(file, _in_words(file)))
         else:
             shown.append(Picture(link(file, path, links), _in_words(file), inside=False))
@@ -261,9 +267,16 @@ def _counts(run: Mapping[str, Any]) -> list[str]:
     return counts if memory is None else [*counts, f"peak memory {memory:.0f} MB"]
 
 
+def _made(run: Mapping[str, Any]) -> Iterator[Line]:
+    """By which command, program and machine the run was made."""
+    for name in ("command", "commit", "machine", "blas", "versions"):
+        if run.get(name):
+            yield Line(name, case_tables.in_words(run[name]))
+
+
 def _downloads(path: Path, links: str) -> Iterator[Download]:
     for name in _INSIDE:
         if (path / name).exists():
             yield inside(path / name, path)
-    for file in _files(path, _BESIDE):
+    for file in _files(path, _BESIDE)[:_MOST_FILES]:
         yield beside(file, path, links)

@@ -277,7 +277,8 @@ class _Fields:
     def at(self, state: Snapshot) -> list[Floats]:
         """Strain and stress of a state at all recovered nodes."""
         found = recover(self._own, state, self._copies)
-        return [found.log_strain, found.von_mises]
+        # between the points at which an extreme state was solved there may be no stress
+        return [np.nan_to_num(values) for values in (found.log_strain, found.von_mises)]
 
     def described(self, values: Sequence[Sequence[Floats]]) -> list[dict[str, Any]]:
         """The quantities with their labels and the ends of their colours."""
@@ -304,7 +305,7 @@ class _Fields:
         if not self._top:
             seen = np.concatenate([skin.value for skin in self._skins])
             for i in range(len(values[0])):
-                found = (np.nan_to_num(step[i][seen]) for step in values)
+                found = (step[i][seen] for step in values)
                 self._top.append(nice_above(max(float(np.quantile(x, _QUANTILE)) for x in found)))
         return self._top
 

@@ -170,12 +170,18 @@ def write_page(
         folder: with everything else that the run leaves.
         case: the case.
         rows: the history.
-        run: content of run.json.
-        say: takes the line.
+        run: content of run.json; a page that cannot be made is added to its warnings.
+        say: takes the warning.
     """
     if not (case.output.report and folder.writes):
         return
-    with page(say):
+
+    def warn(text: str) -> None:
+        say(text)
+        run["warnings"].append(text)
+        folder.write_run(**run)
+
+    with page(warn):
         from fiberbend.report.run_page import write_report
 
         write_report(folder, case, rows, run)

@@ -33,7 +33,8 @@ from fiberbend.running import launch, messages, record, restart
 from fiberbend.running.assembly import Assembly, assemble
 from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording, ended, shows_states, unmet
-from fiberbend.running.launch import on_rank_0 as _on_rank_0
+from fiberbend.running.launch import on_rank_0
+from fiberbend.running.outputs import draw, write_page
 from fiberbend.running.progress import Progress
 from fiberbend.running.warm import SectionStates, section_guides, section_states
 from fiberbend.schema.problems import CaseError
@@ -110,7 +111,7 @@ def _solve(
     if model is None:
         from fiberbend.running.analytic import run_analytic
 
-        return _on_rank_0(comm, lambda: run_analytic(case, folder, progress))  # type: ignore[no-any-return]
+        return on_rank_0(comm, lambda: run_analytic(case, folder, progress))  # type: ignore[no-any-return]
     if model.shared:
         whole = _whole(case)
         # asked now: later the half body takes of the memory that is free
@@ -126,7 +127,7 @@ def _solve(
             return run.go(False)
     # too small to share: one rank solves it
     alone = _Run(case, model, folder, progress, MPI.COMM_SELF, scratch)
-    return _on_rank_0(comm, lambda: alone.go(False))  # type: ignore[no-any-return]
+    return on_rank_0(comm, lambda: alone.go(False))  # type: ignore[no-any-return]
 
 
 def _whole(case: Case) -> Case:
@@ -173,7 +174,7 @@ class _Run:
         # before this run takes of the memory that is free
         known = doubts(case)
         progress.phase("mesh")
-        mesh = _on_rank_0(self.comm, lambda: self._mesh(again))
+        mesh = on_rank_0(self.comm, lambda: self._mesh(again))
         section = self._section()
         progress.phase("compile")
 
@@ -213,16 +214,21 @@ class _Run:
             kernels.versions(),
         )
         run |= record.of_effects(case, recorder.rows) | record.beside(check)
-        run |= launch.on_rank_0(self.comm, lambda: record.strain(case, assembly, recording.last))
+        run |= on_rank_0(self.comm, lambda: record.strain(case, assembly, recording.last))
         if self.folder is not None:
             self.folder.write_history(rows)
             self.folder.write_run(**run)
             if self.comm.rank == 0:
                 why = f"{status}: {reason}" if reason else None
                 self._draw(assembly, recording, why, rows, check)
-                run["wall_s"] = self._wall(assembly)
-                run["warnings"] = list(recording.warnings)
-                self._page(assembly, recording, rows, run)
+                if case.output.report:
+                    progress.phase("report")
+                run |= {"wall_s": self._wall(assembly), "warnings": list(recording.warnings)}
+                self.folder.write_run(**run)
+                write_page(self.folder, case, rows, run, lambda text: recording.warn([text]))
+                if run["warnings"] != recording.warnings:
+                    run["warnings"] = list(recording.warnings)
+                    self.folder.write_run(**run)
         self.comm.barrier()
         self._report(run, rows)
         return RunResult(status, reason, rows, run, self.folder.path if self.folder else None)
@@ -287,7 +293,7 @@ class _Run:
         if not (self.model.ends and section_guides(self.case)):
             return None
         self.progress.phase("section")
-        states: SectionStates | None = _on_rank_0(self.comm, lambda: section_states(self.case))
+        states: SectionStates | None = on_rank_0(self.comm, lambda: section_states(self.case))
         return states
 
     def _recording(self, assembly: Assembly, again: bool) -> tuple[Recorder, Recording]:
@@ -349,7 +355,7 @@ class _Run:
             assert model is not None
             return _Run(beside, model, None, Progress(quiet=True), MPI.COMM_SELF).go(False)
 
-        check: Check = _on_rank_0(
+        check: Check = on_rank_0(
             self.comm,
             lambda: check_run(self.case, self.model, rows, solve, known),
         )
@@ -365,25 +371,6 @@ class _Run:
             self.progress.detail(line)
         self.progress.answer(answer(self.case, rows, run))
 
-    def _page(
-        self,
-        assembly: Assembly,
-        recording: Recording,
-        rows: list[dict[str, Any]],
-        run: dict[str, Any],
-    ) -> None:
-        """The report, on rank 0, from the folder as it is now."""
-        from fiberbend.running import outputs
-
-        assert self.folder is not None
-        self.progress.phase("report")
-        run["wall_s"] = self._wall(assembly)
-        self.folder.write_run(**run)
-        outputs.write_page(self.folder, self.case, rows, run, lambda text: recording.warn([text]))
-        if run["warnings"] != recording.warnings:
-            run["warnings"] = list(recording.warnings)
-            self.folder.write_run(**run)
-
     def _draw(
         self,
         assembly: Assembly,
@@ -393,10 +380,8 @@ class _Run:
         check: Check | None,
     ) -> None:
         """Fields, pictures and plots, on rank 0."""
-        from fiberbend.running import outputs
-
         assert self.folder is not None
-        outputs.draw(
+        draw(
             self.folder,
             self.case,
             assembly.model_mesh(self.case),

@@ -185,6 +185,15 @@ def test_a_damaged_state_is_left_out_and_the_page_says_so(folder: Path, tmp_path
     assert [step["step"] for step in json.loads(scene)["steps"]] == [0, 1, 3]
 
 
+def test_a_damaged_mesh_costs_the_view_and_the_page_says_so(folder: Path, tmp_path: Path) -> None:
+    path = shutil.copytree(folder, tmp_path / "run")
+    (path / "mesh.npz").write_bytes((folder / "mesh.npz").read_bytes()[:900])
+    found = Page(report(path, case(), rows(), run_of()))
+    assert "mesh.npz is damaged" in found.text
+    assert "scene-data" not in found.ids
+    assert {"answer", "path", "steps"} <= set(found.ids)
+
+
 def closed_form() -> dict[str, Any]:
     actuator = {key: value for key, value in CASE["actuator"].items() if key != "sheath"}
     materials = {"wall": "elastosil-m4601", "floor": "combined-base"}
@@ -231,7 +240,10 @@ def test_a_page_that_cannot_be_made_costs_a_line_not_the_results(
     result = fiberbend.run(parse_case(closed_form()), tmp_path / "run", quiet=False)
     assert result.status == "converged"
     assert (tmp_path / "run" / "history.csv").exists()
-    assert "no report, writing it failed: RuntimeError: no page today" in capsys.readouterr().out
+    text = "no report, writing it failed: RuntimeError: no page today"
+    assert text in capsys.readouterr().out
+    assert text in json.loads((tmp_path / "run" / "run.json").read_text())["warnings"]
+    assert text in result.run["warnings"]
 
 
 def test_the_command_writes_the_page_where_it_is_asked_to(folder: Path, tmp_path: Path) -> None:
