@@ -38,6 +38,7 @@ from fiberbend.sweep.fields import (
 )
 from fiberbend.sweep.file import ReportSpec, SweepFile, contradictions
 
+_REACH = "; the pressure of the base case has to reach it, effects: pressure: {to: …}"
 _OWN_FILES = ("pictures", "fields", "report")
 """Output that a point leaves where the base case or the sweep file asks for it by name."""
 
@@ -295,10 +296,14 @@ def _case(
             case = parse_case(data)
         return case, data
     except CaseError as error:
-        raise CaseError(
-            Problem(added.get(problem.path, problem.path), problem.text)
-            for problem in error.problems
-        ) from None
+        raise CaseError(_reported(problem, added) for problem in error.problems) from None
+
+
+def _reported(problem: Problem, added: dict[str, str]) -> Problem:
+    """A problem of a case at its place in the sweep file."""
+    path = added.get(problem.path, problem.path)
+    hint = _REACH if path.startswith("report.pressures.") else ""
+    return Problem(path, problem.text + hint)
 
 
 def blocked_case(case: Case, report: ReportSpec) -> Case | None:

@@ -73,14 +73,15 @@ def test_reported_pressures_are_asked_of_every_point(read: Read) -> None:
 
 def test_pressures_out_of_reach(read: Read) -> None:
     far = grid(report={"pressures": ["30 kPa", "70 kPa"]})
-    expected = (
-        'report.pressures.1: "70 kPa", expected a pressure between zero and "60 kPa" (line 19)'
-    )
-    assert complaints(lambda: read(far)) == [expected]
+    hint = "the pressure of the base case has to reach it, effects: pressure: {to: …}"
+    assert complaints(lambda: read(far)) == [
+        'report.pressures.1: "70 kPa", expected a pressure between zero and "60 kPa"; '
+        f"{hint} (line 19)"
+    ]
     found = grid(report={"pressures": ["30 kPa"]})
     found["set"] |= {"effects.0": {"pressure": {"angle": "90 deg"}}}
     text = "no effect where the pressure is found, expected no value"
-    assert complaints(lambda: read(found)) == [f"report.pressures.0: {text} (line 18)"]
+    assert complaints(lambda: read(found)) == [f"report.pressures.0: {text}; {hint} (line 18)"]
 
 
 def test_force_of_a_blocked_case_is_no_interpolation(read: Read) -> None:
