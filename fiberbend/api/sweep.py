@@ -84,10 +84,12 @@ class Sweep:
 
     @functools.cached_property
     def frame(self) -> pd.DataFrame:
-        """The table as a pandas.DataFrame, a row a point; columns of numbers are float64."""
+        """The table as a pandas.DataFrame, a row a point; columns without text are float64."""
         import pandas as pd
 
-        return pd.DataFrame(list(self.rows))
+        frame = pd.DataFrame(list(self.rows))
+        names = {*frame} - {name for row in self.rows for name in row if isinstance(row[name], str)}
+        return frame.astype(dict.fromkeys(names, float))
 
     @property
     def status(self) -> dict[str, int]:

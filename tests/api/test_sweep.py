@@ -27,6 +27,8 @@ def test_table_and_points(done: Sweep, capsys: pytest.CaptureFixture[str]) -> No
     assert len(done) == len(done.points) == 2
     assert repr(done).startswith("<Sweep of 2 points: 2 converged, in ")
     assert done.frame["wall_mm"].tolist() == [2.0, 3.0]
+    assert done.frame["tip_force_N"].isna().all()
+    assert {*done.frame} - {*done.frame.select_dtypes("number")} == {"point", "status", "solved_by"}
     thin, thick = done.frame["pressure_90deg_kPa"]
     assert 0 < thin < thick
     run = done.point(wall_mm=3)
