@@ -202,7 +202,7 @@ def test_dragon_skin_is_that_of_its_tensile_test() -> None:
 
     A first loading at 450 mm/min; the fit misses them by 1.6 % of the last one at most.
     """
-    strain = np.array([0.22727, 0.5, 0.75, 1.00000333333333])
+    strain: Floats = np.array([0.22727, 0.5, 0.75, 1.00000333333333])
     measured = np.array([0.10118, 0.21392, 0.32207, 0.43712])
-    found = uniaxial_stress(NAMED["dragon-skin-30"], 1 + strain)
+    found = uniaxial_stress(NAMED["dragon-skin-30"], 1.0 + strain)
     np.testing.assert_allclose(found, measured, atol=0.016 * measured[-1])
