@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
@@ -31,6 +32,7 @@ from fiberbend.report.page import (
 from fiberbend.results.folder import CASE_FILE, HISTORY_FILE, MESH, REPORT, RUN_FILE, RunFolder
 from fiberbend.results.space import Space
 from fiberbend.results.states import DAMAGED, States, read_snapshot, snapshot_paths
+from fiberbend.states.snapshot import Write
 
 _MOST_PICTURES = 4_000_000
 """Bytes of pictures of the body that the page contains; further ones are links."""
@@ -43,6 +45,7 @@ _ASIDE = 1e-3
 _INSIDE = (HISTORY_FILE, CASE_FILE, RUN_FILE)
 _BESIDE = ("run.log", "error.log", "actuator.msh", "fields/*.pvd", "fields/*.vtm", "fields/*.vt?")
 _MOST_FILES = 60
+_PANELS = 4
 _ROWS_KEYS = {col.STEP: "step", col.PRESSURE: "pressure_kpa", col.ANGLE: "angle_deg"}
 
 
@@ -123,7 +126,7 @@ def report(
         curves=curves,
         side=side,
         path_in_space=_pictures(path, _PATHS) if known and _leaves_plane(known) else [],
-        sections=_pictures(path, _SECTIONS),
+        sections=_sections(path, states),
         body=_limited(path, _BODY, links),
         dimensions=list(case_tables.dimensions(case)),
         materials=list(case_tables.materials(case)),
@@ -205,19 +208,46 @@ def _curves(path: Path, case: Case, rows: Sequence[dict[str, Any]]) -> list[Pict
     from fiberbend.drawing.curves import draw_plots
     from fiberbend.drawing.page import own_style
 
-    drawn: list[Picture] = []
+    angles = [float(np.rad2deg(angle)) for angle in case.output.at_angles]
+    with own_style(), _drawn(_PATHS) as (pictures, write):
+        draw_plots(rows, write, angles, case.title)
+    return pictures
 
-    def keep(name: str, fill: Callable[[IO[bytes]], object]) -> None:
-        if any(fnmatchcase(name, pattern) for pattern in _PATHS):
+
+def _sections(path: Path, states: States | None) -> list[Picture]:
+    """Pictures of a section or cell in its own plane; where there are none, its shape now."""
+    there = _pictures(path, _SECTIONS)
+    if there or states is None or not states.model_mesh.uniform:
+        return there
+    from fiberbend.drawing.page import own_style
+    from fiberbend.drawing.section import draw_sections
+
+    kept = [each for each in states.kept if each.asked] or list(states.kept[-1:])
+    shots = [shot for each in kept[-_PANELS:] if (shot := states.read(each)) is not None]
+    others = ("section_str*.*",)
+    with own_style(), _drawn(others) as (pictures, write):
+        if shots:
+            draw_sections(states.model_mesh, shots, write)
+    return pictures
+
+
+@contextlib.contextmanager
+def _drawn(left_out: Sequence[str]) -> Iterator[tuple[list[Picture], Write]]:
+    """Pictures that are drawn meanwhile, and what takes them instead of a folder.
+
+    Args:
+        left_out: patterns of names that are not drawn.
+    """
+    pictures: list[Picture] = []
+
+    def write(name: str, fill: Callable[[IO[bytes]], object]) -> None:
+        if any(fnmatchcase(name, pattern) for pattern in left_out):
             return
         content = io.BytesIO()
         fill(content)
-        drawn.append(Picture(data_address(content.getvalue(), name), _in_words(Path(name))))
+        pictures.append(Picture(data_address(content.getvalue(), name), _in_words(Path(name))))
 
-    angles = [float(np.rad2deg(angle)) for angle in case.output.at_angles]
-    with own_style():
-        draw_plots(rows, keep, angles, case.title)
-    return drawn
+    yield pictures, write
 
 
 def _leaves_plane(rows: Sequence[Mapping[str, Any]]) -> bool:

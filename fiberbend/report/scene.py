@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import base64
 import dataclasses
 import functools
-import zlib
 from collections.abc import Sequence
 from typing import Any
 
@@ -17,6 +15,7 @@ from fiberbend.case.case import Case
 from fiberbend.drawing.page import COLORS, NAMES, nice_above
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.drawing.tessellation import Tessellation, boundary_facets, on_mirror
+from fiberbend.report.packing import base64_of, packed
 from fiberbend.results.space import Space
 from fiberbend.results.states import Kept, States
 from fiberbend.states.bend import Bend, in_frame
@@ -146,8 +145,8 @@ def scene_data(case: Case, states: States, space: Space | None = None) -> SceneD
     ends = np.cumsum([len(skin.node) for skin in skins])[:-1]
     around = _mirrored(everything) if places.mesh.half else everything
 
-    def packed(points: Floats) -> str:
-        return _packed(np.rint((points - corner) / scale).astype("<u2"))
+    def placed(points: Floats) -> str:
+        return packed(np.rint((points - corner) / scale).astype("<u2"))
 
     content = {
         "half": places.mesh.half,
@@ -167,10 +166,10 @@ def scene_data(case: Case, states: States, space: Space | None = None) -> SceneD
                 "part": skin.part,
                 "cut": skin.cut,
                 "points": len(skin.node),
-                "triangles": _packed(skin.triangles.astype("<u4")),
-                "positions": packed(position),
-                "region": _packed(skin.region.astype("u1")),
-                "values": [_packed(value) for value in fields.scaled(values, number)],
+                "triangles": packed(skin.triangles.astype("<u4")),
+                "positions": placed(position),
+                "region": packed(skin.region.astype("u1")),
+                "values": [packed(value) for value in fields.scaled(values, number)],
             }
             for number, (skin, position) in enumerate(
                 zip(skins, np.split(positions, ends, axis=1), strict=True)
@@ -182,7 +181,7 @@ def scene_data(case: Case, states: States, space: Space | None = None) -> SceneD
         ],
         "quantities": fields.described(values),
         "colors": _colors(),
-        "fibers": threads.content | {"positions": packed(lines)},
+        "fibers": threads.content | {"positions": placed(lines)},
         "obstacles": _obstacles(case, around),
         "bounds": [around.min(axis=0).tolist(), around.max(axis=0).tolist()],
     }
@@ -219,7 +218,7 @@ def _size(skins: Sequence[Skin]) -> int:
 def _skins(space: Space, level: int) -> list[Skin]:
     """The surfaces of the body's parts: without the sheath, of the sheath, and both cut open."""
     mesh = space.model_mesh.mesh
-    bare = BodySurfaces(space.model_mesh).bare
+    bare = mesh.cell_region != mesh.regions.get("sheath", -1)
     copies = _own_copies(space)
     around = boundary_facets(mesh, np.ones(len(mesh.cells), dtype=bool))
     skins = []
@@ -343,7 +342,7 @@ class _Threads:
         starts = np.flatnonzero(first)
         self.content = {
             "points": int(lines.n_points),
-            "segments": _packed(np.column_stack([starts, starts + 1]).astype("<u4")),
+            "segments": packed(np.column_stack([starts, starts + 1]).astype("<u4")),
         }
 
     def at(self, state: Snapshot) -> Floats:
@@ -373,8 +372,8 @@ def _obstacles(case: Case, around: Floats) -> list[dict[str, Any]]:
             found.append(
                 {
                     "name": name,
-                    "points": _packed(np.asarray(surface.points, dtype="<f4")),
-                    "triangles": _packed(np.asarray(surface.regular_faces, dtype="<u4")),
+                    "points": packed(np.asarray(surface.points, dtype="<f4")),
+                    "triangles": packed(np.asarray(surface.regular_faces, dtype="<u4")),
                 }
             )
     return found
@@ -385,15 +384,4 @@ def _colors() -> str:
     """The colour map of all pictures, 256 times red, green and blue."""
     from fiberbend.drawing.page import colormap
 
-    return _base64(np.rint(255 * colormap()(np.arange(256))[:, :3]).astype(np.uint8).tobytes())
-
-
-def _packed(values: NDArray[Any]) -> str:
-    """An array compressed: all first bytes of its numbers, then all second ones, and so on."""
-    numbers = np.ascontiguousarray(values)
-    planes = numbers.view(np.uint8).reshape(-1, numbers.itemsize).T
-    return _base64(zlib.compress(planes.tobytes(), 6))
-
-
-def _base64(data: bytes) -> str:
-    return base64.b64encode(data).decode("ascii")
+    return base64_of(np.rint(255 * colormap()(np.arange(256))[:, :3]).astype(np.uint8).tobytes())

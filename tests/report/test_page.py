@@ -140,7 +140,8 @@ def test_how_to_cite_is_that_of_the_project(page: Page) -> None:
     assert "Kevin C. Galloway" in page.text
 
 
-def test_three_js_comes_with_its_licence() -> None:
+def test_three_js_comes_with_its_licence(page: Page) -> None:
+    assert any("Permission is hereby granted, free of charge" in text for text in page.scripts)
     assets = ROOT / "fiberbend" / "report" / "assets" / "three"
     assert "MIT" in (assets / "LICENSE").read_text(encoding="utf-8")
     assert "</script" not in (assets / "three.min.js").read_text(encoding="utf-8").lower()

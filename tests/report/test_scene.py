@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import base64
+import copy
 import dataclasses
 import zlib
 from pathlib import Path
@@ -9,13 +10,20 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
+from fiberbend.case.case import Case
+from fiberbend.reader.reader import parse_case
 from fiberbend.report import scene
+from fiberbend.report.run_page import report
 from fiberbend.report.scene import scene_data, thinned
 from fiberbend.report.side_view import loops_of, plane_edges
-from fiberbend.results.states import REST, Kept, States
-from tests.output import bending
-from tests.report.folders import ANGLES, bent_folder, case, rows, run_of
+from fiberbend.results.folder import MESH, RunFolder
+from fiberbend.results.space import Space
+from fiberbend.results.states import REST, Kept, States, write_fibers
+from fiberbend.states.snapshot import ModelMesh, Snapshot
+from tests.output import bending, uniform
+from tests.report.folders import ANGLES, CASE, bent_folder, case, row, rows, run_of
 
 
 def unpacked(text: str, kind: str) -> NDArray[Any]:
@@ -153,3 +161,69 @@ def test_a_body_without_facets_in_the_plane_has_no_outline() -> None:
     mesh = bending.model_mesh().mesh
     aside = dataclasses.replace(mesh, nodes=mesh.nodes + np.array([1.0, 0.0, 0.0]))
     assert loops_of(plane_edges(aside)) == []
+
+
+UNIFORM = CASE | {
+    "effects": [
+        {"pressure": {"angle": "90 deg"}},
+        {"winding": {"pattern": "double-helix", "pitch": "3 mm", "fiber": "kevlar"}},
+    ],
+    "mesh": {},
+    "output": {"pictures": False, "fields": False, "at_angles": ["90 deg"]},
+}
+
+
+def uniform_folder(path: Path, given: Case, own: ModelMesh, shot: Snapshot) -> Path:
+    """The folder of a section or a cell with one state."""
+    folder = RunFolder(path)
+    folder.write_case(given)
+    folder.write(MESH, own.mesh.save)
+    assert own.fibers is not None
+    write_fibers(folder, own.fibers, own.smeared)
+    arrays = {key: value for key, value in vars(shot).items() if value is not None}
+    folder.write_arrays(f"snapshots/{shot.label}.npz", **arrays)
+    return path
+
+
+@pytest.mark.parametrize("model", ["section", "cell"])
+def test_section_and_cell_are_where_their_body_in_space_is(model: str, tmp_path: Path) -> None:
+    smeared = {"as": "smeared"} if model == "section" else {}
+    effects = copy.deepcopy(UNIFORM["effects"])
+    effects[1]["winding"] |= smeared
+    given = parse_case(UNIFORM | {"model": model, "effects": effects})
+    own = uniform.section() if model == "section" else uniform.cell()
+    shot = uniform.state(own, 90.0, 1.05)
+    path = uniform_folder(tmp_path / "run", given, own, shot)
+    states = States(path, given, [row(0, 0.0), row(1, 90.0)])
+    found = scene_data(given, states)
+    space = Space(given, states.model_mesh)
+    mesh = space.model_mesh.mesh
+    moved = mesh.nodes + space.snapshot(shot).displacement
+    strain = space.at_cells(shot)
+    top = found.content["quantities"][0]["top"]
+    for skin in found.content["skins"]:
+        points = positions(found.content, skin["positions"])
+        distance, node = cKDTree(mesh.nodes).query(points[0])
+        assert distance.max() < 2 * found.content["scale"]
+        assert np.abs(points[1] - moved[node]).max() < 3 * found.content["scale"]
+        shown = unpacked(skin["values"][0], "u1").reshape(2, -1)[1] / 255 * top
+        least, most = np.full(len(mesh.nodes), np.inf), np.full(len(mesh.nodes), -np.inf)
+        np.minimum.at(least, mesh.cells, strain)
+        np.maximum.at(most, mesh.cells, strain)
+        slack = top / 250
+        assert (shown > np.minimum(least[node], top) - slack).all()
+        assert (shown < np.minimum(most[node], top) + slack).all()
+    assert bool(found.content["fibers"]["points"]) == (model == "cell")
+    assert any("no caps" in note for note in found.notes)
+
+
+def test_a_section_without_pictures_shows_its_shape(tmp_path: Path) -> None:
+    effects = copy.deepcopy(UNIFORM["effects"])
+    effects[1]["winding"] |= {"as": "smeared"}
+    given = parse_case(UNIFORM | {"model": "section", "effects": effects})
+    own = uniform.section()
+    path = uniform_folder(tmp_path / "run", given, own, uniform.state(own, 90.0))
+    page = report(path, given, [row(0, 0.0), row(1, 90.0)], run_of(model="section"))
+    assert page.count('alt="section shape"') == 1
+    assert 'alt="section strain"' not in page
+    assert page.count('alt="pressure angle"') == 1
