@@ -13,16 +13,17 @@ from fiberbend.drawing.page import figure, literal, save
 from fiberbend.states.snapshot import Target, Write
 from fiberbend.sweep.fields import VariedField
 from fiberbend.sweep.maps import (
-    FAILED,
     PANELS,
     axis_label,
     head,
     limits_of,
     map_page,
+    outcome,
     spread,
     wrapped,
 )
 from fiberbend.sweep.quantities import ReportedQuantity, TableRow
+from fiberbend.sweep.store import NOT_RUN
 from fiberbend.sweep.trends import Group, described, groups
 
 _COLORS = ("#1f5a99", "#c0392b", "#2e8b57", "#8e5ea2", "#b8860b", "#444444")
@@ -151,15 +152,16 @@ def _curves(
     for i, line in enumerate(reversed(remark)):
         down = (legend + _LINE * i) / height
         page.text(0.5, down, literal(line), ha="center", va="bottom", fontsize=11)
-    _legend(page, quantity, any(_failed(row, quantity) for row in rows), height)
+    _legend(page, quantity, any(_lost(row, quantity) for row in rows), height)
     save(page, target)
 
 
-def _failed(row: TableRow, quantity: ReportedQuantity) -> bool:
-    return row["status"] == FAILED and row.get(quantity.column) is None
+def _lost(row: TableRow, quantity: ReportedQuantity) -> bool:
+    """Whether a point was run and has no value."""
+    return row.get(quantity.column) is None and outcome(row) != NOT_RUN
 
 
-def _legend(page: Any, quantity: ReportedQuantity, failed: bool, height: int) -> None:
+def _legend(page: Any, quantity: ReportedQuantity, lost: bool, height: int) -> None:
     """What full and broken lines are, below everything else."""
     from matplotlib.lines import Line2D
 
@@ -167,9 +169,9 @@ def _legend(page: Any, quantity: ReportedQuantity, failed: bool, height: int) ->
         Line2D([], [], color="0.25", linestyle=_STROKES[n % len(_STROKES)], label=literal(caption))
         for n, caption in enumerate(quantity.lines)
     ]
-    if failed:
+    if lost:
         handles.append(
-            Line2D([], [], color="0.25", marker="x", linestyle="", label="failed, no value")
+            Line2D([], [], color="0.25", marker="x", linestyle="", label="failed or not reached")
         )
     page.legend(
         handles=handles,
@@ -228,7 +230,7 @@ def _panel(axis: Any, found: Sequence[Group], quantity: ReportedQuantity) -> Non
                 linewidth=1.8,
                 markersize=7,
             )
-        lost = [x for x, row in zip(group.x, group.rows, strict=True) if _failed(row, quantity)]
+        lost = [x for x, row in zip(group.x, group.rows, strict=True) if _lost(row, quantity)]
         # at the foot of the panel: a point that failed has no height
         axis.plot(
             lost,

@@ -99,7 +99,8 @@ def sign(found: Sequence[Group], name: str) -> str:
         return ""
     counts = Counter(_shape(y) for y in known)
     shapes = ", ".join(f"{shape} {n}" if len(counts) > 1 else shape for shape, n in counts.items())
-    return f"{shapes} ({_changes(known, ' … ')})"
+    changes = _changes(found, name, " … ")
+    return f"{shapes} ({changes})" if changes else shapes
 
 
 def in_a_sentence(column: VariedField, found: Sequence[Group], name: str) -> str:
@@ -119,7 +120,11 @@ def in_a_sentence(column: VariedField, found: Sequence[Group], name: str) -> str
     ends = sorted({float(x) for group in found for x in group.x})
     unit = f" {column.unit}" if column.unit else ""
     span = f"{in_words(column)} {ends[0]:g} to {ends[-1]:g}{unit}"
-    return f"{span}: {shapes}; from first to last {_changes(known, ' to ')}"
+    changes = _changes(found, name, " to ")
+    text = f"{span}: {shapes}" + (f"; from first to last {changes}" if changes else "")
+    lacking = len(found) - sum(_whole(group.values(name)) for group in found)
+    noun = "group" if len(found) == 1 else "groups"
+    return f"{text} ({lacking} of {len(found)} {noun} without one of the two)" if lacking else text
 
 
 def _known(found: Sequence[Group], name: str) -> list[Floats]:
@@ -129,9 +134,20 @@ def _known(found: Sequence[Group], name: str) -> list[Floats]:
     return [y for y in values if len(y) > 1]
 
 
-def _changes(known: Sequence[Floats], between: str) -> str:
-    """The relative changes from the first to the last value: the least and the greatest."""
-    changes = [100 * (y[-1] / y[0] - 1) if y[0] else math.inf for y in known]
+def _whole(y: Floats) -> bool:
+    """Whether a column has its first and its last value along a group."""
+    return not bool(np.isnan(y[[0, -1]]).any())
+
+
+def _changes(found: Sequence[Group], name: str, between: str) -> str:
+    """The relative changes from the first to the last value: the least and the greatest.
+
+    A group that lacks one of the two would pass the change along a part of it for that of all.
+    """
+    values = [y for group in found if _whole(y := group.values(name))]
+    if not values:
+        return ""
+    changes = [100 * (y[-1] / y[0] - 1) if y[0] else math.inf for y in values]
     ends = dict.fromkeys(f"{bound:+.1f} %" for bound in (min(changes), max(changes)))
     return between.join(ends).replace("-", "−")
 

@@ -328,6 +328,20 @@ def test_what_was_asked_for_comes_first(read: Read) -> None:
     assert text.endswith("- a note\n")
 
 
+def test_a_group_without_an_end_has_no_change(read: Read) -> None:
+    """From 1 to 2 mm is not from 1 to 3 mm."""
+    sweep = read(grid(report={"angles": ["45 deg"]}))
+    rows = rows_of(sweep, pressure_45deg_kPa=1.0)
+    rows[2]["pressure_45deg_kPa"] = None
+    found = quantities(sweep.report, rows)
+    text = as_markdown("", sweep.columns, rows, found)
+    assert (
+        "- wall 1 to 3 mm: rises in both groups; from first to last +50.0 % (1 of 2 groups "
+        "without one of the two)." in text
+    )
+    assert "| wall 1, 2, 3 mm | 2 | ↑ (+50.0 %) |" in text
+
+
 def test_without_a_question_the_ends_lead(read: Read) -> None:
     sweep = read(grid())
     rows = rows_of(sweep, end_angle_deg=90.0, greatest_stretch=1.0)
