@@ -5,6 +5,7 @@ A number that is misread goes into a comparison unseen: what could be read in tw
 
 from __future__ import annotations
 
+import random
 from pathlib import Path
 
 import pytest
@@ -136,6 +137,35 @@ def test_what_a_case_says_decides(tmp_path: Path) -> None:
     assert "'1.5', expected a number" in refusal(tmp_path, "P;theta\n1.5;90\n", decimal=",")
     assert read(tmp_path, "P,theta\n1,2\n", delimiter=",") == [[1.0, 2.0]]
     assert "one column 'P,theta'" in refusal(tmp_path, "P,theta\n1,2\n", delimiter=";")
+
+
+def test_tables_by_chance_are_read_exactly_or_refused(tmp_path: Path) -> None:
+    chance = random.Random(7)
+    shapes = ("{:.6g}", "{:.2f}", "{:.3f}", "{:.0f}", "{:.3e}")
+    spreads = (400.0, 2e5)
+    path, ends = tmp_path / "curve.csv", {"read": 0, "refused": 0}
+    for _ in range(2000):
+        delimiter = chance.choice(["\t", ";", ",", "; ", ", ", " ", "   ", "|"])
+        decimal, shape = chance.choice(".,"), chance.choice(shapes)
+        width, quote = chance.choice([2, 2, 3, 4]), chance.choice(["", "", "", '"'])
+        texts = [
+            [shape.format(chance.uniform(-5, chance.choice(spreads))) for _ in range(width)]
+            for _ in range(chance.randint(1, 4))
+        ]
+        units = chance.choice([("", "", "", ""), (" [kPa]", " [deg]", " [N]", " (s)")])
+        names = [f"{name}{unit}" for name, unit in zip("PQFt", units, strict=True)][:width]
+        lines = [names, *([f"{quote}{t.replace('.', decimal)}{quote}" for t in r] for r in texts)]
+        path.write_text("\n".join(delimiter.join(line) for line in lines), encoding="utf-8")
+        try:
+            table = read_table(path)
+            found = table.values(range(width))
+        except ValueError:
+            ends["refused"] += 1
+            continue
+        ends["read"] += 1
+        assert len(table.columns) == width
+        assert found == [[float(text) for text in row] for row in texts]
+    assert ends["refused"] < 0.15 * ends["read"]
 
 
 @pytest.mark.parametrize(

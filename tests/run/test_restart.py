@@ -8,6 +8,7 @@ import shutil
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from mpi4py import MPI
 
@@ -30,6 +31,7 @@ from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording
 from fiberbend.running.progress import Progress
 from fiberbend.running.runner import run_case
+from fiberbend.schema.problems import CaseError
 from tests.run import test_contact
 from tests.run.conftest import small
 
@@ -152,6 +154,18 @@ def test_with_nothing_whole_it_begins_anew(whole: RunResult, cut: Path, tmp_path
     again, lines = _on(CASE, out)
     assert f"{out / CHECKPOINT_BEFORE} is damaged: goes on from the beginning" in lines
     assert again.rows == whole.rows
+
+
+def test_rows_of_an_older_version_are_refused(cut: Path, tmp_path: Path) -> None:
+    """Their columns had other names: work could not be added up across them."""
+    out = _copy(cut, tmp_path)
+    with np.load(out / CHECKPOINT) as file:
+        arrays = dict(file)
+    rows = json.loads(str(arrays["rows"]))
+    arrays["rows"] = np.array(json.dumps([row | {"load pressure": 0.01} for row in rows]))
+    np.savez(out / CHECKPOINT, **arrays)
+    with pytest.raises(CaseError, match="of another version of fiberbend, cannot be resumed"):
+        _on(CASE, out)
 
 
 def test_killed_while_meshing(whole: RunResult, tmp_path: Path) -> None:
