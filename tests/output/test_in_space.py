@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import io
+import math
 from collections.abc import Iterator
-from typing import Any
+from pathlib import Path
+from typing import IO, Any
 
 import numpy as np
 import pytest
 
+from fem.march.records import Report
 from fiberbend.drawing.animation import SIZE, Animation
 from fiberbend.drawing.body import draw_pictures
 from fiberbend.drawing.obstacles import Obstacles, Scenery, write_forces
@@ -19,7 +22,11 @@ from fiberbend.drawing.renderer import FROM_THE_SIDE, Drawable, Renderer, View, 
 from fiberbend.drawing.rest import draw_rest, rest_image
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.reader.reader import parse_case
+from fiberbend.results.folder import read_history
 from fiberbend.results.scenery import scenery
+from fiberbend.results.states import States
+from fiberbend.running.messages import on_state
+from fiberbend.running.runner import run_case
 from fiberbend.states.labels import short_number
 from fiberbend.states.obstacles import Bar, Box, Shape, Sheet
 from fiberbend.states.recovery import recover, split_nodes
@@ -172,7 +179,7 @@ def test_obstacles_neither_hide_nor_tint_the_body(renderer: Renderer) -> None:
     assert (alone[inside] < 250).any(axis=2).all()
     assert (alone[inside] == both[inside]).all()
     outside = both[(alone == 255).all(axis=2)]
-    assert (outside < 250).any(axis=1).mean() > 0.3
+    assert (outside < 250).any(axis=1).mean() > 0.2
 
 
 def test_a_plane_is_seen_from_its_edge(renderer: Renderer) -> None:
@@ -195,10 +202,10 @@ def test_touch_is_where_the_body_is_nearest() -> None:
     }
     obstacles = Obstacles(Scenery(shapes), points)
     place = obstacles.touch("plane", points)
-    assert place[1:] == pytest.approx(low[1:], abs=1.0)
+    assert place[1:] == pytest.approx([low[1] - 1, low[2]], abs=0.3)
     # both halves: in the middle
     assert place[0] == pytest.approx(0.0, abs=1e-9)
-    assert obstacles.touch("roof", points)[1] == pytest.approx(points[:, 1].max(), abs=0.5)
+    assert obstacles.touch("roof", points)[1] == pytest.approx(20.0)
 
 
 def test_names_and_forces_are_written_beside_the_body(renderer: Renderer) -> None:
@@ -366,6 +373,14 @@ def frames(scene: ModelMesh, states: list[Snapshot]) -> Iterator[tuple[Snapshot,
         yield state, recover(scene, state, nodes).log_strain[nodes.cells]
 
 
+def frames_of(file: IO[bytes]) -> int:
+    from PIL import Image
+
+    gif: Any
+    with Image.open(file) as gif:
+        return int(gif.n_frames)
+
+
 def test_animation_has_a_frame_for_every_state(renderer: Renderer) -> None:
     from PIL import Image
 
@@ -409,3 +424,44 @@ def test_pictures_with_obstacles(renderer: Renderer) -> None:
     names = draw_pictures(scene, states, write, renderer, scenery=beside)
     assert names == list(sizes)
     assert min(sizes.values()) > 15_000
+
+
+# --- from the run to its pictures --------------------------------------------------------------
+
+
+def test_a_run_marks_the_states_beyond_its_touch(tmp_path: Path) -> None:
+    spread = WINDING["winding"] | {"as": "smeared"}
+    bent = case(
+        effects=[{"pressure": {"angle": "345 deg"}}, {"winding": spread}],
+        model="section",
+        mesh={},
+        output={"at_angles": ["200 deg", "345 deg"], "animation": True, "fields": False},
+    )
+    run = run_case(bent, tmp_path / "run")
+    rows = read_history(tmp_path / "run" / "history.csv")
+    states = States(tmp_path / "run", bent, rows)
+    remarks = {
+        kept.angle_deg: state.remark for kept, state in zip(states.kept, states, strict=True)
+    }
+    (warning,) = [line for line in run.run["warnings"] if "passes through itself" in line]
+    begin = float(warning.split("°")[0].removeprefix("from "))
+    assert 200 < begin < 345
+    for angle, remark in remarks.items():
+        assert remark.startswith("passes through itself from" if angle > begin else "")
+        assert bool(remark) == (angle > begin)
+    with (tmp_path / "run" / "pictures" / "animation.gif").open("rb") as file:
+        assert frames_of(file) == len(rows)
+    assert (tmp_path / "run" / "pictures" / "rest.png").exists()
+
+
+def test_a_body_that_is_bent_back_no_longer_passes_through_itself() -> None:
+    touched = Report(self_contact={"control": math.radians(300.0)})
+    assert on_state(Report(), None, 350.0) == ""
+    assert on_state(touched, None, 299.0) == ""
+    assert on_state(touched, None, 301.0) == "passes through itself from 300° on: not modelled"
+    back = Report(self_contact={"control": -math.radians(300.0)})
+    assert on_state(back, None, -301.0).startswith("passes through itself from −300°")
+    assert on_state(back, None, 301.0) == ""
+    walls = {"control": math.radians(-20.0)}
+    text = "chamber walls pass through each other from −20° on: not modelled"
+    assert on_state(touched, walls, 0.0) == text
