@@ -6,6 +6,7 @@ matplotlib is imported where it is used, and without its global state.
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import math
 import textwrap
 import warnings
@@ -37,6 +38,7 @@ NAMES = {"layer": "strain-limiting layer", "fiber": "fibers", "winding": SMEARED
 WARN = "#b01818"
 """Colour of what has to be said of a state."""
 _HEADING, _REMARK = 17, 11.5
+_NARROW = 1200
 _FLAT = 0.5
 """Height over width of images that stand in two columns at most."""
 _DPI = 100
@@ -125,8 +127,10 @@ class Page:
         self._figure = figure(size)
         heading(self._figure, title)
         middle: dict[str, Any] = {"ha": "center", "va": "center"}
-        self._figure.text(0.5, 1 - 58 / size[1], caption, fontsize=14, **middle)
-        self._figure.text(0.5, 1 - 82 / size[1], remark, fontsize=12, color=WARN, **middle)
+        self._caption = self._figure.text(0.5, 1 - 58 / size[1], caption, fontsize=14, **middle)
+        self._remark = self._figure.text(
+            0.5, 1 - 82 / size[1], remark, fontsize=12, color=WARN, **middle
+        )
 
     @classmethod
     def of_panels(
@@ -237,6 +241,26 @@ class Page:
         self.panels.append(Panel(self._figure, axes, image[shown], view, size, corner))
         return self.panels[-1]
 
+    def renew(self, image: Image, caption: str, remark: str) -> Panel:
+        """Show another state in place of the first panel's, from the same view.
+
+        Args:
+            image: pixels, as large as those it replaces.
+            caption: of the state.
+            remark: what has to be said of it.
+
+        Returns:
+            What can be written on; what was written is gone.
+        """
+        axes = self.panels[0].axes
+        for written in (*axes.texts, *axes.lines):
+            written.remove()
+        axes.images[0].set_data(image)
+        self._caption.set_text(caption)
+        self._remark.set_text(remark)
+        self.panels[0] = dataclasses.replace(self.panels[0], image=image)
+        return self.panels[0]
+
     def scale(self, panel: Panel, left: float = 24, bottom: float = 24) -> None:
         """A bar of a round length and the axes of a panel, at a place of the page in pixels."""
         panel.scale(left, bottom, nice_above(70 / panel.per_mm))
@@ -252,8 +276,10 @@ class Page:
         from matplotlib.cm import ScalarMappable
         from matplotlib.colors import Normalize
 
-        height = self._size[1]
-        axes = self._figure.add_axes((0.27, 62 / height, 0.46, 16 / height))
+        width, height = self._size
+        # a narrow page has its scale beside the bar
+        left = 0.27 if width > _NARROW else 0.36
+        axes = self._figure.add_axes((left, 62 / height, 0.46, 16 / height))
         shown = ScalarMappable(Normalize(*limits), colors or colormap())
         extend = "both" if limits[0] < 0 else "max"
         bar = self._figure.colorbar(shown, cax=axes, orientation="horizontal", extend=extend)
