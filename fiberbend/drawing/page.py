@@ -78,10 +78,14 @@ def heading(page: Any, title: str) -> None:
     """A title at the top of a figure, in smaller letters where it is long."""
     width, height = page.get_size_inches() * page.dpi
     style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": _HEADING}
-    text = page.text(0.5, 1 - 28 / height, literal(title), **style)
-    share = text.get_window_extent().width / (0.96 * width)
+    fit(page.text(0.5, 1 - 28 / height, literal(title), **style), 0.96 * width)
+
+
+def fit(text: Any, width: float) -> None:
+    """Make the letters of a matplotlib text smaller where it is wider than so many pixels."""
+    share = text.get_window_extent().width / width
     if share > 1:
-        text.set_fontsize(_HEADING / share)
+        text.set_fontsize(text.get_fontsize() / share)
 
 
 def wrap(text: str, width: float, fontsize: float) -> str:
@@ -176,17 +180,16 @@ class Page:
             row, column = divmod(i, columns)
             left, top = (column + 0.03) * across, height - 56 - row * tall
             middle = (left + 0.47 * across) / width
-            page._figure.text(
-                middle, (top - 10) / height, caption, ha="center", va="top", fontsize=13
-            )
+            below: dict[str, Any] = {"ha": "center", "va": "top"}
+            words = page._figure.text(middle, (top - 10) / height, caption, fontsize=13, **below)
+            fit(words, 0.96 * across)
             page._figure.text(
                 middle,
                 (top - 12 - 24 * lines) / height,
                 remark,
-                ha="center",
-                va="top",
                 fontsize=_REMARK,
                 color=WARN,
+                **below,
             )
             low = top - head - room
             place = (left / width, low / height, 0.94 * across / width, room / height)

@@ -15,6 +15,7 @@ import pytest
 from fem.march.records import Report
 from fiberbend.drawing.animation import SIZE, Animation
 from fiberbend.drawing.body import draw_pictures
+from fiberbend.drawing.cell import Slices
 from fiberbend.drawing.obstacles import Obstacles, Scenery, write_forces
 from fiberbend.drawing.page import COLORS, SMEARED, WARN, Page, colormap
 from fiberbend.drawing.panel import Panel, free_place
@@ -33,6 +34,8 @@ from fiberbend.states.recovery import recover, split_nodes
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.mesh.data import Floats
 from tests.output.bending import model_mesh, snapshot
+from tests.output.uniform import cell
+from tests.output.uniform import state as state_of
 from tests.run.conftest import small
 
 OBLIQUE = (-0.62, 0.42, -0.66)
@@ -327,6 +330,49 @@ def test_a_smeared_winding_is_shown_as_a_surface() -> None:
     assert np.abs(points[:, 0]).max() == pytest.approx(10.0)
     assert (points[:, 2].min(), points[:, 2].max()) == pytest.approx((0.0, 24.0))
     assert set(BodySurfaces(dataclasses.replace(lines, fibers=None)).names) == set(lines.materials)
+
+
+def test_long_texts_fit(renderer: Renderer) -> None:
+    page = Page((900, 600), "W" * 120)
+    assert page._figure.texts[0].get_window_extent().width <= 0.97 * 900
+    view = View(FROM_THE_SIDE, np.zeros(3), 50.0)
+    image = renderer.draw([Drawable(block(0.0), color="red")], view, SIZE_OF)
+    caption = "P = −123.4 kPa,  F = −12.3 N,  θ = −123.4°"
+    page = Page.of_panels(1400, "", [image] * 4, [caption] * 4, [view] * 4)
+    for text in page._figure.texts:
+        assert not text.get_text() or text.get_window_extent().width <= 0.97 * 350
+
+
+def test_every_panel_has_axes_and_scale(
+    renderer: Renderer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown: list[Any] = []
+    scaled: list[Any] = []
+    place, scale = Page._place, Panel.scale
+
+    def note_place(page: Page, *how: Any) -> Panel:
+        shown.append(place(page, *how))
+        return shown[-1]  # type: ignore[no-any-return]
+
+    def note_scale(panel: Panel, *how: Any) -> None:
+        scaled.append(panel)
+        scale(panel, *how)
+
+    monkeypatch.setattr(Page, "_place", note_place)
+    monkeypatch.setattr(Panel, "scale", note_scale)
+
+    def write(_: str, fill: Any) -> None:
+        fill(io.BytesIO())
+
+    scene, sliced = model_mesh(), cell()
+    states = [snapshot(scene, angle) for angle in (30.0, 90.0)]
+    draw_pictures(scene, states, write, renderer)
+    draw_rest(scene, io.BytesIO(), renderer)
+    Animation(scene, renderer).write(io.BytesIO(), frames(scene, states), lambda: states)
+    Slices(sliced, [state_of(sliced, 60.0), state_of(sliced, 90.0)], renderer).bulge(io.BytesIO())
+    # undeformed 2, cut, bent 2, montage 2, rest, animation, bulge 2
+    assert len(shown) == 11
+    assert [id(panel) for panel in shown] == [id(panel) for panel in scaled]
 
 
 # --- at rest ---------------------------------------------------------------------------------
