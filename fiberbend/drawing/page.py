@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import functools
 import math
 import textwrap
 import warnings
@@ -218,6 +219,14 @@ class Page:
             top -= tall + STRIP + 10
         return page
 
+    @functools.cached_property
+    def _overlay(self) -> Any:
+        """Axes over the whole page, in its pixels."""
+        axes = self._figure.add_axes((0, 0, 1, 1), zorder=2)
+        axes.set(xlim=(0, self._size[0]), ylim=(0, self._size[1]), autoscale_on=False)
+        axes.set_axis_off()
+        return axes
+
     def image(self, image: Image, box: Box, view: View, crop: bool = False) -> Panel:
         """Place an image on the page.
 
@@ -241,7 +250,9 @@ class Page:
         axes.autoscale(False)
         corner = (shown[1].start or 0, shown[0].start or 0)
         size = (image.shape[1], image.shape[0])
-        self.panels.append(Panel(self._figure, axes, image[shown], view, size, corner))
+        self.panels.append(
+            Panel(self._figure, self._overlay, axes, image[shown], view, size, corner)
+        )
         return self.panels[-1]
 
     def renew(self, image: Image, caption: str, remark: str) -> Panel:

@@ -109,7 +109,7 @@ def test_scale_is_that_of_the_image(renderer: Renderer) -> None:
     panel = panel_of(image, View(FROM_THE_SIDE, np.zeros(3), 50.0))
     assert panel.per_mm == pytest.approx(SIZE_OF[0] / 50.0)
     panel.scale(10, 10, 12.5)
-    drawn = panel.figure.axes[-1]
+    drawn = panel.overlay
     bar = next(line for line in drawn.lines if line.get_linewidth() == 3)
     assert np.ptp(bar.get_xdata()) == pytest.approx(12.5 * SIZE_OF[0] / 50.0)
     assert {text.get_text() for text in drawn.texts} == {"x", "y", "z", "12.5 mm", ""}
