@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -76,13 +76,22 @@ class Animation:
         every = np.concatenate(corners)
         obstacles = Obstacles(self._scenery, every)
         view = obstacles.frame(every, FROM_THE_SIDE, SIZE[0] / _BAND)
-        frames = (
-            self._frame(state, value, (0.0, high), obstacles, view)
-            for state, value in zip(again(), values, strict=True)
-        )
-        _save(target, frames, len(values))
+        limits = (0.0, high)
+        page = Page(SIZE, self._title)
+        blank = np.full((_BAND, SIZE[0], 3), 255, dtype=np.uint8)
+        page.scale(page.image(blank, (0.0, _LOW / SIZE[1], 1.0, _BAND / SIZE[1]), view), 14)
+        page.color_bar(limits, "maximum principal logarithmic strain" + self._surfaces.remark)
 
-    def _frame(
+        def frames() -> Iterator[Image]:
+            for state, value in zip(again(), values, strict=True):
+                image = self._image(state, value, limits, obstacles, view)
+                panel = page.renew(image, self._scenery.caption(state), state.remark)
+                write_forces(panel, obstacles, self._surfaces.points(state), state, 10)
+                yield page.pixels()
+
+        _save(target, frames(), len(values))
+
+    def _image(
         self,
         state: Snapshot,
         value: Floats,
@@ -94,14 +103,7 @@ class Animation:
         surface["value"] = np.resize(value, surface.n_points)
         layers = [Drawable(surface, scalars="value"), *self._surfaces.fiber_tubes(state)]
         layers += obstacles.behind(view)
-        image = self._renderer.draw(layers, view, (SIZE[0], _BAND), limits, colormap())
-        page = Page(SIZE, self._title, self._scenery.caption(state), state.remark)
-        box = (0.0, _LOW / SIZE[1], 1.0, _BAND / SIZE[1])
-        panel = page.image(image, box, view)
-        write_forces(panel, obstacles, self._surfaces.points(state), state, 10)
-        page.color_bar(limits, "maximum principal logarithmic strain" + self._surfaces.remark)
-        page.scale(panel, 14)
-        return page.pixels()
+        return self._renderer.draw(layers, view, (SIZE[0], _BAND), limits, colormap())
 
 
 def _extremes(points: Floats) -> Floats:
@@ -139,7 +141,8 @@ def _palette() -> Any:
     colors = colormap()(np.linspace(0.0, 1.0, _MAPPED))[:, :3]
     # lines on a surface are its colour mixed with grey
     dark = 0.25 * colors[:: _MAPPED // _DARK] + 0.75 * 40 / 255
-    greys = np.repeat(np.linspace(0.0, 1.0, _GREYS)[:, None], 3, axis=1)
+    # none next to white: Pillow would take it for white
+    greys = np.append(np.linspace(0.0, 0.94, _GREYS - 1), 1.0)[:, None] * np.ones(3)
     shade = np.linspace(0.0, 1.0, _REDS)[:, None]
     reds = (1 - shade) * [0.69, 0.09, 0.09] + shade
     every = np.rint(255 * np.concatenate([colors, dark, greys, reds])).astype(np.uint8)

@@ -30,6 +30,8 @@ _MOST = 4000
 """Points of the body that are asked for their distance from an obstacle."""
 _ROOM, _BESIDE = 0.085, 0.12
 """Room for what is written beside obstacles, as parts of a picture's width: at least, at most."""
+_BEYOND = 0.6
+"""How far beyond the body an obstacle makes a view wider, as a part of the body's extent."""
 _NO_FORCE = 1e-6
 """Part of the greatest force in a run that is round-off."""
 _STRAIGHT = 0.05
@@ -83,6 +85,9 @@ class Obstacles:
 
     def __init__(self, scenery: Scenery, around: Floats) -> None:
         self.scenery = scenery
+        low, high = around.min(axis=0), around.max(axis=0)
+        beyond = _BEYOND * float((high - low).max())
+        self._reach = (low - beyond, high + beyond)
         self._line = _LINE * float(np.linalg.norm(np.ptp(around, axis=0)))
         self.solids = {
             name: _solid(shape.surface(around)) for name, shape in scenery.shapes.items()
@@ -90,10 +95,9 @@ class Obstacles:
 
     @property
     def points(self) -> Floats:
-        """Points that a view of the whole contains, (n, 3), mm."""
-        return np.concatenate(
-            [np.zeros((0, 3)), *(np.asarray(solid.points) for solid in self.solids.values())]
-        )
+        """Points that a view of the whole contains, (n, 3), mm; of a large obstacle a part."""
+        every = [np.zeros((0, 3)), *(np.asarray(solid.points) for solid in self.solids.values())]
+        return np.concatenate(every).clip(*self._reach)
 
     def frame(self, body: Floats, toward: tuple[float, float, float], aspect: float) -> View:
         """The least view of the body and all obstacles, with room for what is written beside them.

@@ -6,6 +6,8 @@ matplotlib is imported where it is used, and without its global state.
 from __future__ import annotations
 
 import contextlib
+import dataclasses
+import functools
 import math
 import textwrap
 import warnings
@@ -38,6 +40,7 @@ NAMES = {"layer": "strain-limiting layer", "fiber": "fibers", "winding": SMEARED
 WARN = "#b01818"
 """Colour of what has to be said of a state."""
 _HEADING, _REMARK = 17, 11.5
+_NARROW = 1200
 _FLAT = 0.5
 """Height over width of images that stand in two columns at most."""
 _LONGEST = 120
@@ -79,10 +82,14 @@ def heading(page: Any, title: str) -> None:
     """A title at the top of a figure, in smaller letters where it is long."""
     width, height = page.get_size_inches() * page.dpi
     style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": _HEADING}
-    text = page.text(0.5, 1 - 28 / height, literal(title), **style)
-    share = text.get_window_extent().width / (0.96 * width)
+    fit(page.text(0.5, 1 - 28 / height, literal(title), **style), 0.96 * width)
+
+
+def fit(text: Any, width: float) -> None:
+    """Make the letters of a matplotlib text smaller where it is wider than so many pixels."""
+    share = text.get_window_extent().width / width
     if share > 1:
-        text.set_fontsize(_HEADING / share)
+        text.set_fontsize(text.get_fontsize() / share)
 
 
 def wrap(text: str, width: float, fontsize: float) -> str:
@@ -147,8 +154,10 @@ class Page:
         self._figure = figure(size)
         heading(self._figure, title)
         middle: dict[str, Any] = {"ha": "center", "va": "center"}
-        self._figure.text(0.5, 1 - 58 / size[1], caption, fontsize=14, **middle)
-        self._figure.text(0.5, 1 - 82 / size[1], remark, fontsize=12, color=WARN, **middle)
+        self._caption = self._figure.text(0.5, 1 - 58 / size[1], caption, fontsize=14, **middle)
+        self._remark = self._figure.text(
+            0.5, 1 - 82 / size[1], remark, fontsize=12, color=WARN, **middle
+        )
 
     @classmethod
     def of_panels(
@@ -194,17 +203,16 @@ class Page:
             row, column = divmod(i, columns)
             left, top = (column + 0.03) * across, height - 56 - row * tall
             middle = (left + 0.47 * across) / width
-            page._figure.text(
-                middle, (top - 10) / height, caption, ha="center", va="top", fontsize=13
-            )
+            below: dict[str, Any] = {"ha": "center", "va": "top"}
+            words = page._figure.text(middle, (top - 10) / height, caption, fontsize=13, **below)
+            fit(words, 0.96 * across)
             page._figure.text(
                 middle,
                 (top - 12 - 24 * lines) / height,
                 remark,
-                ha="center",
-                va="top",
                 fontsize=_REMARK,
                 color=WARN,
+                **below,
             )
             low = top - head - room
             place = (left / width, low / height, 0.94 * across / width, room / height)
@@ -233,6 +241,14 @@ class Page:
             top -= tall + STRIP + 10
         return page
 
+    @functools.cached_property
+    def _overlay(self) -> Any:
+        """Axes over the whole page, in its pixels."""
+        axes = self._figure.add_axes((0, 0, 1, 1), zorder=2)
+        axes.set(xlim=(0, self._size[0]), ylim=(0, self._size[1]), autoscale_on=False)
+        axes.set_axis_off()
+        return axes
+
     def image(self, image: Image, box: Box, view: View, crop: bool = False) -> Panel:
         """Place an image on the page.
 
@@ -256,8 +272,30 @@ class Page:
         axes.autoscale(False)
         corner = (shown[1].start or 0, shown[0].start or 0)
         size = (image.shape[1], image.shape[0])
-        self.panels.append(Panel(self._figure, axes, image[shown], view, size, corner))
+        self.panels.append(
+            Panel(self._figure, self._overlay, axes, image[shown], view, size, corner)
+        )
         return self.panels[-1]
+
+    def renew(self, image: Image, caption: str, remark: str) -> Panel:
+        """Show another state in place of the first panel's, from the same view.
+
+        Args:
+            image: pixels, as large as those it replaces.
+            caption: of the state.
+            remark: what has to be said of it.
+
+        Returns:
+            What can be written on; what was written is gone.
+        """
+        axes = self.panels[0].axes
+        for written in (*axes.texts, *axes.lines):
+            written.remove()
+        axes.images[0].set_data(image)
+        self._caption.set_text(caption)
+        self._remark.set_text(remark)
+        self.panels[0] = dataclasses.replace(self.panels[0], image=image)
+        return self.panels[0]
 
     def scale(self, panel: Panel, left: float = 24, bottom: float = 24) -> None:
         """A bar of a round length and the axes of a panel, at a place of the page in pixels."""
@@ -274,8 +312,10 @@ class Page:
         from matplotlib.cm import ScalarMappable
         from matplotlib.colors import Normalize
 
-        height = self._size[1]
-        axes = self._figure.add_axes((0.27, 62 / height, 0.46, 16 / height))
+        width, height = self._size
+        # a narrow page has its scale beside the bar
+        left = 0.27 if width > _NARROW else 0.36
+        axes = self._figure.add_axes((left, 62 / height, 0.46, 16 / height))
         shown = ScalarMappable(Normalize(*limits), colors or colormap())
         extend = "both" if limits[0] < 0 else "max"
         bar = self._figure.colorbar(shown, cax=axes, orientation="horizontal", extend=extend)

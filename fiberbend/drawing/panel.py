@@ -29,6 +29,7 @@ class Panel:
 
     Attributes:
         figure: the page, a matplotlib figure.
+        overlay: matplotlib axes over the whole page, in its pixels.
         axes: matplotlib axes of the image, in its pixels.
         image: what is shown, (height, width, 3).
         view: from where.
@@ -37,6 +38,7 @@ class Panel:
     """
 
     figure: Any
+    overlay: Any
     axes: Any
     image: Image
     view: View
@@ -69,10 +71,7 @@ class Panel:
             bottom: of it; it is `STRIP` high.
             length: of the bar, mm.
         """
-        width, height = self.figure.get_size_inches() * self.figure.dpi
-        axes = self.figure.add_axes((0, 0, 1, 1))
-        axes.set(xlim=(0, width), ylim=(0, height))
-        axes.set_axis_off()
+        axes = self.overlay
         right, up, toward = self.view.axes
         ends = _ARM * np.column_stack([right, up])
         low = np.minimum(ends.min(axis=0), 0)

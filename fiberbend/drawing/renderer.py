@@ -102,10 +102,14 @@ def frame(
 
 
 class Renderer:
-    """An off-screen window that is opened for the first picture and used again for others."""
+    """An off-screen window that is used again for every picture.
+
+    Raises:
+        PictureError: pyvista cannot be imported.
+    """
 
     def __init__(self) -> None:
-        self._window: Any = None
+        self._plotter = _window()
 
     def __enter__(self) -> Renderer:
         return self
@@ -134,9 +138,6 @@ class Renderer:
 
         Returns:
             Pixels (height, width, 3).
-
-        Raises:
-            PictureError: pyvista cannot be imported.
         """
         plotter = self._plotter
         plotter.clear_actors()
@@ -176,14 +177,7 @@ class Renderer:
 
     def close(self) -> None:
         """Release the window."""
-        if self._window is not None:
-            self._window.close()
-
-    @property
-    def _plotter(self) -> Any:
-        if self._window is None:
-            self._window = _window()
-        return self._window
+        self._plotter.close()
 
     def _look(self, view: View, size: tuple[int, int]) -> None:
         _, up, toward = view.axes

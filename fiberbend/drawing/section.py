@@ -18,6 +18,7 @@ from fiberbend.drawing.page import (
     colormap,
     columns_of,
     figure,
+    fit,
     heading,
     nice_above,
     save,
@@ -89,9 +90,10 @@ class SectionPage:
             left = _WIDTH / 2 + (column - here / 2) * across
             top = self.height - _ABOVE - row * (tall + head)
             centre = {"x": (left + across / 2) / _WIDTH, "ha": "center", "va": "top"}
-            self._figure.text(
+            words = self._figure.text(
                 y=(top - 7) / self.height, s=caption, fontsize=13, linespacing=1.5, **centre
             )
+            fit(words, max(0.96 * across, _WIDTH / 5))
             below = top - 7 - _TEXT_LINE * lines
             self._figure.text(
                 y=below / self.height, s=notes[i], fontsize=_SMALL, color=WARN, **centre

@@ -204,7 +204,8 @@ class BodySurfaces:
 
     def _is_in(self, pairs: Ints, surface: str) -> Mask:
         """True for the facets of a named surface, (k,)."""
-        key, named = (each @ [8, 1] for each in (pairs, self.mesh.facets[surface]))
+        there = self.mesh.facets.get(surface, np.zeros((0, 2), dtype=np.int64))
+        key, named = (each @ [8, 1] for each in (pairs, there))
         found: Mask = np.isin(key, named)
         return found
 

@@ -85,22 +85,21 @@ def _draw_states(
     if case.output.pictures and uniform and snapshots:
         with pictures(say):
             uniform_outputs.draw_in_plane(space.own, snapshots, fields, write, beside)
-    with Renderer() as renderer:
-        if case.output.pictures:
-            with pictures(say, "no pictures in space" if uniform else "no pictures"):
-                write("rest.png", lambda file: draw_rest(space.model_mesh, file, renderer, beside))
-                if snapshots and uniform:
-                    uniform_outputs.draw_in_space(
-                        case, space, snapshots, fields, write, renderer, beside
-                    )
-                elif snapshots:
-                    from fiberbend.drawing.body import draw_pictures
+    if case.output.pictures:
+        with pictures(say, f"no pictures{' in space' if uniform else ''}"), Renderer() as renderer:
+            write("rest.png", lambda file: draw_rest(space.model_mesh, file, renderer, beside))
+            if snapshots and uniform:
+                uniform_outputs.draw_in_space(
+                    case, space, snapshots, fields, write, renderer, beside
+                )
+            elif snapshots:
+                from fiberbend.drawing.body import draw_pictures
 
-                    draw_pictures(space.own, snapshots, write, renderer, fields, beside)
-        if case.output.animation:
-            with pictures(say, "no animation"):
-                states = States(folder.path, case, list(rows), say)
-                write("animation.gif", lambda file: _animate(file, states, space, renderer, beside))
+                draw_pictures(space.own, snapshots, write, renderer, fields, beside)
+    if case.output.animation:
+        with pictures(say, "no animation"), Renderer() as renderer:
+            states = States(folder.path, case, list(rows), say)
+            write("animation.gif", lambda file: _animate(file, states, space, renderer, beside))
 
 
 def _animate(

@@ -144,9 +144,8 @@ def test_every_picture_is_drawn_anew() -> None:
 
 def test_no_pyvista_is_said_plainly(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyvista", None)
-    view = frame(np.eye(3), FROM_THE_SIDE, 1.0)
     with pytest.raises(PictureError, match="pictures need pyvista"):
-        Renderer().draw([], view, (100, 100))
+        Renderer()
 
 
 def history(angles: Sequence[float]) -> list[col.Row]:
