@@ -69,7 +69,7 @@ docs: tools ## write generated pages and the drawing, build the site docs/_build
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html
 	@echo "docs: open docs/_build/html/index.html"
 
-pictures: setup ## do what the tutorial says and take its pictures; a minute
+pictures: tools ## do what the tutorial says and take its pictures; a minute
 	$(BIN)/python -m bench.tutorial_pictures
 
 schema: setup ## rewrite the JSON schema that editors use

@@ -5,6 +5,7 @@ A comment on the line above a block says more of it:
 
     <!-- slow -->            not run: its command lines are checked word by word
     <!-- fails 1 -->         its commands end with this exit code, and print what the block shows
+    <!-- prints -->          its commands print what the block shows
     <!-- file: trial.csv --> its text is that of a file in the reader's folder
     <!-- from: PATH -->      the picture below is the one that the commands leave there
 """
@@ -28,7 +29,7 @@ SHELLS = ("console", "bash")
 TEXTS = ("text", "csv", "json", "c", "diff", "{toctree}", "{eval-rst}")
 """Blocks that are not run: what a program printed, data, and languages with tests elsewhere."""
 SECONDS = 180
-_MARK = re.compile(r"<!--\s*(slow|fails (\d+)|file: (\S+)|from: (\S+))\s*-->")
+_MARK = re.compile(r"<!--\s*(slow|prints|fails (\d+)|file: (\S+)|from: (\S+))\s*-->")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -42,6 +43,7 @@ class Block:
         slow: it is not run.
         code: exit code of its commands.
         file: file whose text it is, or "".
+        prints: what it shows beside the commands is what they print.
     """
 
     language: str
@@ -50,6 +52,7 @@ class Block:
     slow: bool = False
     code: int = 0
     file: str = ""
+    prints: bool = False
 
     def shown(self) -> list[str]:
         """What a console shows beside the commands, in pieces where `…` leaves something out."""
@@ -107,11 +110,11 @@ def blocks(page: Path) -> Iterator[Block]:
             for mark in marks:
                 word, code, file, _ = mark.groups()
                 if code:
-                    found["code"] = int(code)
+                    found["code"], found["prints"] = int(code), True
                 elif file:
                     found["file"] = file
-                elif word == "slow":
-                    found["slow"] = True
+                else:
+                    found[word] = True
             yield Block(language, token.content, line, **found)  # type: ignore[arg-type]
             marks = []
         elif token.type != "paragraph_open":
@@ -207,13 +210,15 @@ class Reader:
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(block.text, encoding="utf-8")
             elif block.language in SHELLS:
+                printed = ""
                 for command in block.commands():
                     if block.slow:
                         check.command(command, where)
                     else:
-                        printed = " ".join(self.run(command, block.code).split())
-                        for piece in block.shown() if block.code else ():
-                            assert piece in printed, f"{where}: {piece!r} is not in {printed!r}"
+                        printed += self.run(command, block.code)
+                words = " ".join(printed.split())
+                for piece in block.shown() if block.prints else ():
+                    assert piece in words, f"{where}: {piece!r} is not printed, but {printed}"
             elif block.language == "python":
                 check.script(block.text, where)
                 if not block.slow:

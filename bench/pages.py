@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -93,7 +94,8 @@ def _anchor(reference: str) -> str:
 
 
 def _slug(title: str) -> str:
-    return title.lower().replace("`", "").replace(":", "").replace(" ", "-")
+    """The anchor of a heading, as both GitHub and MyST make it."""
+    return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
 
 
 TITLES: dict[str, str] = {}

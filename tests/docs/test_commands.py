@@ -128,3 +128,4 @@ def test_marks_are_read(tmp_path: Path) -> None:
     assert (failing.code, failing.commands()) == (1, ["false"])
     assert not script.slow
     assert (file.file, file.text) == ("a.csv", "a,b\n")
+    assert (slow.prints, failing.prints) == (False, True)
