@@ -40,9 +40,8 @@ def facts(case: Case) -> Iterator[tuple[str, str]]:
     words = _winding(case)
     if words:
         yield "winding", words
-    for effect in case.effects:
-        for name in effect.obstacle_shapes(actuator):
-            yield "obstacle", name
+    for name in convert.obstacle_shapes(case):
+        yield "obstacle", name
     model, why = choose_model(case)
     yield "model", f"{model.name} ({why})"
 

@@ -12,6 +12,7 @@ from fiberbend.case import case
 from fiberbend.effects.effect import Requests, Site
 
 if TYPE_CHECKING:
+    from fiberbend.states.obstacles import Shape
     from geometry.sections.shape import ShapedActuator
     from geometry.sections.size import MeshSize
     from materials.material import Material
@@ -60,6 +61,15 @@ def site(given: case.Case) -> Site:
         materials={part: material(spec) for part, spec in specs.items()},
         straight=given.straight,
     )
+
+
+def obstacle_shapes(given: case.Case) -> dict[str, Shape]:
+    """Rigid obstacles of a case by their names, as pictures show them; no name is there twice."""
+    actuator = dimensions(given.actuator)
+    found: dict[str, Shape] = {}
+    for effect in given.effects:
+        found |= effect.obstacle_shapes(actuator)
+    return found
 
 
 def requests(given: case.Case) -> Requests:

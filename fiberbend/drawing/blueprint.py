@@ -99,8 +99,11 @@ class Blueprint:
         axes.imshow(rest.image)
         axes.set_axis_off()
         axes.autoscale(False)
+        over = page.add_axes((0, 0, 1, 1))
+        over.set(xlim=(0, SIZE[0]), ylim=(0, SIZE[1]))
+        over.set_axis_off()
         size = (rest.image.shape[1], rest.image.shape[0])
-        panel = Panel(page, axes, rest.image, rest.view, size, (0, 0))
+        panel = Panel(page, over, axes, rest.image, rest.view, size, (0, 0))
         # the other drawings have the dimensions
         write_on(panel, dataclasses.replace(rest, lengths=[]), self.space, self.scenery)
         panel.scale(box[0] * SIZE[0], box[1] * SIZE[1] - 10, nice_above(70 / panel.per_mm))

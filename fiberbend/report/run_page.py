@@ -13,6 +13,7 @@ import numpy as np
 
 from fiberbend import columns as col
 from fiberbend.answer.answer import answer
+from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
 from fiberbend.report import case_tables
@@ -210,7 +211,14 @@ def _curves(path: Path, case: Case, rows: Sequence[dict[str, Any]]) -> list[Pict
 
     angles = [float(np.rad2deg(angle)) for angle in case.output.at_angles]
     with own_style(), _drawn(_PATHS) as (pictures, write):
-        draw_plots(rows, write, angles, case.title)
+        draw_plots(
+            rows,
+            write,
+            angles,
+            case.title,
+            obstacles=convert.obstacle_shapes(case),
+            blocked=case.straight,
+        )
     return pictures
 
 

@@ -364,18 +364,16 @@ def _mirrored(points: Floats) -> Floats:
 
 
 def _obstacles(case: Case, around: Floats) -> list[dict[str, Any]]:
-    actuator = convert.dimensions(case.actuator)
     found = []
-    for effect in case.effects:
-        for name, shape in effect.obstacle_shapes(actuator).items():
-            surface = shape.surface(around).triangulate()
-            found.append(
-                {
-                    "name": name,
-                    "points": packed(np.asarray(surface.points, dtype="<f4")),
-                    "triangles": packed(np.asarray(surface.regular_faces, dtype="<u4")),
-                }
-            )
+    for name, shape in convert.obstacle_shapes(case).items():
+        surface = shape.surface(around).triangulate()
+        found.append(
+            {
+                "name": name,
+                "points": packed(np.asarray(surface.points, dtype="<f4")),
+                "triangles": packed(np.asarray(surface.regular_faces, dtype="<u4")),
+            }
+        )
     return found
 
 

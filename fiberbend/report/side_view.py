@@ -19,7 +19,6 @@ from fiberbend.drawing.tessellation import on_mirror
 from fiberbend.report.scene import Places, thinned
 from fiberbend.results.space import Space
 from fiberbend.results.states import Kept, States
-from fiberbend.states.obstacles import Shape
 from geometry.mesh.data import (
     FACET_VERTICES,
     Floats,
@@ -65,7 +64,7 @@ def side_view(
     ).reshape(-1, 2)
     if not len(path):
         return None
-    shapes = _shapes(case)
+    shapes = convert.obstacle_shapes(case)
     drawn: list[tuple[Kept, list[Floats]]] = []
     polygons: dict[str, list[Floats]] = {}
     if states is not None and space is not None:
@@ -198,15 +197,6 @@ def _outlines(
     if places.mesh.half:
         points = np.concatenate([points, points * [-1.0, 1.0, 1.0]])
     return drawn, points
-
-
-def _shapes(case: Case) -> dict[str, Shape]:
-    """Every obstacle of a case."""
-    actuator = convert.dimensions(case.actuator)
-    found: dict[str, Shape] = {}
-    for effect in case.effects:
-        found |= effect.obstacle_shapes(actuator)
-    return found
 
 
 def _faces(surface: Any) -> list[Floats]:

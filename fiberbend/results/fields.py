@@ -10,7 +10,6 @@ from fiberbend.case.case import Case
 from fiberbend.results.folder import RunFolder
 from fiberbend.results.space import Space
 from fiberbend.results.states import States, at_rest
-from fiberbend.states.obstacles import Shape
 from fiberbend.states.recovery import NodalFields
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 
@@ -53,20 +52,9 @@ def write_fields(
     series = Series(
         space.model_mesh,
         lambda name, fill: folder.write(f"{FOLDER}/{name}", fill),
-        obstacles(case),
+        convert.obstacle_shapes(case),
     )
     for state in states:
         own = (recovered or {}).get(state.step)
         series.add(space.snapshot(state), space.fields(state, own))
     return series.finish()
-
-
-def obstacles(case: Case) -> dict[str, Shape]:
-    """Rigid obstacles of a case by their names, those of an effect numbered where two are alike."""
-    actuator = convert.dimensions(case.actuator)
-    shapes: dict[str, Shape] = {}
-    for effect in case.effects:
-        for name, shape in effect.obstacle_shapes(actuator).items():
-            number = sum(known.partition("-")[0] == name for known in shapes)
-            shapes[f"{name}-{number + 1}" if number else name] = shape
-    return shapes

@@ -9,7 +9,6 @@ from fiberbend import columns as col
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.drawing.obstacles import Scenery
-from fiberbend.states.obstacles import Shape
 
 
 def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
@@ -20,10 +19,7 @@ def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
         rows: of its history; none for a case that has not been run.
     """
     actuator = convert.dimensions(case.actuator)
-    shapes: dict[str, Shape] = {}
     forces, tips = {}, {}
-    for effect in case.effects:
-        shapes.update(effect.obstacle_shapes(actuator))
     for row in rows:
         step = int(row[col.STEP])
         forces[step] = {
@@ -43,4 +39,4 @@ def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
         thickness = getattr(actuator, region, None)
         if thickness is not None:
             lengths[region] = thickness
-    return Scenery(shapes, forces, tips, lengths)
+    return Scenery(convert.obstacle_shapes(case), forces, tips, lengths)

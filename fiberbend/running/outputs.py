@@ -140,8 +140,6 @@ def draw_curves(
     from fiberbend.drawing.curves import draw_plots
 
     with pictures(say):
-        actuator = convert.dimensions(case.actuator)
-        shapes = [effect.obstacle_shapes(actuator) for effect in case.effects]
         draw_plots(
             rows,
             lambda name, fill: folder.write(f"pictures/{name}", fill),
@@ -151,7 +149,7 @@ def draw_curves(
             None if check is None else check.angles,
             None if check is None else check.forces,
             f"{model} model",
-            {name: shape for each in shapes for name, shape in each.items()},
+            convert.obstacle_shapes(case),
             case.straight,
         )
 

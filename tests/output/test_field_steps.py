@@ -9,12 +9,12 @@ import pytest
 import pyvista as pv
 
 from fiberbend import run
+from fiberbend.case.convert import obstacle_shapes
 from fiberbend.columns import ANGLE, PRESSURE, STEP
 from fiberbend.models.choice import choose_model
 from fiberbend.plan.estimate import drawing_seconds
 from fiberbend.plan.plan import make_plan
 from fiberbend.reader.reader import parse_case, read_case
-from fiberbend.results.fields import obstacles
 from tests.run.conftest import SMALL, small
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -62,7 +62,7 @@ def test_all_steps_or_those_that_are_asked_for(tmp_path: Path) -> None:
     ],
 )
 def test_obstacles_of_cases(file: str, names: list[str]) -> None:
-    assert list(obstacles(read_case(ROOT / "cases" / file))) == names
+    assert list(obstacle_shapes(read_case(ROOT / "cases" / file))) == names
 
 
 def not_used(case: dict[str, Any]) -> str:
