@@ -164,7 +164,7 @@ class BodyPictures:
             [self._scenery.caption(state) for state in states],
             [self._view] * len(states),
             [state.remark for state in states],
-            margin=self._obstacles.margin(SIZE[0]),
+            margins=self._obstacles.margins(SIZE[0]),
         )
         for panel, state in zip(page.panels, states, strict=True):
             write_forces(panel, self._obstacles, self._surfaces.points(state), state, 9)

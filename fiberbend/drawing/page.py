@@ -146,7 +146,7 @@ class Page:
         captions: Sequence[str],
         views: Sequence[View],
         remarks: Sequence[str] = (),
-        margin: int = 6,
+        margins: tuple[int, int] = (6, 6),
     ) -> Page:
         """Images of one scale in up to four columns, cropped alike, each with caption and scale.
 
@@ -157,9 +157,9 @@ class Page:
             captions: text above each panel.
             views: from where each is seen.
             remarks: what has to be said of each, in red below its caption.
-            margin: pixels of the images to be shown around what is drawn.
+            margins: pixels of the images to be shown above and below, and beside what is drawn.
         """
-        box = _bounds(np.any([_filled(image) for image in images], axis=0), margin)
+        box = _bounds(np.any([_filled(image) for image in images], axis=0), margins)
         shown = images[0][box].shape
         columns = columns_of(len(images))
         if shown[0] < _FLAT * shown[1]:
@@ -347,13 +347,13 @@ def _filled(image: Image) -> NDArray[np.bool_]:
     return filled
 
 
-def _bounds(filled: NDArray[np.bool_], margin: int = 6) -> tuple[slice, slice]:
-    """Rows and columns of an image outside which it is white."""
+def _bounds(filled: NDArray[np.bool_], margins: tuple[int, int] = (6, 6)) -> tuple[slice, slice]:
+    """Rows and columns of an image outside which it is white, with margins."""
     if not filled.any():
         return slice(None), slice(None)
     rows, columns = (np.flatnonzero(filled.any(axis=axis)) for axis in (1, 0))
     first, second = (
         slice(max(int(inside[0]) - margin, 0), int(inside[-1]) + margin + 1)
-        for inside in (rows, columns)
+        for inside, margin in zip((rows, columns), margins, strict=True)
     )
     return first, second

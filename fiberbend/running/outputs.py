@@ -54,7 +54,8 @@ def draw(
     from fiberbend.results.space import Space
 
     space = Space(case, model_mesh)
-    fields = [space.recovered(state) for state in snapshots]
+    wanted = snapshots if output.fields or output.pictures else ()
+    fields = [space.recovered(state) for state in wanted]
     if output.fields and snapshots:
         _write_fields(folder, space, snapshots, fields)
     if output.pictures or output.animation:
