@@ -105,8 +105,9 @@ def run_analytic(
         folder.write_history(rows)
         folder.write_run(**run)
         if case.output.pictures and folder.writes:
-            from fiberbend.running.outputs import draw_curves
+            from fiberbend.running.outputs import draw_at_rest, draw_curves
 
+            draw_at_rest(folder, case, progress.message)
             draw_curves(
                 folder,
                 case,

@@ -162,6 +162,27 @@ def draw_curves(
         )
 
 
+def draw_at_rest(folder: RunFolder, case: Case, say: Callable[[str], None]) -> None:
+    """Write rest.png of a run that has no mesh; on rank 0.
+
+    Args:
+        folder: where to write.
+        case: the case.
+        say: takes a line for the user where nothing can be drawn.
+    """
+    from fiberbend.drawing.renderer import Renderer
+    from fiberbend.drawing.rest import draw_rest
+    from fiberbend.results.at_rest import body_at_rest, threads
+    from fiberbend.results.scenery import scenery
+
+    with pictures(say, "no picture at rest"), Renderer() as renderer:
+        body, beside = body_at_rest(case), scenery(case)
+        folder.write(
+            "pictures/rest.png",
+            lambda file: draw_rest(body, file, renderer, beside, threads(case)),
+        )
+
+
 @contextlib.contextmanager
 def pictures(say: Callable[[str], None], lacking: str = "no pictures") -> Iterator[None]:
     """Draw meanwhile; what cannot be drawn costs its pictures and a line, not the results.

@@ -23,6 +23,7 @@ from fiberbend.drawing.renderer import FROM_THE_SIDE, Drawable, Renderer, View, 
 from fiberbend.drawing.rest import draw_rest, rest_image
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.reader.reader import parse_case
+from fiberbend.results.at_rest import body_at_rest, threads
 from fiberbend.results.folder import read_history
 from fiberbend.results.scenery import scenery
 from fiberbend.results.states import States
@@ -388,7 +389,7 @@ ROOF = Scenery(
 )
 def test_at_rest(renderer: Renderer, half: bool, element: str, smeared: bool) -> None:
     scene = dataclasses.replace(model_mesh(half=half, element=element), smeared=smeared)
-    rest = rest_image(scene, renderer, ROOF, 800)
+    rest = rest_image(scene, renderer, ROOF, width=800)
     assert [text for text, _ in rest.lengths] == ["chamber 24.25 mm", "32 mm", "14 mm", "22 mm"]
     # whatever is modelled, half of it is cut open: wall, floor and sheath are seen
     hues = rest.image.reshape(-1, 3).astype(int)
@@ -403,11 +404,28 @@ def test_at_rest(renderer: Renderer, half: bool, element: str, smeared: bool) ->
 
 def test_half_and_whole_look_alike_at_rest(renderer: Renderer) -> None:
     images = [
-        rest_image(dataclasses.replace(model_mesh(half=half), fibers=None), renderer, None, 500)
+        rest_image(dataclasses.replace(model_mesh(half=half), fibers=None), renderer, width=500)
         for half in (True, False)
     ]
     gap = np.abs(images[0].image.astype(int) - images[1].image.astype(int)).max(axis=2)
     assert (gap > 40).mean() < 0.01
+
+
+@pytest.mark.parametrize("how", ["smeared", "discrete"])
+def test_an_actuator_is_drawn_from_its_case_alone(renderer: Renderer, how: str) -> None:
+    wound = case(
+        effects=[{"pressure": {"to": "9 kPa"}}, {"winding": WINDING["winding"] | {"as": how}}]
+    )
+    body, lines = body_at_rest(wound), threads(wound)
+    assert body.smeared == (how == "smeared")
+    assert len(lines) == (0 if body.smeared else wound.turns.curves)
+    rest = rest_image(body, renderer, scenery(wound), lines, 700)
+    assert rest.names[-1] == ("winding" if body.smeared else "fiber")
+    whole = wound.actuator.length + 2 * wound.actuator.cap
+    assert [text for text, _ in rest.lengths[:2]] == [
+        f"chamber {wound.actuator.length:g} mm",
+        f"{whole:g} mm",
+    ]
 
 
 # --- in motion -------------------------------------------------------------------------------
