@@ -17,8 +17,8 @@ from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.mesh.data import Floats
 
 if TYPE_CHECKING:
-    from fiberbend.drawing.obstacles import Scenery
     from fiberbend.drawing.renderer import Renderer
+    from fiberbend.drawing.space.obstacles import Scenery
     from fiberbend.results.space import Space
 
 
@@ -85,7 +85,7 @@ def _draw_states(
 ) -> None:
     """Pictures of states in one window: at rest, as they were asked for, and all in motion."""
     from fiberbend.drawing.renderer import Renderer
-    from fiberbend.drawing.rest import draw_rest
+    from fiberbend.drawing.space.rest import draw_rest
     from fiberbend.results.scenery import scenery
     from fiberbend.running import uniform_outputs
 
@@ -116,7 +116,7 @@ def _draw_states(
 def _animate(
     file: IO[bytes], states: States, space: Space, renderer: Renderer, beside: Scenery
 ) -> None:
-    from fiberbend.drawing.animation import Animation
+    from fiberbend.drawing.space.animation import Animation
 
     def strained() -> Iterator[tuple[Snapshot, Floats]]:
         for state in states:
@@ -171,7 +171,7 @@ def draw_at_rest(folder: RunFolder, case: Case, say: Callable[[str], None]) -> N
         say: takes a line for the user where nothing can be drawn.
     """
     from fiberbend.drawing.renderer import Renderer
-    from fiberbend.drawing.rest import draw_rest
+    from fiberbend.drawing.space.rest import draw_rest
     from fiberbend.results.at_rest import body_at_rest, threads
     from fiberbend.results.scenery import scenery
 

@@ -13,14 +13,15 @@ import numpy as np
 import pytest
 
 from fem.march.records import Report
-from fiberbend.drawing.animation import SIZE, Animation
 from fiberbend.drawing.body import draw_pictures
 from fiberbend.drawing.cell import Slices
-from fiberbend.drawing.obstacles import Obstacles, Scenery, write_forces
-from fiberbend.drawing.page import COLORS, SMEARED, WARN, Page, colormap
-from fiberbend.drawing.panel import Panel, free_place
+from fiberbend.drawing.page import COLORS, SMEARED, WARN, colormap
 from fiberbend.drawing.renderer import FROM_THE_SIDE, Drawable, Renderer, View, frame
-from fiberbend.drawing.rest import draw_rest, rest_image
+from fiberbend.drawing.space.animation import SIZE, Animation
+from fiberbend.drawing.space.obstacles import Obstacles, Scenery, write_forces
+from fiberbend.drawing.space.page import Page
+from fiberbend.drawing.space.panel import Panel, free_place
+from fiberbend.drawing.space.rest import draw_rest, rest_image
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.reader.reader import parse_case
 from fiberbend.results.at_rest import body_at_rest, threads

@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fiberbend.drawing.obstacles import Obstacles, Scenery, write_forces
-from fiberbend.drawing.page import COLORS, Page
-from fiberbend.drawing.panel import Panel
+from fiberbend.drawing.page import COLORS
 from fiberbend.drawing.renderer import Drawable, Image, Renderer, View, frame
+from fiberbend.drawing.space.obstacles import Obstacles, Scenery, write_forces
+from fiberbend.drawing.space.page import Page
+from fiberbend.drawing.space.panel import Panel
 from fiberbend.drawing.surfaces import FIBER_RADIUS, BodySurfaces
 from fiberbend.states.snapshot import ModelMesh, Target
 from geometry.mesh.data import Floats

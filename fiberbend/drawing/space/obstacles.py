@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.panel import Panel
 from fiberbend.drawing.renderer import Drawable, View, frame
+from fiberbend.drawing.space.panel import Panel
 from fiberbend.states.labels import short_number
 from fiberbend.states.obstacles import Shape
 from fiberbend.states.snapshot import Snapshot
