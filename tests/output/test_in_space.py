@@ -25,10 +25,11 @@ from fiberbend.drawing.space.rest import draw_rest, rest_image
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.reader.reader import parse_case
 from fiberbend.results.at_rest import body_at_rest, threads
-from fiberbend.results.folder import read_history
+from fiberbend.results.folder import RunFolder, read_history
 from fiberbend.results.scenery import scenery
 from fiberbend.results.states import States
 from fiberbend.running.messages import on_state
+from fiberbend.running.outputs import draw
 from fiberbend.running.runner import run_case
 from fiberbend.states.labels import short_number
 from fiberbend.states.obstacles import Bar, Box, Shape, Sheet
@@ -530,3 +531,11 @@ def test_a_body_that_is_bent_back_no_longer_passes_through_itself() -> None:
     walls = {"control": math.radians(-20.0)}
     text = "chamber walls pass through each other from −20° on: not modelled"
     assert on_state(touched, walls, 0.0) == text
+
+
+def test_a_run_without_a_step_has_its_frame_at_rest(tmp_path: Path) -> None:
+    said: list[str] = []
+    shown = case(mesh={"axial": "6 mm"}, output={"pictures": True, "fields": False})
+    draw(RunFolder(tmp_path), shown, model_mesh(), [], [], "no step", said.append)
+    assert [path.name for path in (tmp_path / "pictures").iterdir()] == ["rest.png"]
+    assert not said
