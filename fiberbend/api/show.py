@@ -12,11 +12,9 @@ from fiberbend.schema.problems import CaseError, Problem
 
 if TYPE_CHECKING:
     from fiberbend.drawing.blueprint import Blueprint
-    from fiberbend.states.snapshot import ModelMesh
 
 _FINE = 3
 """Elements through a thickness, so that arcs are drawn round."""
-_LAYERS = 40
 
 
 def facts(case: Case) -> Iterator[tuple[str, str]]:
@@ -58,6 +56,7 @@ def blueprint(case: Case) -> Blueprint:
     import dataclasses
 
     from fiberbend.drawing.blueprint import Blueprint
+    from fiberbend.results.at_rest import body_at_rest, threads
     from fiberbend.results.scenery import scenery
     from geometry.bodies.extrude import section_quadrilaterals
 
@@ -78,30 +77,8 @@ def blueprint(case: Case) -> Blueprint:
         winding=_winding(case),
         pitch=None if turns is None else turns.pitch,
         scenery=scenery(case),
-        space=_in_space(case),
-    )
-
-
-def _in_space(case: Case) -> ModelMesh:
-    """The whole body at rest in elements that are long: everything is straight."""
-    import dataclasses
-
-    from fiberbend.states.snapshot import ModelMesh
-    from geometry.bodies.extrude import hexahedral_body
-
-    actuator, site = convert.dimensions(case.actuator), convert.site(case)
-    size = dataclasses.replace(
-        convert.mesh_size(case.mesh, True), section=1, axial=case.actuator.length / _LAYERS
-    )
-    mesh = hexahedral_body(actuator, dataclasses.replace(size, element="hexahedron"))
-    laid = (effect.laid(mesh, actuator) for effect in case.effects)
-    turns = case.turns
-    return ModelMesh(
-        mesh=mesh,
-        materials={name: site.materials[name] for name in mesh.regions},
-        fibers=next((fibers for fibers in laid if fibers is not None), None),
-        smeared=turns is not None and not turns.discrete,
-        title=case.title,
+        space=body_at_rest(case),
+        threads=threads(case),
     )
 
 

@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.obstacles import Scenery
 from fiberbend.drawing.page import COLORS, NAMES, figure, literal, nice_above, save
-from fiberbend.drawing.panel import Panel
 from fiberbend.drawing.renderer import Renderer
-from fiberbend.drawing.rest import rest_image, write_on
+from fiberbend.drawing.space.obstacles import Scenery
+from fiberbend.drawing.space.panel import Panel
+from fiberbend.drawing.space.rest import rest_image, write_on
 from fiberbend.states.obstacles import Bar, Box, Sheet
 from fiberbend.states.snapshot import ModelMesh, Target
 from geometry.mesh.data import Floats, MeshData, facet_positions
@@ -46,6 +46,7 @@ class Blueprint:
         pitch: of the winding, mm, or None.
         scenery: the obstacles.
         space: the body in space.
+        threads: polylines of a winding that it does not have, (n, 3) each, mm.
     """
 
     title: str
@@ -58,6 +59,7 @@ class Blueprint:
     pitch: float | None
     scenery: Scenery
     space: ModelMesh
+    threads: Sequence[Floats]
 
     def save(self, target: Target) -> None:
         """Draw the page as PNG into a path or a file open for writing bytes."""
@@ -94,7 +96,8 @@ class Blueprint:
     def _oblique(self, page: Any, box: tuple[float, float, float, float]) -> None:
         """The body in space, cut open step by step, with axes and scale."""
         with Renderer() as renderer:
-            rest = rest_image(self.space, renderer, self.scenery, 2 * round(box[2] * SIZE[0]))
+            width = 2 * round(box[2] * SIZE[0])
+            rest = rest_image(self.space, renderer, self.scenery, self.threads, width)
         axes = page.add_axes(box)
         axes.imshow(rest.image)
         axes.set_axis_off()

@@ -8,8 +8,7 @@ from typing import IO
 
 import numpy as np
 
-from fiberbend.drawing.obstacles import Obstacles, Scenery, write_forces
-from fiberbend.drawing.page import Page, colormap, nice_above
+from fiberbend.drawing.page import colormap, nice_above
 from fiberbend.drawing.renderer import (
     FROM_THE_SIDE,
     Drawable,
@@ -17,6 +16,8 @@ from fiberbend.drawing.renderer import (
     Renderer,
     frame,
 )
+from fiberbend.drawing.space.obstacles import Obstacles, Scenery, write_forces
+from fiberbend.drawing.space.page import Page
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.drawing.tessellation import Tessellation, greatest_seen
 from fiberbend.states.recovery import NodalFields, recover, split_nodes
@@ -164,7 +165,7 @@ class BodyPictures:
             [self._scenery.caption(state) for state in states],
             [self._view] * len(states),
             [state.remark for state in states],
-            margin=self._obstacles.margin(SIZE[0]),
+            margins=self._obstacles.margins(SIZE[0]),
         )
         for panel, state in zip(page.panels, states, strict=True):
             write_forces(panel, self._obstacles, self._surfaces.points(state), state, 9)

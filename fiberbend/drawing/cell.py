@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.obstacles import Scenery
 from fiberbend.drawing.page import WARN, figure, heading, nice_above, save
 from fiberbend.drawing.renderer import Renderer
 from fiberbend.drawing.side_by_side import SideBySide
+from fiberbend.drawing.space.obstacles import Scenery
 from fiberbend.states.bend import in_frame
 from fiberbend.states.snapshot import (
     ModelMesh,

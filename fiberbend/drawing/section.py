@@ -9,7 +9,6 @@ from typing import IO, Any
 import numpy as np
 
 from fiberbend.drawing.crosscut import Crosscut
-from fiberbend.drawing.obstacles import Scenery
 from fiberbend.drawing.page import (
     COLORS,
     NAMES,
@@ -24,6 +23,7 @@ from fiberbend.drawing.page import (
     save,
     wrap,
 )
+from fiberbend.drawing.space.obstacles import Scenery
 from fiberbend.states.recovery import NodalFields, recover
 from fiberbend.states.snapshot import (
     ModelMesh,

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.page import Page, colormap
+from fiberbend.drawing.page import colormap
 from fiberbend.drawing.renderer import (
     Drawable,
     Image,
@@ -16,6 +16,7 @@ from fiberbend.drawing.renderer import (
     View,
     frame,
 )
+from fiberbend.drawing.space.page import Page
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.drawing.tessellation import Tessellation
 from fiberbend.states.snapshot import ModelMesh, Snapshot

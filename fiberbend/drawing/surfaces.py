@@ -19,7 +19,8 @@ from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.mesh.data import Floats, Ints
 from geometry.winding.segments import EmbeddedFibers
 
-_FIBER_RADIUS = 0.2
+FIBER_RADIUS = 0.2
+"""Of the tubes that stand for fibers, mm."""
 _ON_PLANE = 1e-9
 """Part of its width by which a body may miss the plane x = 0."""
 _MIRROR = np.array([-1.0, 1.0, 1.0])
@@ -39,6 +40,7 @@ class BodySurfaces:
         mesh: the mesh.
         fibers: the middle line of every fiber, or None without lines.
         middle: centre of every cell, (m, 3), mm.
+        sheathed: True for the cells of the sheath, (m,).
         bare: True for the cells that do not hide the fibers: all but the sheath, (m,).
         peeled: the same where a winding is smeared, whose surface the sheath hides.
         smeared: the winding is smeared over its surface.
@@ -50,9 +52,10 @@ class BodySurfaces:
         self.fibers = None if model_mesh.lines is None else _one_line_each(model_mesh.lines)
         self.middle: Floats = self.mesh.nodes[self.mesh.cells].mean(axis=1)
         everything = np.ones(len(self.mesh.cells), dtype=bool)
-        self.bare: Mask = everything if self.fibers is None else ~self._region("sheath")
+        self.sheathed = self._region("sheath")
+        self.bare: Mask = everything if self.fibers is None else ~self.sheathed
         self.smeared = model_mesh.smeared
-        self.peeled: Mask = ~self._region("sheath") if self.smeared else self.bare
+        self.peeled: Mask = ~self.sheathed if self.smeared else self.bare
         wound = ["winding"] if self.smeared else ["fiber"] if self.fibers is not None else []
         self.names = [*self.mesh.regions, *wound]
 
@@ -143,7 +146,7 @@ class BodySurfaces:
         points = moved[np.array(edges)].reshape(-1, 3)
         lines = np.insert(np.arange(len(points)).reshape(-1, 3), 0, 3, axis=1)
         data = pv.PolyData(points - _TO_VIEWER, lines=lines.ravel())
-        return [Drawable(data, color=COLORS["winding"], radius=_FIBER_RADIUS, flat=True)]
+        return [Drawable(data, color=COLORS["winding"], radius=FIBER_RADIUS, flat=True)]
 
     def surface(self, skin: Tessellation, state: Snapshot | None, mirror: bool) -> Any:
         """A tessellation as pyvista.PolyData.
@@ -196,7 +199,7 @@ class BodySurfaces:
         if mesh.half and (kept & (fibers.z < near)).any():
             image = fiber_lines(mesh, _select(fibers, kept & (fibers.z < near)), moved)
             lines.append(image.reflect((1, 0, 0)))
-        return [Drawable(data, color=COLORS["fiber"], radius=_FIBER_RADIUS) for data in lines]
+        return [Drawable(data, color=COLORS["fiber"], radius=FIBER_RADIUS) for data in lines]
 
     def _is_wound(self, pairs: Ints) -> Mask:
         """True for the facets over which a winding is smeared, (k,)."""

@@ -271,10 +271,6 @@ class Effect(Spec):
         """
         return {}
 
-    def laid(self, mesh: MeshData, actuator: Actuator) -> EmbeddedFibers | None:
-        """Its thread as it lies in the faces of a mesh; None where it has none."""
-        return None
-
     def curves(self, actuator: Actuator) -> list[Floats]:
         """Polylines in space, (n, 3), mm, that are to be seen in the mesh file."""
         return []

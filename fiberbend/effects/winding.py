@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
     from geometry.winding.helix import Winding
-    from geometry.winding.segments import EmbeddedFibers
     from materials.fiber import Fiber
 else:
     PatternName = Literal[tuple(PATTERNS)]
@@ -303,20 +302,14 @@ class WindingEffect(Effect):
         lines = self.lines if self.lines is not None else DEFAULT_LINES
         return Winding(self.pattern, self.pitch, width, lines if width > 0 else 1)
 
-    def laid(self, mesh: MeshData, actuator: Actuator) -> EmbeddedFibers:
-        """Segments of every turn, or of the surface that stands for them."""
-        from geometry.winding.embed import embed
-        from geometry.winding.smear import smear
-
-        lay = smear if self.representation == "smeared" else embed
-        return lay(mesh, actuator, self.helix())
-
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
         """The thread on the faces of the mesh."""
         from fem.effects.winding import SmearedWinding, Winding
+        from geometry.winding.embed import embed
+        from geometry.winding.smear import smear
 
         smeared = self.representation == "smeared"
-        fibers = self.laid(mesh, site.actuator)
+        fibers = (smear if smeared else embed)(mesh, site.actuator, self.helix())
         kind = SmearedWinding if smeared else Winding
         term = kind(fibers, self.fiber.thread().stiffness, self.tension_only)
         return Built((term,), (), fibers, smeared)

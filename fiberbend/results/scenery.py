@@ -8,7 +8,7 @@ from typing import Any
 from fiberbend import columns as col
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.drawing.obstacles import Scenery
+from fiberbend.drawing.space.obstacles import Scenery
 
 
 def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:

@@ -28,7 +28,7 @@ from fiberbend.models.result import Curve, RunResult
 from fiberbend.plan.doubts import doubts
 from fiberbend.results.folder import RunFolder
 from fiberbend.running import launch, messages
-from fiberbend.running.outputs import draw_curves, write_page
+from fiberbend.running.outputs import draw_at_rest, draw_curves, write_page
 from fiberbend.running.progress import Progress
 from fiberbend.running.record import beside, entries, peak_memory_mb
 
@@ -107,6 +107,7 @@ def run_analytic(
         folder.write_history(rows)
         folder.write_run(**run)
         if case.output.pictures and folder.writes:
+            draw_at_rest(folder, case, progress.message)
             draw_curves(
                 folder,
                 case,

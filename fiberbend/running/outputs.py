@@ -17,8 +17,8 @@ from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.mesh.data import Floats
 
 if TYPE_CHECKING:
-    from fiberbend.drawing.obstacles import Scenery
     from fiberbend.drawing.renderer import Renderer
+    from fiberbend.drawing.space.obstacles import Scenery
     from fiberbend.results.space import Space
 
 
@@ -74,7 +74,7 @@ def _draw_states(
 ) -> None:
     """Pictures of states in one window: at rest, as they were asked for, and all in motion."""
     from fiberbend.drawing.renderer import Renderer
-    from fiberbend.drawing.rest import draw_rest
+    from fiberbend.drawing.space.rest import draw_rest
     from fiberbend.results.scenery import scenery
     from fiberbend.running import uniform_outputs
 
@@ -105,7 +105,7 @@ def _draw_states(
 def _animate(
     file: IO[bytes], states: States, space: Space, renderer: Renderer, beside: Scenery
 ) -> None:
-    from fiberbend.drawing.animation import Animation
+    from fiberbend.drawing.space.animation import Animation
 
     def strained() -> Iterator[tuple[Snapshot, Floats]]:
         for state in states:
@@ -195,6 +195,27 @@ def page(say: Callable[[str], None]) -> Iterator[None]:
     except Exception as error:
         what = (str(error).splitlines() or [""])[0]
         say(f"no report, writing it failed: {type(error).__name__}: {what}")
+
+
+def draw_at_rest(folder: RunFolder, case: Case, say: Callable[[str], None]) -> None:
+    """Write rest.png of a run that has no mesh; on rank 0.
+
+    Args:
+        folder: where to write.
+        case: the case.
+        say: takes a line for the user where nothing can be drawn.
+    """
+    from fiberbend.drawing.renderer import Renderer
+    from fiberbend.drawing.space.rest import draw_rest
+    from fiberbend.results.at_rest import body_at_rest, threads
+    from fiberbend.results.scenery import scenery
+
+    with pictures(say, "no picture at rest"), Renderer() as renderer:
+        body, beside = body_at_rest(case), scenery(case)
+        folder.write(
+            "pictures/rest.png",
+            lambda file: draw_rest(body, file, renderer, beside, threads(case)),
+        )
 
 
 @contextlib.contextmanager

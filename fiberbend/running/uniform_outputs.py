@@ -15,8 +15,8 @@ from fiberbend.states.recovery import NodalFields
 from fiberbend.states.snapshot import ModelMesh, Snapshot, Write
 
 if TYPE_CHECKING:
-    from fiberbend.drawing.obstacles import Scenery
     from fiberbend.drawing.renderer import Renderer
+    from fiberbend.drawing.space.obstacles import Scenery
 
 
 def draw_in_plane(

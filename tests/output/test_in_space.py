@@ -13,20 +13,23 @@ import numpy as np
 import pytest
 
 from fem.march.records import Report
-from fiberbend.drawing.animation import SIZE, Animation
 from fiberbend.drawing.body import draw_pictures
 from fiberbend.drawing.cell import Slices
-from fiberbend.drawing.obstacles import Obstacles, Scenery, write_forces
-from fiberbend.drawing.page import COLORS, SMEARED, WARN, Page, colormap
-from fiberbend.drawing.panel import Panel, free_place
+from fiberbend.drawing.page import COLORS, SMEARED, WARN, colormap
 from fiberbend.drawing.renderer import FROM_THE_SIDE, Drawable, Renderer, View, frame
-from fiberbend.drawing.rest import draw_rest, rest_image
+from fiberbend.drawing.space.animation import SIZE, Animation
+from fiberbend.drawing.space.obstacles import Obstacles, Scenery, write_forces
+from fiberbend.drawing.space.page import Page
+from fiberbend.drawing.space.panel import Panel, free_place
+from fiberbend.drawing.space.rest import draw_rest, rest_image
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.reader.reader import parse_case
-from fiberbend.results.folder import read_history
+from fiberbend.results.at_rest import body_at_rest, threads
+from fiberbend.results.folder import RunFolder, read_history
 from fiberbend.results.scenery import scenery
 from fiberbend.results.states import States
 from fiberbend.running.messages import on_state
+from fiberbend.running.outputs import draw
 from fiberbend.running.runner import run_case
 from fiberbend.states.labels import short_number
 from fiberbend.states.obstacles import Bar, Box, Shape, Sheet
@@ -388,7 +391,7 @@ ROOF = Scenery(
 )
 def test_at_rest(renderer: Renderer, half: bool, element: str, smeared: bool) -> None:
     scene = dataclasses.replace(model_mesh(half=half, element=element), smeared=smeared)
-    rest = rest_image(scene, renderer, ROOF, 800)
+    rest = rest_image(scene, renderer, ROOF, width=800)
     assert [text for text, _ in rest.lengths] == ["chamber 24.25 mm", "32 mm", "14 mm", "22 mm"]
     # whatever is modelled, half of it is cut open: wall, floor and sheath are seen
     hues = rest.image.reshape(-1, 3).astype(int)
@@ -403,11 +406,28 @@ def test_at_rest(renderer: Renderer, half: bool, element: str, smeared: bool) ->
 
 def test_half_and_whole_look_alike_at_rest(renderer: Renderer) -> None:
     images = [
-        rest_image(dataclasses.replace(model_mesh(half=half), fibers=None), renderer, None, 500)
+        rest_image(dataclasses.replace(model_mesh(half=half), fibers=None), renderer, width=500)
         for half in (True, False)
     ]
     gap = np.abs(images[0].image.astype(int) - images[1].image.astype(int)).max(axis=2)
     assert (gap > 40).mean() < 0.01
+
+
+@pytest.mark.parametrize("how", ["smeared", "discrete"])
+def test_an_actuator_is_drawn_from_its_case_alone(renderer: Renderer, how: str) -> None:
+    wound = case(
+        effects=[{"pressure": {"to": "9 kPa"}}, {"winding": WINDING["winding"] | {"as": how}}]
+    )
+    body, lines = body_at_rest(wound), threads(wound)
+    assert body.smeared == (how == "smeared")
+    assert len(lines) == (0 if body.smeared else wound.turns.curves)
+    rest = rest_image(body, renderer, scenery(wound), lines, 700)
+    assert rest.names[-1] == ("winding" if body.smeared else "fiber")
+    whole = wound.actuator.length + 2 * wound.actuator.cap
+    assert [text for text, _ in rest.lengths[:2]] == [
+        f"chamber {wound.actuator.length:g} mm",
+        f"{whole:g} mm",
+    ]
 
 
 # --- in motion -------------------------------------------------------------------------------
@@ -511,3 +531,11 @@ def test_a_body_that_is_bent_back_no_longer_passes_through_itself() -> None:
     walls = {"control": math.radians(-20.0)}
     text = "chamber walls pass through each other from −20° on: not modelled"
     assert on_state(touched, walls, 0.0) == text
+
+
+def test_a_run_without_a_step_has_its_frame_at_rest(tmp_path: Path) -> None:
+    said: list[str] = []
+    shown = case(mesh={"axial": "6 mm"}, output={"pictures": True, "fields": False})
+    draw(RunFolder(tmp_path), shown, model_mesh(), [], [], "no step", said.append)
+    assert [path.name for path in (tmp_path / "pictures").iterdir()] == ["rest.png"]
+    assert not said

@@ -15,7 +15,8 @@ import pytest
 from fiberbend import columns as col
 from fiberbend.drawing.curves import draw_plots, plot_pressure_angle
 from fiberbend.drawing.overlay import Curve, draw_overlay
-from fiberbend.drawing.page import Page, own_style, save
+from fiberbend.drawing.page import own_style, save
+from fiberbend.drawing.space.page import Page
 from fiberbend.drawing.style import Style
 from fiberbend.states.obstacles import Bar
 

@@ -224,4 +224,4 @@ def test_folder_of_a_run(tmp_path: Path) -> None:
     assert (data["model"], data["unknowns"], data["status"]) == ("analytic", 0, "converged")
     assert data["analytic"]["line"] == "zero-fit"
     pictures = sorted(path.name for path in (folder.path / "pictures").iterdir())
-    assert pictures == ["pressure_angle.png", "tip_path.png"]
+    assert pictures == ["pressure_angle.png", "rest.png", "tip_path.png"]

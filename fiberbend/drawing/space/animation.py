@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.obstacles import Obstacles, Scenery, write_forces
-from fiberbend.drawing.page import Page, colormap, nice_above
+from fiberbend.drawing.page import colormap, nice_above
 from fiberbend.drawing.renderer import FROM_THE_SIDE, Drawable, Image, Renderer, View
+from fiberbend.drawing.space.obstacles import Obstacles, Scenery, write_forces
+from fiberbend.drawing.space.page import Page
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.drawing.tessellation import Tessellation, greatest_seen
 from fiberbend.states.snapshot import ModelMesh, Snapshot, Target

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from fiberbend.drawing.obstacles import Obstacles, Scenery, write_forces
-from fiberbend.drawing.page import Page
-from fiberbend.drawing.panel import Panel
+from fiberbend.drawing.page import COLORS
 from fiberbend.drawing.renderer import Drawable, Image, Renderer, View, frame
-from fiberbend.drawing.surfaces import BodySurfaces
+from fiberbend.drawing.space.obstacles import Obstacles, Scenery, write_forces
+from fiberbend.drawing.space.page import Page
+from fiberbend.drawing.space.panel import Panel
+from fiberbend.drawing.surfaces import FIBER_RADIUS, BodySurfaces
 from fiberbend.states.snapshot import ModelMesh, Target
 from geometry.mesh.data import Floats
 
@@ -46,6 +47,7 @@ def rest_image(
     model_mesh: ModelMesh,
     renderer: Renderer,
     scenery: Scenery | None = None,
+    threads: Sequence[Floats] = (),
     width: int = WIDTH,
 ) -> Rest:
     """Draw an actuator at rest: toward its tip without its sheath, then without its near half.
@@ -54,6 +56,7 @@ def rest_image(
         model_mesh: the body in space (of any model: `fiberbend.results.space.Space.model_mesh`).
         renderer: draws.
         scenery: has the obstacles.
+        threads: polylines of a winding that the mesh does not have, (n, 3) each, mm.
         width: of the image, pixels; its height follows.
 
     Raises:
@@ -72,8 +75,9 @@ def rest_image(
     shape = min(tall / wide + 0.03, _TALLEST / WIDTH)
     view = frame(every, _FROM, 1 / shape, margin=0.04)
     size = (width, round(width * shape))
-    layers = [*_layers(surfaces), *obstacles.seen_through()]
-    return Rest(renderer.draw(layers, view, size), view, surfaces.names, lengths)
+    layers = [*_layers(surfaces, threads), *obstacles.seen_through()]
+    names = [*surfaces.names, *(["fiber"] if len(threads) else [])]
+    return Rest(renderer.draw(layers, view, size), view, names, lengths)
 
 
 def draw_rest(
@@ -81,6 +85,7 @@ def draw_rest(
     target: Target,
     renderer: Renderer,
     scenery: Scenery | None = None,
+    threads: Sequence[Floats] = (),
 ) -> None:
     """Write a picture of an actuator at rest with axes, scale, dimensions and obstacles.
 
@@ -89,11 +94,12 @@ def draw_rest(
         target: a path, or a file open for writing bytes.
         renderer: draws.
         scenery: has the obstacles.
+        threads: polylines of a winding that the mesh does not have, (n, 3) each, mm.
 
     Raises:
         fiberbend.drawing.renderer.PictureError: nothing can be drawn on this machine.
     """
-    rest = rest_image(model_mesh, renderer, scenery)
+    rest = rest_image(model_mesh, renderer, scenery, threads)
     height = rest.image.shape[0]
     size = (WIDTH, height + 56 + 100)
     title = f"{model_mesh.title}: at rest" if model_mesh.title else "at rest"
@@ -126,20 +132,34 @@ def write_on(
     write_forces(panel, Obstacles(scenery or Scenery(), points), points)
 
 
-def _layers(surfaces: BodySurfaces) -> list[Drawable]:
+def _layers(surfaces: BodySurfaces, threads: Sequence[Floats]) -> list[Drawable]:
     mesh, middle = surfaces.mesh, surfaces.middle
     z, length = middle[:, 2], _chamber(surfaces)[1]
-    start, end = _BARE * length, _OPEN * length
+    opened = z > _OPEN * length
     # the cut goes between elements
-    opened = z > end
     end = float(mesh.nodes[mesh.cells[opened], 2].min()) if opened.any() else np.inf
-    shown = surfaces.peeled | (z < start) | opened
+    bare = ~surfaces.sheathed if len(threads) else surfaces.peeled
+    shown = bare | (z < _BARE * length) | opened
     if mesh.half:
         layers = surfaces.parts(shown & ~opened)
         layers += surfaces.parts(opened, open_at_mirror=True)
     else:
         layers = surfaces.parts(shown & (~opened | (middle[:, 0] > 0)))
+    layers += [line for thread in threads for line in _thread(thread, end)]
     return layers + surfaces.winding_line() + surfaces.fiber_tubes(near=end)
+
+
+def _thread(points: Floats, near: float) -> list[Drawable]:
+    """A thread, of which nothing is left at x < 0 beyond some z."""
+    import pyvista as pv
+
+    kept = np.flatnonzero((points[:, 2] < near) | (points[:, 0] > 0))
+    runs = np.split(kept, np.flatnonzero(np.diff(kept) > 1) + 1)
+    return [
+        Drawable(pv.lines_from_points(points[run]), color=COLORS["fiber"], radius=FIBER_RADIUS)
+        for run in runs
+        if len(run) > 1
+    ]
 
 
 def _chamber(surfaces: BodySurfaces) -> tuple[float, float]:

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.panel import Panel
 from fiberbend.drawing.renderer import Drawable, View, frame
+from fiberbend.drawing.space.panel import Panel
 from fiberbend.states.labels import short_number
 from fiberbend.states.obstacles import Shape
 from fiberbend.states.snapshot import Snapshot
@@ -28,8 +28,8 @@ _TOUCHES = 0.3
 """Distance in mm from the nearest point of the body up to which others count as its touch, too."""
 _MOST = 4000
 """Points of the body that are asked for their distance from an obstacle."""
-_ROOM, _BESIDE = 0.085, 0.12
-"""Room for what is written beside obstacles, as parts of a picture's width: at least, at most."""
+_ROOM, _BESIDE = 0.085, 0.03
+"""Room for what is written beside obstacles, as parts of a picture's width."""
 _BEYOND = 0.6
 """How far beyond the body an obstacle makes a view wider, as a part of the body's extent."""
 _NO_FORCE = 1e-6
@@ -111,13 +111,15 @@ class Obstacles:
             return frame(body, toward, aspect)
         return frame(np.concatenate([body, self.points]), toward, aspect, _ROOM)
 
-    def margin(self, width: int) -> int:
-        """Pixels beside all that is drawn in which something may be written.
+    def margins(self, width: int) -> tuple[int, int]:
+        """Pixels above and below, and beside all that is drawn, in which something may be written.
 
         Args:
             width: of the picture, pixels.
         """
-        return round(_BESIDE * width) if self.solids else 6
+        if not self.solids:
+            return 6, 6
+        return round(_ROOM * width), round(_BESIDE * width)
 
     def behind(self, view: View) -> list[Drawable]:
         """Obstacles that never hide or tint the body: moved away from the viewer."""

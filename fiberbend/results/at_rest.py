@@ -1,0 +1,61 @@
+"""An actuator at rest in space, from its case alone: nothing is solved and no model is asked."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fiberbend.case import convert
+from fiberbend.case.case import Case
+from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.states.snapshot import ModelMesh
+
+if TYPE_CHECKING:
+    from geometry.mesh.data import Floats
+
+_LAYER = 0.7
+"""Length of an element over the section's half width: it only has to be drawn."""
+_ROUND = 2
+"""Elements through a thickness, with which arcs look round."""
+
+
+def body_at_rest(case: Case) -> ModelMesh:
+    """Half of the whole body with its caps; a winding in turns is left to `threads`.
+
+    Args:
+        case: the case.
+
+    Raises:
+        CaseError: dimensions of which no mesh can be made.
+    """
+    from geometry.bodies.extrude import hexahedral_body
+    from geometry.sections.size import MeshSize
+
+    actuator, site = convert.dimensions(case.actuator), convert.site(case)
+    size = MeshSize(axial=_LAYER * actuator.outer_half_width, section=_ROUND)
+    try:
+        mesh = hexahedral_body(actuator, size)
+    except ValueError as error:
+        raise CaseError([Problem("actuator", str(error))]) from None
+    turns = case.turns
+    return ModelMesh(
+        mesh=mesh,
+        materials={name: site.materials[name] for name in mesh.regions},
+        fibers=None,
+        smeared=turns is not None and not turns.discrete,
+        title=case.title,
+    )
+
+
+def threads(case: Case) -> list[Floats]:
+    """The thread of a winding in turns as polylines in space, (n, 3), mm; none where it is spread.
+
+    A thread as wide as a ribbon has several lines beside each other.
+
+    Args:
+        case: the case.
+    """
+    turns = case.turns
+    if turns is None or not turns.discrete:
+        return []
+    actuator = convert.dimensions(case.actuator)
+    return [curve for effect in case.effects for curve in effect.curves(actuator)]
