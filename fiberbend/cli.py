@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal, NoReturn
 
 from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
 
-from fiberbend.process import signals, streams
+from fiberbend.process import beside, signals, streams
 from fiberbend.reader.arguments import CaseFile, Changes
 from fiberbend.running import launch
 from fiberbend.running.launch import FAILED, say
@@ -105,6 +105,7 @@ def entry() -> NoReturn:
     """The command as a process: `main`, with signals, streams and other ranks in order."""
     signals.install()
     streams.guard()
+    beside.enable(launch.size() == 1)
     try:
         code: Any = main()
     except SystemExit as stop:

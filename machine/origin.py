@@ -102,9 +102,10 @@ def _loaded() -> list[Path]:
     """Shared libraries of this process; OpenBLAS before names that may be a link to it."""
     with contextlib.suppress(OSError):
         text = Path("/proc/self/maps").read_text(encoding="utf-8")
-        found = {Path(line.split(maxsplit=5)[5]) for line in text.splitlines() if ".so" in line}
+        found = {line.split(maxsplit=5)[5] for line in text.splitlines() if ".so" in line}
         kinds = list(_LIBRARIES)
-        known = [path for path in found if any(kind in path.name for kind in kinds)]
+        maybe = (Path(name) for name in found if any(kind in name for kind in kinds))
+        known = [path for path in maybe if any(kind in path.name for kind in kinds)]
         return sorted(
             known, key=lambda path: next(i for i, k in enumerate(kinds) if k in path.name)
         )

@@ -44,7 +44,18 @@ def entries(folder: Path) -> list[str]:
 
 def found(folder: Path, patterns: Sequence[str]) -> list[Path]:
     """The files of a folder that are named, sorted."""
-    return sorted({path for pattern in patterns for path in folder.glob(pattern)})
+    # each folder is read once: glob reads it again for every pattern
+    places: dict[str, list[str]] = {}
+    for pattern in patterns:
+        place, _, name = pattern.rpartition("/")
+        places.setdefault(place, []).append(name)
+    there: set[Path] = set()
+    for place, names in places.items():
+        with contextlib.suppress(FileNotFoundError, NotADirectoryError):
+            for entry in os.listdir(folder / place):
+                if any(fnmatchcase(entry, name) for name in names):
+                    there.add(folder / place / entry)
+    return sorted(there)
 
 
 def clear(folder: Path, first: str, patterns: Sequence[str]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import json
 import zipfile
 import zlib
 from collections.abc import Callable, Iterator
@@ -28,6 +29,7 @@ STEP = "step_"
 """Begins the labels of states that nobody has asked for by angle or pressure."""
 LAST = "last"
 """Label of the last state, where nobody has asked for it."""
+_ABOUT = "about"
 REST = "rest"
 """Label of the state before any load."""
 
@@ -51,6 +53,15 @@ def read_fibers(path: Path) -> tuple[EmbeddedFibers | None, bool]:
         return EmbeddedFibers(**{name: file[name] for name in names}), bool(file["smeared"])
 
 
+def write_snapshot(folder: RunFolder, shot: Snapshot) -> None:
+    """Leave a state in a run folder: its arrays, and the rest as one text, quick to read."""
+    entries = {key: value for key, value in vars(shot).items() if value is not None}
+    arrays = {key: value for key, value in entries.items() if isinstance(value, np.ndarray)}
+    about = {key: value for key, value in entries.items() if key not in arrays}
+    text = json.dumps(about, default=float)
+    folder.write_arrays(f"{SNAPSHOTS}/{shot.label}.npz", **arrays, **{_ABOUT: np.array(text)})
+
+
 def read_snapshot(path: Path, say: Callable[[str], None]) -> Snapshot | None:
     """A state; None where its file is damaged.
 
@@ -60,13 +71,12 @@ def read_snapshot(path: Path, say: Callable[[str], None]) -> Snapshot | None:
     """
     try:
         with np.load(path) as file:
-            entries: dict[str, Any] = {
-                k: file[k] if file[k].ndim else file[k].item() for k in file.files
-            }
+            entries = dict(file)
+            about = json.loads(str(entries.pop(_ABOUT)))
     except DAMAGED:
         say(f"{path} is damaged: left out")
         return None
-    return Snapshot(**{"fiber_force": None, **entries})
+    return Snapshot(**{"fiber_force": None, **entries, **about})
 
 
 def snapshot_paths(path: Path) -> list[Path]:
@@ -174,7 +184,7 @@ class States:
             return int(file.stem.removeprefix(STEP))
         try:
             with np.load(file) as arrays:
-                return int(arrays["step"])
+                return int(json.loads(str(arrays[_ABOUT]))["step"])
         except DAMAGED:
             self._say(f"{file} is damaged: left out")
             return -1

@@ -113,7 +113,7 @@ def run_analytic(
                 case,
                 rows,
                 f"{status}: {reason}" if reason else None,
-                check,
+                (check.angles, check.forces),
                 kind.name,
                 progress.message,
             )

@@ -16,8 +16,8 @@ from fiberbend import columns as col
 from fiberbend.case.case import Case, Output
 from fiberbend.models.model import MeshedModel
 from fiberbend.process import signals
-from fiberbend.results.folder import SNAPSHOTS, RunFolder
-from fiberbend.results.states import LAST, STEP, step_label
+from fiberbend.results.folder import RunFolder
+from fiberbend.results.states import LAST, STEP, step_label, write_snapshot
 from fiberbend.running import messages, record, restart
 from fiberbend.running.assembly import Assembly
 from fiberbend.running.history import Recorder
@@ -149,10 +149,9 @@ class Recording(Hook):
         )
         if not label.startswith(STEP):
             self.snapshots.append(shot)
-        arrays = {k: v for k, v in vars(shot).items() if v is not None}
         try:
             if self._room:
-                self._states.write_arrays(f"{SNAPSHOTS}/{label}.npz", **arrays)
+                write_snapshot(self._states, shot)
         except OSError as error:
             if self._folder is not None:
                 raise

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
 from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
+from fiberbend.process.beside import Beside
 from fiberbend.results.folder import RunFolder
 from fiberbend.results.states import States
-from fiberbend.states.recovery import NodalFields
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.mesh.data import Floats
 
 if TYPE_CHECKING:
+    from fiberbend.drawing.overlay import Overlay
     from fiberbend.drawing.renderer import Renderer
     from fiberbend.drawing.space.obstacles import Scenery
     from fiberbend.results.space import Space
@@ -47,28 +49,64 @@ def draw(
         model: the run's own model.
     """
     output = case.output
+    flat: Beside[list[str]] | None = None
     if output.pictures:
-        draw_curves(folder, case, rows, reason, check, model, say)
-    if not (output.fields or output.pictures or output.animation):
-        return
-    if output.fields:
-        from fiberbend.results.fields import write_fields
+        plane = (model_mesh, snapshots) if model_mesh.uniform and snapshots else None
+        overlays = None if check is None else (check.angles, check.forces)
+        flat = Beside(_draw_flat, folder.path, case, rows, reason, overlays, model, plane)
+    try:
+        if output.fields:
+            from fiberbend.results.fields import write_fields
 
-        write_fields(folder, case, model_mesh, snapshots, rows, say)
-    if output.pictures or output.animation:
+            write_fields(folder, case, model_mesh, snapshots, rows, say)
+        if output.pictures or output.animation:
+            _draw_states(folder, case, model_mesh, snapshots, rows, say)
+        for line in [] if flat is None else flat.result():
+            say(line)
+    finally:
+        if flat is not None:
+            flat.stop()
+
+
+def _draw_flat(
+    path: Path,
+    case: Case,
+    rows: Sequence[dict[str, Any]],
+    reason: str | None,
+    overlays: tuple[Overlay | None, Overlay | None] | None,
+    model: str,
+    plane: tuple[ModelMesh, Sequence[Snapshot]] | None,
+) -> list[str]:
+    """Draw what needs no OpenGL: the curves, and a section or cell in its own plane.
+
+    Returns:
+        Lines on what cannot be drawn.
+    """
+    folder, lines = RunFolder(path), list[str]()
+    draw_curves(folder, case, rows, reason, overlays, model, lines.append)
+    if plane is not None:
+        from fiberbend.results.scenery import scenery
         from fiberbend.results.space import Space
+        from fiberbend.running import uniform_outputs
 
-        space = Space(case, model_mesh)
-        fields = [space.recovered(state) for state in snapshots]
-        _draw_states(folder, case, space, snapshots, fields, rows, say)
+        with pictures(lines.append):
+            model_mesh, snapshots = plane
+            space = Space(case, model_mesh)
+            uniform_outputs.draw_in_plane(
+                model_mesh,
+                snapshots,
+                [space.recovered(state) for state in snapshots],
+                lambda name, fill: folder.write(f"pictures/{name}", fill),
+                scenery(case, rows),
+            )
+    return lines
 
 
 def _draw_states(
     folder: RunFolder,
     case: Case,
-    space: Space,
+    model_mesh: ModelMesh,
     snapshots: Sequence[Snapshot],
-    fields: Sequence[NodalFields],
     rows: Sequence[dict[str, Any]],
     say: Callable[[str], None],
 ) -> None:
@@ -76,15 +114,14 @@ def _draw_states(
     from fiberbend.drawing.renderer import Renderer
     from fiberbend.drawing.space.rest import draw_rest
     from fiberbend.results.scenery import scenery
+    from fiberbend.results.space import Space
     from fiberbend.running import uniform_outputs
 
     def write(name: str, fill: Callable[[IO[bytes]], object]) -> None:
         folder.write(f"pictures/{name}", fill)
 
-    beside, uniform = scenery(case, rows), space.own.uniform
-    if case.output.pictures and uniform and snapshots:
-        with pictures(say):
-            uniform_outputs.draw_in_plane(space.own, snapshots, fields, write, beside)
+    space, beside, uniform = Space(case, model_mesh), scenery(case, rows), model_mesh.uniform
+    fields = [space.recovered(state) for state in snapshots]
     if case.output.pictures:
         with pictures(say, f"no pictures{' in space' if uniform else ''}"), Renderer() as renderer:
             write("rest.png", lambda file: draw_rest(space.model_mesh, file, renderer, beside))
@@ -121,7 +158,7 @@ def draw_curves(
     case: Case,
     rows: Sequence[dict[str, Any]],
     reason: str | None,
-    check: Check | None = None,
+    overlays: tuple[Overlay | None, Overlay | None] | None = None,
     model: str = "body",
     say: Callable[[str], None] = print,
 ) -> None:
@@ -132,7 +169,7 @@ def draw_curves(
         case: names the title and the requested angles.
         rows: the history.
         reason: why the run ended early, or None.
-        check: other models and measured points that are drawn beside the curves.
+        overlays: other models and measured points beside angles and beside forces.
         model: the run's own model.
         say: takes a line for the user where nothing can be drawn.
     """
@@ -146,8 +183,7 @@ def draw_curves(
             [float(np.rad2deg(angle)) for angle in case.output.at_angles],
             case.title,
             reason,
-            None if check is None else check.angles,
-            None if check is None else check.forces,
+            *(overlays or (None, None)),
             f"{model} model",
             convert.obstacle_shapes(case),
             case.straight,

@@ -12,7 +12,7 @@ from fiberbend import columns as col
 from fiberbend.case.case import Case
 from fiberbend.reader.reader import parse_case
 from fiberbend.results.folder import MESH, RunFolder
-from fiberbend.results.states import step_label, write_fibers
+from fiberbend.results.states import step_label, write_fibers, write_snapshot
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 from tests.output import bending
 
@@ -110,8 +110,7 @@ def bent_folder(path: Path, given: Case, run: dict[str, Any], element: str = "he
     write_fibers(folder, model_mesh.fibers, smeared=False)
     for step, degrees in enumerate(ANGLES, start=1):
         shot = state(model_mesh, step, degrees)
-        arrays = {key: value for key, value in vars(shot).items() if value is not None}
-        folder.write_arrays(f"snapshots/{shot.label}.npz", **arrays)
+        write_snapshot(folder, shot)
     folder.write_history(rows())
     folder.write_text("run.json", json.dumps(run))
     return path

@@ -20,7 +20,7 @@ from fiberbend.report.scene import scene_data, thinned
 from fiberbend.report.side_view import loops_of, plane_edges
 from fiberbend.results.folder import MESH, RunFolder
 from fiberbend.results.space import Space
-from fiberbend.results.states import REST, Kept, States, write_fibers
+from fiberbend.results.states import REST, Kept, States, write_fibers, write_snapshot
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 from tests.output import bending, uniform
 from tests.report.folders import ANGLES, CASE, bent_folder, case, row, rows, run_of
@@ -180,8 +180,7 @@ def uniform_folder(path: Path, given: Case, own: ModelMesh, shot: Snapshot) -> P
     folder.write(MESH, own.mesh.save)
     assert own.fibers is not None
     write_fibers(folder, own.fibers, own.smeared)
-    arrays = {key: value for key, value in vars(shot).items() if value is not None}
-    folder.write_arrays(f"snapshots/{shot.label}.npz", **arrays)
+    write_snapshot(folder, shot)
     return path
 
 
