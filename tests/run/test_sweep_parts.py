@@ -67,7 +67,8 @@ def test_the_end_says_what_was_asked_and_where_it_is(lab: Lab) -> None:
     assert lines[heads + 1].split() == ["at", "10°,", "kPa", "at", "20°,", "kPa"]
     p = 2.0 / 7.0
     assert lines[heads + 3].split() == ["7", "2", f"{p:.4g}", f"{2 * p:.4g}"]
-    assert lines[-2:] == [f"table: {lab.out / 'sweep.csv'}", f"trends: {lab.out / 'trends.md'}"]
+    files = {"table": "sweep.csv", "trends": "trends.md", "report": "report.html"}
+    assert lines[-3:] == [f"{name}: {lab.out / file}" for name, file in files.items()]
 
 
 def test_warnings_with_other_figures_are_one(lab: Lab) -> None:
