@@ -82,12 +82,12 @@ def test_pressures_out_of_reach(read: Read) -> None:
     hint = "the pressure of the base case has to reach it, effects: pressure: {to: …}"
     assert complaints(lambda: read(far)) == [
         'report.pressures.1: "70 kPa", expected a pressure between zero and "60 kPa"; '
-        f"{hint} (line 19)"
+        f"{hint} (line 20)"
     ]
     found = grid(report={"pressures": ["30 kPa"]})
     found["set"] |= {"effects.0": {"pressure": {"angle": "90 deg"}}}
     text = "no effect where the pressure is found, expected no value"
-    assert complaints(lambda: read(found)) == [f"report.pressures.0: {text}; {hint} (line 18)"]
+    assert complaints(lambda: read(found)) == [f"report.pressures.0: {text}; {hint} (line 19)"]
 
 
 def test_force_of_a_blocked_case_is_no_interpolation(read: Read) -> None:
