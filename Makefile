@@ -10,7 +10,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup tools demo sweep test verify hard survive speed tables check format docs pictures schema \
+.PHONY: browser notebook help setup tools demo sweep test verify hard survive speed tables check format docs pictures schema \
     clean
 
 help: ## list the commands
@@ -32,6 +32,12 @@ sweep: setup ## solve SWEEP=cases/sweeps/….yaml, resumable; make -j2 sweep or 
 test: tools ## run the tests, two at a time
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(RANKS) --dist worksteal
 
+browser: tools ## open reports in headless Chromium and use them; part of make test
+	$(BIN)/python -m pytest tests/report/test_browser.py
+
+notebook: tools ## run the notebook in examples/; part of make test
+	$(BIN)/jupyter-execute examples/first_finger.ipynb
+
 verify: setup ## run the slow convergence ladders against exact solutions
 	$(BIN)/python -m pytest -m verify
 
@@ -51,7 +57,7 @@ tables: setup ## make the accuracy tables in docs/ again; half an hour
 speed: setup ## measure what an answer costs in each model; a minute on an idle machine
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/speed.py
 
-check: setup ## lint, format, types, the order of the folders and dead code
+check: tools ## lint, format, types, the order of the folders and dead code
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
