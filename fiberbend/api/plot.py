@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from fiberbend import columns as col
 from fiberbend.api.runs import (
-    TABLE,
     RunData,
     SweepData,
     axis_label,
@@ -26,7 +25,7 @@ from fiberbend.drawing.overlay import Curve, draw_overlay
 from fiberbend.drawing.page import own_style, save
 from fiberbend.drawing.style import Style
 from fiberbend.process import remains
-from fiberbend.results.folder import CASE_FILE, FILES
+from fiberbend.results.folder import CASE_FILE, FILES, TABLE
 from fiberbend.schema.problems import CaseError, Problem, found
 
 if TYPE_CHECKING:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import os
 import tempfile
 import warnings
 from collections.abc import Sequence
@@ -16,7 +15,7 @@ from fiberbend.api import reading
 from fiberbend.api.reading import Reading
 from fiberbend.models.result import RunResult
 from fiberbend.process.ranks import rank
-from fiberbend.results.folder import HISTORY_COLUMNS, RunFolder
+from fiberbend.results.folder import HISTORY_COLUMNS, HISTORY_FILE, REPORT, RunFolder
 from fiberbend.schema.problems import CaseError, Problem, found
 
 if TYPE_CHECKING:
@@ -29,8 +28,6 @@ if TYPE_CHECKING:
     from fiberbend.case.case import Case
     from fiberbend.drawing.page import Style
     from fiberbend.results.states import Kept, States
-
-REPORT = "report.html"
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -84,7 +81,7 @@ class Result(RunResult):
             KeyError: it has no such column there.
         """
         if not self.rows:
-            raise CaseError([Problem("history.csv", "no row, expected a run with a load step")])
+            raise CaseError([Problem(HISTORY_FILE, "no row, expected a run with a load step")])
         value = self.rows[-1].get(column)
         if value is None:
             raise KeyError(f"{column!r} is not known at the end of the run")
@@ -346,6 +343,7 @@ class Result(RunResult):
         Raises:
             CaseError: a run without a folder, and no `out`; or states that do not fit the case.
         """
+        from fiberbend.report.page import links_to
         from fiberbend.report.run_page import report, write_report
 
         if self.folder is not None and out is None:
@@ -368,13 +366,6 @@ class Result(RunResult):
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_text(page, encoding="utf-8")
         return target
-
-
-def links_to(folder: Path | None, page: Path) -> str:
-    """What leads from a page to a folder, "runs/finger/"; empty without one, and in it."""
-    if folder is None or folder.resolve() == page.resolve().parent:
-        return ""
-    return Path(os.path.relpath(folder.resolve(), page.resolve().parent)).as_posix() + "/"
 
 
 def _along(state: Kept, key: str) -> float:

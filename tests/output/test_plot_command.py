@@ -18,7 +18,7 @@ from fiberbend.api.plot import PAPER, Plot, plot, select, write
 from fiberbend.api.runs import RunData, axis_label
 from fiberbend.cli import app, main
 from fiberbend.reader.yaml_file import load_yaml
-from fiberbend.results.folder import read_history
+from fiberbend.results.reading import read_history
 from fiberbend.schema.problems import CaseError
 from fiberbend.sweep.command import run_sweep
 from tests.conftest import ROOT

@@ -260,7 +260,7 @@ def test_the_command_refuses_what_is_no_run(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["report", str(tmp_path)]) == 1
-    assert "contains no run and no sweep, expected the folder of one" in capsys.readouterr().err
+    assert "contains nothing, expected the folder of a run or a sweep" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
 
