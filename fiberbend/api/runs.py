@@ -118,7 +118,7 @@ class RunData:
         if match is None or any(name in row for row in self.rows):
             return [row.get(name) for row in self.rows]
         parts = [
-            (row.get(f"contact_{match[1]}_y_N"), row.get(f"contact_{match[1]}_z_N"))
+            (row.get(col.contact(match[1], "y_N")), row.get(col.contact(match[1], "z_N")))
             for row in self.rows
         ]
         if all(y is None for y, _ in parts):
