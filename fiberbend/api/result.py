@@ -8,7 +8,7 @@ import tempfile
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fiberbend import columns as col
 from fiberbend.api import reading
@@ -26,8 +26,10 @@ if TYPE_CHECKING:
     from fiberbend.answer.answer import Answer
     from fiberbend.api.runs import RunData
     from fiberbend.case.case import Case
-    from fiberbend.drawing.page import Style
+    from fiberbend.drawing.style import Style
+    from fiberbend.results.space import Space
     from fiberbend.results.states import Kept, States
+    from fiberbend.states.snapshot import Snapshot
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -229,12 +231,12 @@ class Result(RunResult):
         return states
 
     @functools.cached_property
-    def _space(self) -> Any:
+    def _space(self) -> Space:
         from fiberbend.results.space import Space
 
         return Space(self.case, self._states.model_mesh)
 
-    def _read(self, kept: Kept) -> Any:
+    def _read(self, kept: Kept) -> Snapshot:
         state = self._states.read(kept)
         if state is None:
             raise CaseError([Problem(str(kept.path), "damaged, expected a whole file")])
