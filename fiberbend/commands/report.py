@@ -8,6 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from fiberbend.running.launch import say
+from fiberbend.schema.problems import CaseError, Problem
 
 
 def report(
@@ -30,7 +31,12 @@ def report(
     """
     from fiberbend.api.loading import load
 
-    target = load(folder).report(out)
+    found = load(folder)
+    try:
+        target = found.report(out)
+    except OSError as error:
+        text = f"{error.strerror}, expected a file that can be written"
+        raise CaseError([Problem(str(error.filename or out or folder), text)]) from None
     say(f"report in {target}")
     if open_it:
         from fiberbend.commands.opening import open_file

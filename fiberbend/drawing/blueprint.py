@@ -16,7 +16,7 @@ from fiberbend.drawing.renderer import Renderer
 from fiberbend.drawing.space.obstacles import Scenery
 from fiberbend.drawing.space.panel import Panel
 from fiberbend.drawing.space.rest import rest_image, write_on
-from fiberbend.states.obstacles import Extent
+from fiberbend.states.obstacles import Bar, Box, Sheet
 from fiberbend.states.snapshot import ModelMesh, Target
 from geometry.mesh.data import Floats, MeshData, facet_positions
 
@@ -27,8 +27,6 @@ _THREAD: dict[str, Any] = {"color": COLORS["fiber"], "linewidth": 0.5, "alpha": 
 _LINE: dict[str, Any] = {"color": _INK, "linewidth": 0.9}
 _TEXT: dict[str, Any] = {"fontsize": 11, "color": _INK, "zorder": 8}
 _MARGIN = 2.0
-_ALONG = 4001
-"""Points along the surface of a plane, among which its name finds its place."""
 _TURNS = 40
 """So many turns at most are drawn; more would be a grey area."""
 
@@ -130,14 +128,16 @@ class Blueprint:
                 hole: dict[str, Any] = {"facecolor": "white", "edgecolor": "0.45", "linewidth": 0.8}
                 axes.add_patch(Rectangle((0.0, low), self.length, high - low, **hole))
         self._threads(axes)
+        self._rigid(axes)
         high = top - bottom
         row = bottom - 0.45 * high
         _dimension(axes, (start, row), (0.0, row), f"cap {self.cap:g} mm")
         _dimension(axes, (0.0, row), (self.length, row), f"length {self.length:g} mm")
         _dimension(axes, (self.length, row), (end, row), f"cap {self.cap:g} mm")
         if self.pitch is not None and self.pitch < self.length:
-            extents = [shape.extent for shape in self.scenery.shapes.values()]
-            boxes = [extent[1][1] for extent in extents if extent is not None]
+            boxes = [
+                shape.high[1] for shape in self.scenery.shapes.values() if isinstance(shape, Box)
+            ]
             above, at = max([top, *boxes]) + 0.15 * high, 0.1 * self.length
             _arrow(axes, (at, above), (at + self.pitch, above))
             axes.text(at + 1.5 * self.pitch, above, f"pitch {self.pitch:g} mm", **_TEXT)
@@ -159,22 +159,21 @@ class Blueprint:
             place = (origin[0] + 1.15 * tip_of[0], origin[1] + 1.15 * tip_of[1])
             axes.text(*place, name, ha="center", va="center", **_TEXT | {"style": "italic"})
         axes.set_aspect("equal")
-        ends = self._extent(np.array([[start, bottom], [end, bottom], [end, top], [start, top]]))
+        ends = self._extent()
         axes.set_xlim(min(origin[0], ends[0][0]) - 0.3 * high, max(tip + 2.2 * high, ends[1][0]))
         axes.set_ylim(min(row - 0.6 * high, ends[0][1]), max(top + 0.9 * high, ends[1][1]))
-        self._rigid(axes, top)
         axes.set_axis_off()
 
-    def _extent(self, body: Floats) -> Extent:
-        """Least and greatest z and y of the obstacles, mm; of one without an end what is near.
-
-        Args:
-            body: corners of the body, z and y, (4, 2), mm.
-        """
-        shapes = self.scenery.shapes.values()
-        every = [each for shape in shapes if (each := shape.extent or shape.nearest(body))]
-        low, high = zip((body.min(axis=0), body.max(axis=0)), *every, strict=True)
-        return np.min(low, axis=0) - _MARGIN, np.max(high, axis=0) + _MARGIN
+    def _extent(self) -> tuple[Floats, Floats]:
+        """Least and greatest z and y of the obstacles that have an end of their own, mm."""
+        points = [np.zeros((1, 3))]
+        for shape in self.scenery.shapes.values():
+            if not isinstance(shape, Sheet):
+                points.append(np.asarray(shape.surface(np.zeros((1, 3))).points))
+            else:
+                points.append(np.array([[0.0, shape.point[1] - 3.0, self.length / 2]]))
+        every = np.concatenate(points)[:, [2, 1]]
+        return every.min(axis=0) - _MARGIN, every.max(axis=0) + _MARGIN
 
     def _threads(self, axes: Any) -> None:
         """The half of every fiber that faces the viewer, x ≤ 0."""
@@ -189,32 +188,33 @@ class Blueprint:
             y[hidden] = np.nan
             axes.plot(z, y, **_THREAD)
 
-    def _rigid(self, axes: Any, top: float) -> None:
-        """Obstacles as x = 0 cuts them, with their names; `top` is that of the body."""
-        from matplotlib.patches import Polygon
+    def _rigid(self, axes: Any) -> None:
+        from matplotlib.patches import Circle, Rectangle
 
-        low, high = np.array([axes.get_xlim(), axes.get_ylim()]).T
         look: dict[str, Any] = {"facecolor": _OBSTACLE, "edgecolor": _OBSTACLE, "alpha": 0.55}
         for name, shape in self.scenery.shapes.items():
-            corners = shape.cut(high - low)
-            if corners is None:
-                continue
-            axes.add_patch(Polygon(corners, closed=True, **look))
-            label: dict[str, Any] = {"color": _OBSTACLE, "fontsize": 12}
-            if shape.extent is None:
-                # where its surface comes into sight, from the left
-                line = np.linspace(corners[0], corners[1], _ALONG)
-                seen = line[((line > low) & (line < high)).all(axis=1)]
-                if len(seen):
-                    place = seen[np.lexsort((-seen[:, 1], seen[:, 0]))[0]]
-                    axes.text(*place, f" {name}", **label, ha="left", va="bottom")
-                continue
-            least, most = shape.extent
-            if least[1] >= top - _MARGIN:
-                middle = (least[0] + most[0]) / 2
-                axes.text(middle, most[1], name, **label, ha="center", va="bottom")
-            else:
-                axes.text(most[0], least[1], f" {name}", **label, ha="left", va="bottom")
+            label: dict[str, Any] = {"color": _OBSTACLE, "fontsize": 12, "ha": "center"}
+            if isinstance(shape, Box):
+                (_, y0, z0), (_, y1, z1) = shape.low, shape.high
+                axes.add_patch(Rectangle((z0, y0), z1 - z0, y1 - y0, **look))
+                if y0 >= 0:
+                    axes.text((z0 + z1) / 2, y1, name, **label, va="bottom")
+                else:
+                    axes.text(z1, y0, f" {name}", **label | {"ha": "left"}, va="bottom")
+            elif isinstance(shape, Bar):
+                y, z = shape.center
+                axes.add_patch(Circle((z, y), shape.radius, **look))
+                axes.text(z, y, name, **label, va="center")
+            elif isinstance(shape, Sheet):
+                y, z = shape.point[1], shape.point[2]
+                along = np.array([-shape.normal[1], shape.normal[2]])
+                if np.linalg.norm(along) > 0:
+                    along = along / np.linalg.norm(along) * (self.length / 2 + self.cap)
+                    middle = np.array([self.length / 2, y + _rise(shape, self.length / 2 - z)])
+                    ends = np.stack([middle - along, middle + along])
+                    axes.plot(*ends.T, color=_OBSTACLE, linewidth=3, alpha=0.7)
+                    left = ends[np.argmin(ends[:, 0])]
+                    axes.text(*left, name, **label | {"ha": "left"}, va="bottom")
 
     # --- the cross-section ---------------------------------------------------------------------
 
@@ -274,6 +274,11 @@ class Blueprint:
         page.legend(
             handles=handles, loc="lower center", ncols=len(handles), frameon=False, fontsize=12
         )
+
+
+def _rise(sheet: Sheet, along: float) -> float:
+    """Change of a sheet's y over a length along z, in the plane x = 0."""
+    return -sheet.normal[2] / sheet.normal[1] * along if sheet.normal[1] else 0.0
 
 
 def _arrow(axes: Any, start: tuple[float, float], end: tuple[float, float]) -> None:

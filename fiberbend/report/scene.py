@@ -20,7 +20,9 @@ from fiberbend.results.space import Space
 from fiberbend.results.states import Kept, States
 from fiberbend.states.bend import Bend, in_frame
 from fiberbend.states.fiber_lines import fiber_lines
-from fiberbend.states.snapshot import Snapshot
+from fiberbend.states.recovery import SplitNodes, recover, split_nodes
+from fiberbend.states.snapshot import ModelMesh, Snapshot
+from fiberbend.states.stack import split_alike
 from geometry.mesh.data import Floats, Ints, MeshData
 from geometry.winding.segments import EmbeddedFibers
 
@@ -129,7 +131,7 @@ def scene_data(case: Case, states: States, space: Space | None = None) -> SceneD
         notes.append("Steps whose files are damaged are left out.")
     places = Places(space)
     threads = _Threads(space, places)
-    fields = _Fields(space, skins)
+    fields = _Fields(space.own, skins)
     skin_nodes = np.concatenate([skin.node for skin in skins])
     positions = np.stack([places.at(shot, skin_nodes) for _, shot in shown])
     lines = np.stack([threads.at(shot) for _, shot in shown])
@@ -234,10 +236,14 @@ def _skins(space: Space, level: int) -> list[Skin]:
 
 def _own_copies(space: Space) -> Ints:
     """The copy of a node of the model's own mesh behind every node of a cell in space, (m, k)."""
-    copies: Ints = space.copies.cells
+    copies: Ints = _split(space.own).cells
     if space.stack is None:
         return copies
     return copies[space.stack.cell[:, None], space.stack.order]
+
+
+def _split(own: ModelMesh) -> SplitNodes:
+    return split_alike(own.mesh) if own.uniform else split_nodes(own.mesh)
 
 
 def _skin(mesh: MeshData, pairs: Ints, copies: Ints, level: int, part: str, cut: bool) -> Skin:
@@ -262,13 +268,14 @@ def _skin(mesh: MeshData, pairs: Ints, copies: Ints, level: int, part: str, cut:
 class _Fields:
     """Quantities at the points of the surfaces, as numbers from 0 to 255."""
 
-    def __init__(self, space: Space, skins: Sequence[Skin]) -> None:
-        self._space, self._skins = space, skins
+    def __init__(self, own: ModelMesh, skins: Sequence[Skin]) -> None:
+        self._own, self._skins = own, skins
+        self._copies = _split(own)
         self._top: list[float] = []
 
     def at(self, state: Snapshot) -> list[Floats]:
         """Strain and stress of a state at all recovered nodes."""
-        found = self._space.recovered(state)
+        found = recover(self._own, state, self._copies)
         # between the points at which an extreme state was solved there may be no stress
         return [np.nan_to_num(values) for values in (found.log_strain, found.von_mises)]
 

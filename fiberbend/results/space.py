@@ -49,7 +49,7 @@ class Space:
 
     def recovered(self, state: Snapshot) -> NodalFields:
         """Fields of a state at the nodes of its own mesh, copies where regions meet."""
-        return recover(self.own, state, self.copies)
+        return recover(self.own, state, self._copies)
 
     def fields(self, state: Snapshot, recovered: NodalFields | None = None) -> NodalFields:
         """Fields of a state at the nodes in space, as `split_nodes` of that mesh copies them.
@@ -60,20 +60,19 @@ class Space:
         """
         one = recovered or self.recovered(state)
         if self.stack is not None:
-            one = self.stack.fields(self.own, self.copies, one, state)
+            one = self.stack.fields(self.own, self._copies, one, state)
         return one if self.halves is None else self.halves.fields(one)
 
     def at_cells(self, state: Snapshot, recovered: NodalFields | None = None) -> Floats:
         """Maximum principal logarithmic strain at the nodes of every cell in space, (m, k)."""
         recovered = recovered or self.recovered(state)
-        values: Floats = recovered.log_strain[self.copies.cells]
+        values: Floats = recovered.log_strain[self._copies.cells]
         if self.stack is not None:
             values = self.stack.at_cells(values)
         return values if self.halves is None else self.halves.at_cells(values)
 
     @functools.cached_property
-    def copies(self) -> SplitNodes:
-        """Nodes of the model's own mesh, copies where regions meet: the places of its fields."""
+    def _copies(self) -> SplitNodes:
         return split_alike(self.own.mesh) if self.own.uniform else split_nodes(self.own.mesh)
 
 

@@ -14,14 +14,6 @@ from fiberbend.cli import main
 from fiberbend.reader.reader import read_case
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
-OBSTACLE, FLOOR = (214, 170, 131), (230, 132, 42)
-WALL = "effects.2.contact.plane={point: [0 mm, 0 mm, 195 mm], normal: [0, 0, -1]}"
-
-
-def columns(image: Image.Image, color: tuple[int, int, int]) -> np.ndarray:
-    """Columns of the pixels of a colour in the view from the side, one for each pixel."""
-    pixels = np.asarray(image.convert("RGB"), dtype=int)[60:540]
-    return np.nonzero((np.abs(pixels - color) < 8).all(axis=2))[1]
 
 
 @pytest.mark.parametrize(
@@ -58,22 +50,12 @@ def test_every_obstacle_is_drawn(name: str, tmp_path: Path) -> None:
     case = CASES / f"{name}.yaml"
     assert main(["show", str(case), "--out", str(target)]) == 0
     with Image.open(target) as image:
-        brown = len(columns(image, OBSTACLE))
+        red, green, blue = np.asarray(image.convert("RGB"), dtype=int)[60:540].transpose(2, 0, 1)
+    # the obstacles' own brown over white, alone in the upper half
+    warm, pale = red - green, green - blue
+    brown = int(((warm > 15) & (warm < 80) & (pale > 25) & (pale < 70)).sum())
     has = bool(blueprint(read_case(case)).scenery.shapes)
     assert (brown > 300) == has
-
-
-def test_a_wall_before_the_tip_is_drawn_where_it_is(tmp_path: Path) -> None:
-    case, target = read_case(CASES / "grasp_table.yaml", (WALL,)), tmp_path / "rest.png"
-    with target.open("wb") as file:
-        blueprint(case).save(file)
-    with Image.open(target) as image:
-        wall, floor = columns(image, OBSTACLE), columns(image, FLOOR)
-    per_mm = np.ptp(floor) / 190.0
-    # from the tip, at 175 mm, to the wall, whose strip is thin
-    beyond = (wall - floor.max()) / per_mm
-    assert beyond.min() == pytest.approx(20.0, abs=2.0)
-    assert np.ptp(beyond) < 20.0
 
 
 def test_show_refuses_what_it_cannot_write(
