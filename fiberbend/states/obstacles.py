@@ -29,10 +29,6 @@ Extent = tuple[Floats, Floats]
 class Shape(Protocol):
     """Shape of a rigid obstacle."""
 
-    @property
-    def extent(self) -> Extent | None:
-        """Of what x = 0 cuts; None for what has no end."""
-
     def surface(self, around: Floats) -> Any:
         """Its surface as a pyvista.PolyData, mm.
 
@@ -79,8 +75,7 @@ class Box:
     high: tuple[float, float, float]
 
     @property
-    def extent(self) -> Extent:
-        """Its own."""
+    def _extent(self) -> Extent:
         return np.array(self.low[:0:-1]), np.array(self.high[:0:-1])
 
     def surface(self, around: Floats) -> Any:
@@ -92,12 +87,12 @@ class Box:
 
     def cut(self, size: Floats) -> Floats:
         """A rectangle."""
-        (z0, y0), (z1, y1) = self.extent
+        (z0, y0), (z1, y1) = self._extent
         return np.array([[z0, y0], [z1, y0], [z1, y1], [z0, y1]])
 
     def nearest(self, path: Floats) -> Extent:
         """Its point nearest to the middle of the path."""
-        point = np.clip(path.mean(axis=0), *self.extent)
+        point = np.clip(path.mean(axis=0), *self._extent)
         return point - _NEAR, point + _NEAR
 
     def wires(self, limits: Floats) -> list[Floats]:
@@ -125,11 +120,6 @@ class Sheet:
 
     point: tuple[float, float, float]
     normal: tuple[float, float, float]
-
-    @property
-    def extent(self) -> None:
-        """It has no end."""
-        return None
 
     def surface(self, around: Floats) -> Any:
         """A rectangle under the whole body."""
@@ -210,8 +200,7 @@ class Bar:
     radius: float
 
     @property
-    def extent(self) -> Extent:
-        """The square around it."""
+    def _extent(self) -> Extent:
         center = np.array(self.center[::-1])
         return center - self.radius, center + self.radius
 
@@ -235,7 +224,7 @@ class Bar:
 
     def nearest(self, path: Floats) -> Extent:
         """All of it."""
-        return self.extent
+        return self._extent
 
     def wires(self, limits: Floats) -> list[Floats]:
         """Both rims and four lines along it, as long as what is shown."""
