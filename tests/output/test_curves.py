@@ -13,7 +13,7 @@ import pytest
 from fiberbend import columns as col
 from fiberbend.case import convert
 from fiberbend.compare.check import crosscheck
-from fiberbend.drawing import curves, tip_path
+from fiberbend.drawing import curves
 from fiberbend.drawing.curves import contact_forces, draw_plots, plot_contact_force
 from fiberbend.drawing.style import Style
 from fiberbend.drawing.tip_path import plot_tip_path
@@ -27,21 +27,6 @@ from tests.output.test_labels import box
 
 PRESSURES = np.array([0.0, 10, 20, 30, 40, 50, 60])
 TOUCH = np.array([0.0, 0, 0, 1, 2, 3.5, 6]) / 5
-
-
-@pytest.fixture
-def drawn(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """The axes of every plot that is saved."""
-    axes: list[Any] = []
-    save = curves.save
-
-    def kept(page: Any, target: Any, style: Style) -> None:
-        axes.append(page.axes[0])
-        save(page, target, style)
-
-    monkeypatch.setattr(curves, "save", kept)
-    monkeypatch.setattr(tip_path, "save", kept)
-    return axes
 
 
 def into(folder: Path) -> Callable[[str, Callable[[Any], object]], None]:
