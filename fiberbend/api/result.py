@@ -312,7 +312,8 @@ class Result(RunResult):
             beside: further runs, and folders of runs and sweeps.
             measured: CSV files of measured points.
             target: file to write; none is written unless given.
-            style: format, width in mm, dpi and letters; one column of a journal unless given.
+            style: format, width in mm, dpi and letters, `fiberbend.Style("svg", width=85)`; one
+                column of a journal, as a PDF, unless given.
             labels: names of the curves, in place of what differs between the runs.
 
         Returns:
