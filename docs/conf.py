@@ -52,9 +52,7 @@ def names_of_python() -> str:
     for name, what in offered.items():
         if inspect.isfunction(what):
             functions += [f".. autofunction:: fiberbend.{name}", ""]
-        elif inspect.isclass(what) and what.__module__.startswith(
-            ("fiberbend.api", "fiberbend.drawing")
-        ):
+        elif inspect.isclass(what) and what.__module__.startswith(own):
             results += [f".. autoclass:: fiberbend.{name}", "   :members:", ""]
         elif inspect.isclass(what):
             # nobody makes these by calling them: a case comes from a file, an error from a check
