@@ -16,6 +16,7 @@ _READ = (
     *(col.TIP_FORCE, col.ROOF_FORCE, col.TWIST, col.SIDE_ANGLE, col.AXIS_STRETCH),
 )
 """Columns that a user reads, where they have values other than zero."""
+_OBSTACLE = ("_y_N", "_z_N")
 _PLANNED = {
     *("effects", "model", "half", "elements", "unknowns", "error"),
     *("left out", "not used", "winding"),
@@ -81,8 +82,13 @@ def plan_lines(case: Case) -> Iterator[Line]:
 def read_columns(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """Names of the columns that a user reads, those of obstacles last."""
     names = [name for name in _READ if any(row.get(name) for row in rows) or name == col.STEP]
-    forces = (col.contact(name, end) for name in col.obstacles(rows) for end in ("y_N", "z_N"))
-    return [*names, *(name for name in forces if any(row.get(name) for row in rows))]
+    forces = dict.fromkeys(
+        key
+        for row in rows
+        for key, value in row.items()
+        if key.startswith("contact_") and key.endswith(_OBSTACLE) and value
+    )
+    return [*names, *forces]
 
 
 def steps(rows: Sequence[Mapping[str, Any]], names: Sequence[str]) -> Table:
