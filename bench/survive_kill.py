@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from bench.survive import broken, end, files, kill, launch, put
-from fiberbend.results.folder import read_history
+from fiberbend.results.reading import read_history
 
 CASE = """\
 title: Killed and gone on with

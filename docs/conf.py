@@ -46,12 +46,13 @@ def names_of_python() -> str:
 
     import fiberbend
 
+    own = ("fiberbend.api", "fiberbend.drawing")
     offered = {name: getattr(fiberbend, name) for name in getattr(fiberbend, "__all__", ["run"])}
     functions, results, others = [], [], []
     for name, what in offered.items():
         if inspect.isfunction(what):
             functions += [f".. autofunction:: fiberbend.{name}", ""]
-        elif inspect.isclass(what) and what.__module__.startswith("fiberbend.api"):
+        elif inspect.isclass(what) and what.__module__.startswith(own):
             results += [f".. autoclass:: fiberbend.{name}", "   :members:", ""]
         elif inspect.isclass(what):
             # nobody makes these by calling them: a case comes from a file, an error from a check

@@ -31,6 +31,7 @@ _PLACES = {
     "Case": "fiberbend.case.case",
     "CaseError": "fiberbend.schema.problems",
     "Result": "fiberbend.api.result",
+    "Style": "fiberbend.drawing.style",
     "Sweep": "fiberbend.api.sweep",
     "__version__": "fiberbend.version",
 }
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from fiberbend.api.result import Result as Result
     from fiberbend.api.sweep import Sweep as Sweep
     from fiberbend.case.case import Case as Case
+    from fiberbend.drawing.style import Style as Style
     from fiberbend.schema.problems import CaseError as CaseError
     from fiberbend.version import __version__ as __version__
 
@@ -53,6 +55,7 @@ __all__ = [
     "Case",
     "CaseError",
     "Result",
+    "Style",
     "Sweep",
     "__version__",
     "load",

@@ -43,6 +43,10 @@ MODES = "unstable_modes"
 BALANCE_FORCE = "balance_force"
 BALANCE_MOMENT = "balance_moment"
 
+CONTACT = ("y_N", "z_N", "moment_x_Nmm", "area_mm2", "gap_mm")
+"""Ends of an obstacle's columns: force on the body, its moment, area that touches, least gap."""
+_OBSTACLE = re.compile(rf"contact_(\w+?)_(?:{'|'.join(CONTACT)})")
+
 RUN = "run"
 """Columns of every model."""
 MIDDLE = "middle"
@@ -212,6 +216,22 @@ COLUMNS = (
     ),
 )
 """In the order of a row."""
+
+
+def contact(obstacle: str, quantity: str) -> str:
+    """The column of an obstacle.
+
+    Args:
+        obstacle: its name.
+        quantity: of `CONTACT`.
+    """
+    return f"contact_{obstacle}_{quantity}"
+
+
+def obstacles(rows: Iterable[Row]) -> list[str]:
+    """Names of the obstacles that a history has columns of, in the order of the columns."""
+    keys = dict.fromkeys(key for row in rows for key in row)
+    return list(dict.fromkeys(match[1] for match in map(_OBSTACLE.fullmatch, keys) if match))
 
 
 def energy_columns(keys: Iterable[str]) -> dict[str, str]:

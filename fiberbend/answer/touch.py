@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import re
 from collections.abc import Iterator, Sequence
 
 from fiberbend import columns as col
 from fiberbend.answer.numbers import quantity
 
-_AREA = re.compile(r"contact_(.+)_area_mm2")
 _BEYOND = 1.2
 """Parts of a step after which gaps that close evenly may meet; the step then ends at the touch."""
 
@@ -42,17 +40,12 @@ def touches(rows: Sequence[col.Row]) -> Iterator[Touch]:
     Args:
         rows: of the history, the first at rest.
     """
-    names = (
-        match
-        for key in dict.fromkeys(key for row in rows for key in row)
-        if (match := _AREA.fullmatch(key))
-    )
-    for match in names:
-        yield _touch(match[1], rows)
+    for name in col.obstacles(rows):
+        yield _touch(name, rows)
 
 
 def _touch(name: str, rows: Sequence[col.Row]) -> Touch:
-    area, gap = f"contact_{name}_area_mm2", f"contact_{name}_gap_mm"
+    area, gap = col.contact(name, "area_mm2"), col.contact(name, "gap_mm")
     first = next((i for i, row in enumerate(rows) if row.get(area)), None)
     if first is None:
         least = [row[gap] for row in rows if row.get(gap) is not None]
@@ -60,7 +53,7 @@ def _touch(name: str, rows: Sequence[col.Row]) -> Touch:
         return Touch(name, "", near, None)
     force = None
     if rows[-1].get(area):
-        parts = (rows[-1].get(f"contact_{name}_{axis}_N") or 0.0 for axis in "yz")
+        parts = (rows[-1].get(col.contact(name, f"{axis}_N")) or 0.0 for axis in "yz")
         force = math.hypot(*parts)
     value, note = _where(gap, rows, first)
     if force is None:

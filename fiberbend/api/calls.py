@@ -20,6 +20,7 @@ from fiberbend.reader.reader import as_case
 from fiberbend.schema.problems import CaseError, Problem, found
 
 if TYPE_CHECKING:
+    from fiberbend.models.result import RunResult
     from fiberbend.plan.plan import Plan
 
 AnyCase = Case | Mapping[str, Any] | Path | str
@@ -73,7 +74,7 @@ def run(
     from fiberbend.running.runner import run_case
 
     progress = Progress(quiet=quiet)
-    with _closing(progress):
+    with contextlib.closing(progress):
         if out is not None:
             done = run_case(checked, Path(out), overwrite, progress, resume, force)
             return _result(done, checked, done.folder)
@@ -169,7 +170,7 @@ def _silent(_line: str) -> None:
     """Say nothing."""
 
 
-def _result(done: Any, case: Case, kept_in: Path | None) -> Result:
+def _result(done: RunResult, case: Case, kept_in: Path | None) -> Result:
     return Result(
         status=done.status,
         reason=done.reason,
@@ -179,14 +180,6 @@ def _result(done: Any, case: Case, kept_in: Path | None) -> Result:
         case=case,
         kept_in=kept_in,
     )
-
-
-@contextlib.contextmanager
-def _closing(progress: Any) -> Iterator[None]:
-    try:
-        yield
-    finally:
-        progress.close()
 
 
 class _Scratch:

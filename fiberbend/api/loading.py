@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +10,10 @@ from fiberbend.api.sweep import Sweep
 from fiberbend.case.case import Case
 from fiberbend.reader.reader import parse_case
 from fiberbend.reader.yaml_file import load_yaml
-from fiberbend.results.folder import CASE_FILE, HISTORY_FILE, RUN_FILE, read_history
+from fiberbend.results.folder import CASE_FILE, HISTORY_FILE, POINTS, RUN_FILE, TABLE
+from fiberbend.results.reading import read_history, read_run
 from fiberbend.schema.problems import CaseError, Problem
 
-POINTS = "points"
 _MEASURED = "output.measured"
 
 
@@ -38,7 +37,7 @@ def load(path: Path | str) -> Result | Sweep:
         raise CaseError([Problem(str(path), f"{what}, expected the folder of a run or a sweep")])
     if (path / CASE_FILE).exists() or (path / RUN_FILE).exists():
         return load_run(path)
-    if (path / POINTS).is_dir() or (path / "sweep.csv").exists():
+    if (path / POINTS).is_dir() or (path / TABLE).exists():
         return Sweep(path, load_run)
     names = sorted(entry.name for entry in path.iterdir())
     text = f"contains {', '.join(names[:6]) or 'nothing'}, expected the folder of a run or a sweep"
@@ -51,7 +50,7 @@ def load_run(path: Path) -> Result:
     Raises:
         CaseError: a file in it is missing or cannot be read.
     """
-    run = _read_run(path / RUN_FILE)
+    run = read_run(path)
     case = _read_case(path / CASE_FILE, run)
     history = path / HISTORY_FILE
     rows = read_history(history) if history.exists() else []
@@ -64,19 +63,6 @@ def load_run(path: Path) -> Result:
         case=case,
         kept_in=path,
     )
-
-
-def _read_run(path: Path) -> dict[str, Any]:
-    """The content of run.json; of a run that was killed before it was written what that means."""
-    try:
-        run = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        return {"status": "interrupted", "reason": f"killed before it wrote {path.name}"}
-    except (OSError, ValueError) as error:
-        raise CaseError([Problem(str(path), f"{error}, expected the end of a run")]) from None
-    if not isinstance(run, dict):
-        raise CaseError([Problem(str(path), "no mapping, expected the end of a run")])
-    return run
 
 
 def _read_case(path: Path, run: dict[str, Any]) -> Case:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from fiberbend import columns as col
 from fiberbend.api.runs import (
-    TABLE,
     RunData,
     SweepData,
     axis_label,
@@ -26,10 +25,12 @@ from fiberbend.drawing.overlay import Curve, draw_overlay
 from fiberbend.drawing.page import own_style, save
 from fiberbend.drawing.style import Style
 from fiberbend.process import remains
-from fiberbend.results.folder import CASE_FILE, FILES
+from fiberbend.results.folder import CASE_FILE, FILES, TABLE
 from fiberbend.schema.problems import CaseError, Problem, found
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from fiberbend.case.case import Case
 
 PAPER = Style("pdf", width=85.0, dpi=300.0, font_size=8.0)
@@ -58,7 +59,7 @@ class Plot:
         """Name of a file for it, without an ending: "pressure_angle"."""
         return "_".join(_short(name) for name in (self.x[0], *self.y))
 
-    def draw(self, style: Style) -> Any:
+    def draw(self, style: Style) -> Figure:
         """A matplotlib figure.
 
         Raises:
@@ -83,7 +84,7 @@ def plot(
     target: Path | str | None = None,
     style: Style = PAPER,
     labels: Sequence[str] = (),
-) -> Any:
+) -> Figure:
     """Draw curves of runs, sweeps and measured points in one figure.
 
     Args:
@@ -149,7 +150,7 @@ def select(
     return Plot(across, up, (*named, *curves[len(named) :]))
 
 
-def write(figure: Any, target: Path, style: Style) -> None:
+def write(figure: Figure, target: Path, style: Style) -> None:
     """Write a figure into a file; one that is there is replaced, unless it is a run's own.
 
     Raises:

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import os
 import tempfile
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fiberbend import columns as col
 from fiberbend.api import reading
 from fiberbend.api.reading import Reading
 from fiberbend.models.result import RunResult
 from fiberbend.process.ranks import rank
-from fiberbend.results.folder import HISTORY_COLUMNS, RunFolder
+from fiberbend.results.folder import HISTORY_COLUMNS, HISTORY_FILE, REPORT, RunFolder
 from fiberbend.schema.problems import CaseError, Problem, found
 
 if TYPE_CHECKING:
@@ -27,10 +26,10 @@ if TYPE_CHECKING:
     from fiberbend.answer.answer import Answer
     from fiberbend.api.runs import RunData
     from fiberbend.case.case import Case
-    from fiberbend.drawing.page import Style
+    from fiberbend.drawing.style import Style
+    from fiberbend.results.space import Space
     from fiberbend.results.states import Kept, States
-
-REPORT = "report.html"
+    from fiberbend.states.snapshot import Snapshot
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
@@ -84,7 +83,7 @@ class Result(RunResult):
             KeyError: it has no such column there.
         """
         if not self.rows:
-            raise CaseError([Problem("history.csv", "no row, expected a run with a load step")])
+            raise CaseError([Problem(HISTORY_FILE, "no row, expected a run with a load step")])
         value = self.rows[-1].get(column)
         if value is None:
             raise KeyError(f"{column!r} is not known at the end of the run")
@@ -232,12 +231,12 @@ class Result(RunResult):
         return states
 
     @functools.cached_property
-    def _space(self) -> Any:
+    def _space(self) -> Space:
         from fiberbend.results.space import Space
 
         return Space(self.case, self._states.model_mesh)
 
-    def _read(self, kept: Kept) -> Any:
+    def _read(self, kept: Kept) -> Snapshot:
         state = self._states.read(kept)
         if state is None:
             raise CaseError([Problem(str(kept.path), "damaged, expected a whole file")])
@@ -313,7 +312,8 @@ class Result(RunResult):
             beside: further runs, and folders of runs and sweeps.
             measured: CSV files of measured points.
             target: file to write; none is written unless given.
-            style: format, width in mm, dpi and letters; one column of a journal unless given.
+            style: format, width in mm, dpi and letters, `fiberbend.Style("svg", width=85)`; one
+                column of a journal, as a PDF, unless given.
             labels: names of the curves, in place of what differs between the runs.
 
         Returns:
@@ -346,6 +346,7 @@ class Result(RunResult):
         Raises:
             CaseError: a run without a folder, and no `out`; or states that do not fit the case.
         """
+        from fiberbend.report.page import links_to
         from fiberbend.report.run_page import report, write_report
 
         if self.folder is not None and out is None:
@@ -368,13 +369,6 @@ class Result(RunResult):
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_text(page, encoding="utf-8")
         return target
-
-
-def links_to(folder: Path | None, page: Path) -> str:
-    """What leads from a page to a folder, "runs/finger/"; empty without one, and in it."""
-    if folder is None or folder.resolve() == page.resolve().parent:
-        return ""
-    return Path(os.path.relpath(folder.resolve(), page.resolve().parent)).as_posix() + "/"
 
 
 def _along(state: Kept, key: str) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import dataclasses
 import difflib
 import re
@@ -13,13 +12,12 @@ from typing import Any
 from fiberbend import columns as col
 from fiberbend.drawing.curves import SMALL_ANGLE, contact_forces
 from fiberbend.reader.yaml_file import load_yaml
-from fiberbend.results.folder import CASE_FILE, HISTORY_FILE, read_history
+from fiberbend.results.folder import CASE_FILE, HISTORY_FILE, POINTS, TABLE
+from fiberbend.results.reading import read_history, read_table
 from fiberbend.schema.paths import differences, value_at
 from fiberbend.schema.problems import CaseError, Problem, found
 from fiberbend.sweep.fields import labels
 
-TABLE = "sweep.csv"
-POINTS = "points"
 _FIRST, _STATUS = "point", "status"
 """Columns of sweep.csv before and after those of the varied fields."""
 _BESIDE = ("title", "output", "compare")
@@ -120,7 +118,7 @@ class RunData:
         if match is None or any(name in row for row in self.rows):
             return [row.get(name) for row in self.rows]
         parts = [
-            (row.get(f"contact_{match[1]}_y_N"), row.get(f"contact_{match[1]}_z_N"))
+            (row.get(col.contact(match[1], "y_N")), row.get(col.contact(match[1], "z_N")))
             for row in self.rows
         ]
         if all(y is None for y, _ in parts):
@@ -202,11 +200,7 @@ def read_source(path: Path) -> RunData | SweepData:
 
 
 def _run(path: Path) -> RunData:
-    try:
-        rows = read_history(path / HISTORY_FILE)
-    except (OSError, ValueError, KeyError, TypeError, csv.Error) as error:
-        text = f"cannot be read, {error}, expected the history of a run"
-        raise CaseError([Problem(str(path / HISTORY_FILE), text)]) from None
+    rows = read_history(path / HISTORY_FILE)
     return RunData(path.resolve().name, load_yaml(path / CASE_FILE), rows)
 
 
@@ -214,14 +208,7 @@ def _sweep(path: Path) -> SweepData:
     header: list[str] = []
     rows: list[dict[str, str]] = []
     if (path / TABLE).exists():
-        try:
-            with (path / TABLE).open(newline="", encoding="utf-8") as file:
-                reader = csv.DictReader(file)
-                rows = list(reader)
-                header = list(reader.fieldnames or ())
-        except (OSError, ValueError, csv.Error) as error:
-            text = f"cannot be read, {error}, expected the table of a sweep"
-            raise CaseError([Problem(str(path / TABLE), text)]) from None
+        header, rows = read_table(path)
     folders = sorted((path / POINTS).glob("*/"))
     if header:
         # in the order of the sweep

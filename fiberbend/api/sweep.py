@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import functools
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fiberbend.results.folder import POINTS, REPORT, TABLE, RunFolder
+from fiberbend.results.reading import read_table
 from fiberbend.schema.problems import CaseError, Problem, found
 
 if TYPE_CHECKING:
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
 
     from fiberbend.api.result import Result
 
-TABLE = "sweep.csv"
 Cell = float | str | None
 """A number, a text, or None of an empty cell."""
 
@@ -29,7 +29,7 @@ class Points(Mapping[str, "Result"]):
     """
 
     def __init__(self, path: Path, read: Callable[[Path], Result]) -> None:
-        self._path, self._read = path / "points", read
+        self._path, self._read = path / POINTS, read
 
     def __getitem__(self, name: str) -> Result:
         if name not in self._names:
@@ -71,16 +71,10 @@ class Sweep:
         """The rows of sweep.csv, one a point, in the order of the sweep; units in their names.
 
         Raises:
-            CaseError: the sweep has no table yet.
+            CaseError: the sweep has no table yet, or one that cannot be read.
         """
-        path = self.folder / TABLE
-        if not path.exists():
-            text = "no such file, expected a sweep whose points were solved; start it again"
-            raise CaseError([Problem(str(path), text)])
-        with path.open(newline="", encoding="utf-8") as file:
-            return tuple(
-                {name: _value(text) for name, text in row.items()} for row in csv.DictReader(file)
-            )
+        _, rows = read_table(self.folder)
+        return tuple({name: _value(text) for name, text in row.items()} for row in rows)
 
     @functools.cached_property
     def frame(self) -> pd.DataFrame:
@@ -128,10 +122,13 @@ class Sweep:
         Raises:
             CaseError: the sweep has no table yet.
         """
-        from fiberbend.api.result import REPORT, links_to
-        from fiberbend.report.sweep_page import sweep_report
+        from fiberbend.report.page import links_to
+        from fiberbend.report.sweep_page import sweep_report, write_sweep_report
 
-        target = self.folder / REPORT if out is None else Path(out)
+        if out is None:
+            write_sweep_report(RunFolder(self.folder))
+            return self.folder / REPORT
+        target = Path(out)
         page = sweep_report(self.folder, links=links_to(self.folder, target))
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_text(page, encoding="utf-8")

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -43,7 +42,6 @@ _ALONG = 0.999
 _ANGLE = (col.PRESSURE, col.ANGLE)
 _TWIST = (col.PRESSURE, col.TWIST)
 _FORCE = (col.PRESSURE, col.TIP_FORCE)
-_CONTACT = re.compile(r"contact_(.+)_y_N")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -78,11 +76,9 @@ def contact_forces(rows: Sequence[col.Row]) -> list[ContactForce]:
 
     A roof and a tip that are kept in place by their strips have a force and no obstacle.
     """
-    keys = dict.fromkeys(key for row in rows for key in row)
-    names = [match[1] for match in map(_CONTACT.fullmatch, keys) if match]
-    found = []
+    names, found = col.obstacles(rows), []
     for name in names:
-        columns = (col.PRESSURE, f"contact_{name}_y_N", f"contact_{name}_z_N")
+        columns = (col.PRESSURE, col.contact(name, "y_N"), col.contact(name, "z_N"))
         if any(complete(row, columns) for row in rows):
             pressure, along_y, along_z = whole_rows(rows, columns)
             found.append(_contact(name, pressure, np.stack([along_y, along_z])))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,10 +13,11 @@ from fiberbend.drawing.page import any_sign, literal
 from fiberbend.drawing.style import Style
 from geometry.mesh.data import Floats
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 MODELS = ("section", "analytic", "analytic_winding", "analytic_paper")
 """Models that can stand beside a run, as columns of the history and run.json call them."""
-
-
 _COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 """Told apart by all eyes, after M. Okabe and K. Ito."""
 _DASHES = ("-", "--", "-.", ":")
@@ -88,7 +89,7 @@ class Curve:
     measured: bool = False
 
 
-def draw_overlay(curves: Sequence[Curve], across: str, up: str, style: Style) -> Any:
+def draw_overlay(curves: Sequence[Curve], across: str, up: str, style: Style) -> Figure:
     """Several curves in one figure, with a legend where there are two or more.
 
     Args:
@@ -107,7 +108,7 @@ def draw_overlay(curves: Sequence[Curve], across: str, up: str, style: Style) ->
         return _overlay(curves, across, up, style)
 
 
-def _overlay(curves: Sequence[Curve], across: str, up: str, style: Style) -> Any:
+def _overlay(curves: Sequence[Curve], across: str, up: str, style: Style) -> Figure:
     scale = style.scale
     page, axes = new_axes(style, "", None, literal(across), literal(up))
     runs = [curve for curve in curves if not curve.measured]

@@ -6,7 +6,7 @@ known, and nothing is made up.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -26,7 +26,7 @@ from fiberbend.drawing.axes import (
 )
 from fiberbend.drawing.page import literal, save
 from fiberbend.drawing.style import DEFAULT, Style
-from fiberbend.states.obstacles import Bar, Box, Shape, Sheet
+from fiberbend.states.obstacles import Shape
 from fiberbend.states.snapshot import Target
 from geometry.mesh.data import Floats
 
@@ -111,12 +111,12 @@ def _aside(rows: Sequence[col.Row]) -> Floats:
     return np.array([row.get(col.TIP_X) or 0.0 for row in rows], dtype=float)
 
 
-def _limits(axes: Any, z: Floats, y: Floats, shapes: Any) -> None:
+def _limits(axes: Any, z: Floats, y: Floats, shapes: Collection[Shape]) -> None:
     """One scale; the whole path, and of obstacles what is not far from it."""
     low, high = np.array([z.min(), y.min()]), np.array([z.max(), y.max()])
     most = max(_FARTHEST * max(*(high - low)), _BESIDE)
     for shape in shapes:
-        near = _nearest(shape, np.column_stack([z, y]))
+        near = shape.nearest(np.column_stack([z, y]))
         if near is not None:
             least, greatest = np.minimum(low, near[0]), np.maximum(high, near[1])
             if max(greatest - least) <= most:
@@ -129,74 +129,24 @@ def _limits(axes: Any, z: Floats, y: Floats, shapes: Any) -> None:
     axes.set_ylim(middle[1] - half, middle[1] + half)
 
 
-def _nearest(shape: Shape, path: Floats) -> tuple[Floats, Floats] | None:
-    """Least and greatest z and y of what of an obstacle is to be seen beside a path (n, 2)."""
-    if isinstance(shape, Bar):
-        center = np.array(shape.center[::-1])
-        return center - shape.radius, center + shape.radius
-    if isinstance(shape, Box):
-        corner = np.clip(path.mean(axis=0), shape.low[:0:-1], shape.high[:0:-1])
-        return corner - 1.0, corner + 1.0
-    line = _line(shape) if isinstance(shape, Sheet) else None
-    if line is None:
-        return None
-    point, normal = line
-    above = (path - point) @ normal
-    foot = path[above.argmin()] - above.min() * normal
-    return foot - 1.0, foot + 1.0
-
-
 def _draw_shapes(axes: Any, obstacles: Mapping[str, Shape]) -> list[str]:
     """Draw obstacles as the plane x = 0 cuts them; the names of those in sight."""
-    from matplotlib.patches import Circle, Polygon
+    from matplotlib.patches import Polygon
 
     (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
     names = []
     for (name, shape), color in zip(obstacles.items(), _SHAPES * len(obstacles), strict=False):
         look = {"facecolor": color, "alpha": 0.35, "edgecolor": color, "zorder": 1}
-        if isinstance(shape, Bar):
-            patch: Any = Circle(shape.center[::-1], shape.radius, **look)
-        else:
-            corners = _outline(shape, np.array([right - left, top - bottom]))
-            if corners is None:
-                continue
-            patch = Polygon(corners, closed=True, **look)
+        corners = shape.cut(np.array([right - left, top - bottom]))
+        if corners is None:
+            continue
+        patch = Polygon(corners, closed=True, **look)
         seen = patch.get_path().transformed(patch.get_patch_transform()).get_extents()
         if seen.x0 < right and seen.x1 > left and seen.y0 < top and seen.y1 > bottom:
             patch.set_label(literal(name))
             axes.add_patch(patch)
             names.append(name)
     return names
-
-
-def _outline(shape: Shape, size: Floats) -> Floats | None:
-    """Corners (4, 2) in z and y of what the plane x = 0 cuts; a sheet as a strip on its far side.
-
-    Args:
-        shape: a box or a sheet.
-        size: of what is shown, z and y, mm.
-    """
-    if isinstance(shape, Box):
-        (_, y0, z0), (_, y1, z1) = shape.low, shape.high
-        return np.array([[z0, y0], [z1, y0], [z1, y1], [z0, y1]])
-    line = _line(shape) if isinstance(shape, Sheet) else None
-    if line is None:
-        return None
-    point, normal = line
-    along = np.array([-normal[1], normal[0]]) * 10 * (np.abs(point).max() + size.max())
-    thick = -0.03 * size.min() * normal
-    return np.array([point - along, point + along, point + along + thick, point - along + thick])
-
-
-def _line(sheet: Sheet) -> tuple[Floats, Floats] | None:
-    """A point and the normal, z and y each, of where a sheet meets x = 0; None if it does not."""
-    whole = np.array(sheet.normal) / np.linalg.norm(sheet.normal)
-    normal, length = whole[:0:-1], float(np.linalg.norm(whole[1:]))
-    if length < 1e-6:
-        return None
-    # n · (p − point) = 0 with x = 0
-    point = np.array(sheet.point[:0:-1]) + normal * whole[0] * sheet.point[0] / length**2
-    return point, normal / length
 
 
 def _path_in_space(
@@ -224,7 +174,7 @@ def _path_in_space(
         axes.plot(*shadow.T, "-", color="0.75", linewidth=1.2 * scale)
     for (name, shape), color in zip(obstacles.items(), _SHAPES * len(obstacles), strict=False):
         label = literal(name)
-        for line in _wires(shape, limits[:, [1, 2, 0]]):
+        for line in shape.wires(limits[:, [1, 2, 0]]):
             line = np.where(
                 ((line >= limits[0, [1, 2, 0]]) & (line <= limits[1, [1, 2, 0]])).all(axis=1)[
                     :, None
@@ -304,51 +254,3 @@ def _fill(axes: Any, extent: Floats, headed: bool) -> None:
         x0, y0, width, height = axes.get_position(original=True).bounds
         axes.set_position((x0 + shift[0], y0 + shift[1], width, height))
         zoom *= float(min(room / (high - low)))
-
-
-def _wires(shape: Shape, limits: Floats) -> list[Floats]:
-    """Lines (n, 3) in x, y, z along the edges of an obstacle, finely divided.
-
-    Args:
-        shape: the obstacle.
-        limits: least and greatest x, y, z that are shown, (2, 3).
-    """
-    low, high = limits
-    if isinstance(shape, Bar):
-        turn = np.linspace(0, 2 * np.pi, 181)
-        y, z = (
-            center + shape.radius * wave
-            for center, wave in zip(shape.center, (np.sin(turn), np.cos(turn)), strict=True)
-        )
-        rims = [np.column_stack([np.full_like(y, x), y, z]) for x in (low[0], high[0])]
-        return [*rims, *(_divided(rims[0][i], rims[1][i]) for i in (0, 45, 90, 135))]
-    if isinstance(shape, Box):
-        ends = np.array([shape.low, shape.high])
-        lines = []
-        for axis in range(3):
-            a, b = (other for other in range(3) if other != axis)
-            for i in (0, 1):
-                for j in (0, 1):
-                    pair = np.empty((2, 3))
-                    pair[:, axis], pair[:, a], pair[:, b] = ends[:, axis], ends[i, a], ends[j, b]
-                    lines.append(_divided(*pair))
-        return lines
-    if isinstance(shape, Sheet):
-        normal = np.array(shape.normal) / np.linalg.norm(shape.normal)
-        # the coordinate that the plane gives from the two others
-        axis = int(np.abs(normal).argmax())
-        others = [other for other in range(3) if other != axis]
-        lines = []
-        for across in others:
-            for part in np.linspace(0.0, 1.0, 6):
-                line = _divided(low, high)
-                line[:, across] = low[across] + part * (high[across] - low[across])
-                rest = (line[:, others] - np.array(shape.point)[others]) @ normal[others]
-                line[:, axis] = shape.point[axis] - rest / normal[axis]
-                lines.append(line)
-        return lines
-    return []
-
-
-def _divided(start: Floats, end: Floats) -> Floats:
-    return np.linspace(start, end, 81)

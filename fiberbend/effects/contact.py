@@ -155,7 +155,7 @@ class ContactEffect(Effect):
         """Those along y and z, which the history has."""
         forces = {}
         for name in self.obstacles:
-            up, along = (row.get(f"contact_{name}_{axis}_N") for axis in "yz")
+            up, along = (row.get(col.contact(name, f"{axis}_N")) for axis in "yz")
             if up is not None and along is not None:
                 forces[name] = (0.0, float(up), float(along))
         return forces
@@ -255,7 +255,7 @@ class ContactEffect(Effect):
     @staticmethod
     def _depth(name: str, rows: Sequence[Mapping[str, Any]]) -> float:
         """Greatest depth in an obstacle over a history, mm."""
-        return max(0.0, *(-row.get(f"contact_{name}_gap_mm", 0.0) for row in rows))
+        return max(0.0, *(-row.get(col.contact(name, "gap_mm"), 0.0) for row in rows))
 
     def summary(self, site: Site, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         """When each obstacle was touched and left, and the force on the body at the end."""
@@ -265,13 +265,13 @@ class ContactEffect(Effect):
             tip = tip_force_summary(site, strips, rows[-1])
         entry: dict[str, Any] = {"stiffness_MPa_per_mm": self.yields(site)}
         for name in self.obstacles:
-            touching = [bool(row.get(f"contact_{name}_area_mm2")) for row in rows]
+            touching = [bool(row.get(col.contact(name, "area_mm2"))) for row in rows]
             changes = [i for i in range(1, len(rows)) if touching[i] != touching[i - 1]]
             entry[name] = {
                 "touched_at_kPa": [rows[i][col.PRESSURE] for i in changes if touching[i]],
                 "left_at_kPa": [rows[i][col.PRESSURE] for i in changes if not touching[i]],
-                "force_y_N": rows[-1].get(f"contact_{name}_y_N"),
-                "force_z_N": rows[-1].get(f"contact_{name}_z_N"),
+                "force_y_N": rows[-1].get(col.contact(name, "y_N")),
+                "force_z_N": rows[-1].get(col.contact(name, "z_N")),
                 "greatest_depth_mm": self._depth(name, rows),
             }
         return {**tip, "contact": entry}

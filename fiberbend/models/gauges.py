@@ -71,7 +71,7 @@ class BodyGauge:
         row["clamp_force_y_N"] = float(supports["clamp"].force[1])
         row["clamp_moment_x_Nmm"] = float(supports["clamp"].moment[0])
         row |= self._contacts(supports)
-        if self._guided or any(row[f"contact_{name}_area_mm2"] for name in self._probes):
+        if self._guided or any(row[col.contact(name, "area_mm2")] for name in self._probes):
             row |= {col.BALANCE_FORCE: found.force, col.BALANCE_MOMENT: found.moment}
         return row
 
@@ -81,11 +81,11 @@ class BodyGauge:
         for name, probe in self._probes.items():
             by, touch = supports[probe.key], probe.read()
             row |= {
-                f"contact_{name}_y_N": float(by.force[1]),
-                f"contact_{name}_z_N": float(by.force[2]),
-                f"contact_{name}_moment_x_Nmm": float(by.moment[0]),
-                f"contact_{name}_area_mm2": touch.area,
-                f"contact_{name}_gap_mm": touch.gap,
+                col.contact(name, "y_N"): float(by.force[1]),
+                col.contact(name, "z_N"): float(by.force[2]),
+                col.contact(name, "moment_x_Nmm"): float(by.moment[0]),
+                col.contact(name, "area_mm2"): touch.area,
+                col.contact(name, "gap_mm"): touch.gap,
             }
         return row
 

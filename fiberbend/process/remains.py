@@ -23,6 +23,13 @@ def begin(target: Path) -> tuple[int, str]:
     return tempfile.mkstemp(prefix=f".{target.name}.", suffix=_SUFFIX, dir=target.parent)
 
 
+def let_others_read(path: Path | str) -> None:
+    """Give a file of `begin`, which only its owner can read, the rights of any new file."""
+    mask = os.umask(0)
+    os.umask(mask)
+    os.chmod(path, 0o666 & ~mask)
+
+
 def matches(name: str, patterns: Sequence[str]) -> bool:
     """Whether a path within a folder is one of those named; '*' stands for no '/'."""
     parts = name.split("/")

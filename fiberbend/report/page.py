@@ -5,12 +5,14 @@ jinja2 is imported where it is used: a run without a report does without it.
 
 from __future__ import annotations
 
-import base64
 import dataclasses
 import functools
+import os
 from importlib import resources
 from pathlib import Path
 from typing import Any
+
+from fiberbend.report.packing import base64_of
 
 _TYPES = {
     ".png": "image/png",
@@ -74,7 +76,7 @@ def render(template: str, **context: Any) -> str:
 def data_address(content: bytes, name: str) -> str:
     """Content as an address of itself; `name` gives the type by its ending."""
     kind = _TYPES.get(Path(name).suffix, "application/octet-stream")
-    return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
+    return f"data:{kind};base64,{base64_of(content)}"
 
 
 def is_picture(path: Path) -> bool:
@@ -98,6 +100,13 @@ def beside(path: Path, folder: Path, links: str = "") -> Download:
     """A file that is too large for the page; `links` as of `link`."""
     name = path.relative_to(folder).as_posix()
     return Download(name, link(path, folder, links), _size(path.stat().st_size), False)
+
+
+def links_to(folder: Path | None, page: Path) -> str:
+    """What leads from a page to a folder, "runs/finger/"; empty without one, and in it."""
+    if folder is None or folder.resolve() == page.resolve().parent:
+        return ""
+    return Path(os.path.relpath(folder.resolve(), page.resolve().parent)).as_posix() + "/"
 
 
 def link(path: Path, folder: Path, links: str = "") -> str:

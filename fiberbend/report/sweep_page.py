@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import csv
-import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from fiberbend.report.page import Picture, beside, citation, inside, link, picture, render
-from fiberbend.results.folder import REPORT, RunFolder
-from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.results.folder import POINTS, REPORT, TABLE, TRENDS, RunFolder
+from fiberbend.results.reading import read_about_sweep, read_table
 from fiberbend.version import __version__
 
-TABLE = "sweep.csv"
-"""By this file a folder is that of a sweep."""
-_ABOUT = "sweep.json"
-_TRENDS = "trends.md"
 _POINT, _STATUS, _REASON = "point", "status", "reason"
 _QUIET = (_REASON, "solved_by")
 """Columns that are no numbers and are not among the fields."""
@@ -47,8 +41,8 @@ def sweep_report(path: Path, title: str = "", links: str = "") -> str:
     Raises:
         CaseError: the folder has no table.
     """
-    heads, rows = _table(path / TABLE)
-    about = _about(path / _ABOUT)
+    heads, rows = read_table(path)
+    about = read_about_sweep(path)
     quantities = about.get("quantities") or []
     failed = about.get("failed") or {
         row[_POINT]: row.get(_REASON, "") for row in rows if row.get(_STATUS) == "failed"
@@ -64,38 +58,17 @@ def sweep_report(path: Path, title: str = "", links: str = "") -> str:
         notes=about.get("notes") or [],
         failed=failed,
         maps=_maps(path, quantities),
-        trends=_as_html(path / _TRENDS),
+        trends=_as_html(path / TRENDS),
         heads=shown,
         rows=[[_cell(row[head]) for head in shown] for row in rows],
         addresses=[_point(path, row.get(_POINT, ""), links) for row in rows],
         downloads=[
-            *(inside(path / name, path) for name in (TABLE, _TRENDS) if (path / name).exists()),
+            *(inside(path / name, path) for name in (TABLE, TRENDS) if (path / name).exists()),
             *(beside(file, path, links) for file in sorted(path.glob("maps/*"))),
         ],
         cite=citation(),
         version=__version__,
     )
-
-
-def _table(path: Path) -> tuple[list[str], list[dict[str, str]]]:
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            reader = csv.DictReader(file)
-            rows = [{key: value or "" for key, value in row.items()} for row in reader]
-            return list(reader.fieldnames or ()), rows
-    except FileNotFoundError:
-        text = f"contains no {TABLE}, expected the folder of a sweep"
-        raise CaseError([Problem(str(path.parent), text)]) from None
-
-
-def _about(path: Path) -> dict[str, Any]:
-    if not path.exists():
-        return {}
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as error:
-        raise CaseError([Problem(str(path), f"{error}, expected JSON")]) from None
-    return content if isinstance(content, dict) else {}
 
 
 def _maps(path: Path, quantities: Sequence[Mapping[str, Any]]) -> list[Picture]:
@@ -122,7 +95,7 @@ def _as_html(path: Path) -> str:
 
 def _point(path: Path, name: str, links: str) -> str:
     """Where the report of a point is; empty where it has none."""
-    file = path / "points" / name / REPORT
+    file = path / POINTS / name / REPORT
     return link(file, path, links) if name and file.exists() else ""
 
 

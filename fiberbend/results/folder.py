@@ -51,6 +51,12 @@ FIBERS = "fibers.npz"
 SNAPSHOTS = "snapshots"
 REPORT = "report.html"
 """The page with answer, curves and the body in space."""
+TABLE = "sweep.csv"
+"""By this file a folder is that of a sweep."""
+ABOUT_SWEEP = "sweep.json"
+TRENDS = "trends.md"
+POINTS = "points"
+"""Folder of a sweep with the run folders of its points."""
 LOG = "run.log"
 """What the run has said, a line at a time."""
 CHECKPOINT = "checkpoint.npz"
@@ -69,7 +75,7 @@ _OF_A_RUN = (
     *("pictures/pressure_*.png", "pictures/tip_*.png", "pictures/contact_*.png"),
     *("pictures/section_*.png", "pictures/cell_*.png", "pictures/fiber_*.png"),
 )
-_OF_A_SWEEP = ("sweep.csv", "sweep.json", "trends.md", "maps/*.png", "report.html")
+_OF_A_SWEEP = (TABLE, ABOUT_SWEEP, TRENDS, "maps/*.png", REPORT)
 _OF_CONTROL = ("control.json", "control.csv", "control.png", "filter.csv", "angle_filter.h")
 FILES = (*_OF_A_RUN, *(f"{BLOCKED}/{name}" for name in _OF_A_RUN), *_OF_A_SWEEP, *_OF_CONTROL)
 """What is written: no other name can be, and `overwrite` removes nothing else."""
@@ -261,50 +267,11 @@ class RunFolder:
                 if self._durable:
                     file.flush()
                     os.fsync(file.fileno())
-            # mkstemp makes files that only their owner can read.
-            os.chmod(part, 0o666 & ~_umask())
+            remains.let_others_read(part)
             os.replace(part, target)
         except BaseException:
             Path(part).unlink(missing_ok=True)
             raise
-
-
-def read_history(path: Path) -> list[dict[str, float | None]]:
-    """The rows of a history.csv; empty cells are None, counts are integers.
-
-    Columns of older versions have their present names.
-
-    Raises:
-        CaseError: a column that no version has written, a cell that is no number, or a row that is
-            cut off.
-    """
-    with path.open(newline="", encoding="utf-8") as file:
-        reader = csv.DictReader(file)
-        try:
-            names = {key: col.present_name(key) for key in reader.fieldnames or ()}
-        except KeyError as error:
-            wanted = "expected columns of history.csv, or a run of this version of fiberbend"
-            raise CaseError([Problem(str(path), f"{error.args[0]}, {wanted}")]) from None
-        rows = []
-        for row in reader:
-            where = f"{path}, line {reader.line_num}"
-            if None in row or None in row.values():
-                text = f"not as many cells as the {len(names)} columns, expected a whole row"
-                raise CaseError([Problem(where, text)])
-            rows.append(
-                {name: _number(row[key], name, where) for key, name in names.items() if name}
-            )
-        return rows
-
-
-def _number(text: str, name: str, where: str) -> float | None:
-    if not text:
-        return None
-    try:
-        value = float(text)
-    except ValueError:
-        raise CaseError([Problem(where, f"{name} is {text!r}, expected a number")]) from None
-    return int(value) if name in col.COUNTS and value.is_integer() else value
 
 
 def _make(path: Path, case: Case, overwrite: bool) -> FolderLock:
@@ -392,9 +359,3 @@ def _cell(value: Any) -> str:
 
 def _plain(value: Any) -> Any:
     return value.item() if hasattr(value, "item") else str(value)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

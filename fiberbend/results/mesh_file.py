@@ -77,7 +77,7 @@ def write_mesh_file(case: Case, path: Path, overwrite: bool = False) -> list[str
     try:
         os.replace(part, whole)
         remarks = write_mesh(model_mesh, whole)
-        os.chmod(whole, 0o666 & ~_umask())
+        remains.let_others_read(whole)
         os.replace(whole, path)
     except OSError as error:
         raise CaseError([Problem(str(path), f"{error.strerror}, expected a file")]) from None
@@ -123,9 +123,3 @@ def _for_all_of_it(case: Case, model: MeshedModel) -> str:
     mesh = case.mesh.model_copy(update={"symmetry": "full"})
     half = model.half(case.model_copy(update={"mesh": mesh}))[0]
     return "" if half else ', all of it with --set mesh.symmetry="full"'
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

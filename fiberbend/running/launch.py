@@ -9,7 +9,7 @@ import traceback
 from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
-from typing import Any, TextIO
+from typing import Any, TextIO, TypeVar, cast
 
 from fiberbend.process import ranks
 from fiberbend.process.ranks import rank as rank
@@ -132,18 +132,22 @@ def refuse(text: str, code: int) -> int:
     return code
 
 
-def on_rank_0(comm: Any, action: Callable[[], Any]) -> Any:
+T = TypeVar("T")
+
+
+def on_rank_0(comm: Any, action: Callable[[], T]) -> T:
     """Result of an action of rank 0 on every rank, or its error on every rank; collective."""
-    outcome: tuple[Any, Exception | None] = (None, None)
+    outcome: tuple[T | None, Exception | None] = (None, None)
     if comm.rank == 0:
         try:
             outcome = (action(), None)
         except Exception as error:
             outcome = (None, error)
-    value, problem = comm.bcast(outcome)
+    outcome = comm.bcast(outcome)
+    value, problem = outcome
     if problem is not None:
         raise problem
-    return value
+    return cast(T, value)
 
 
 def let_rank_0_speak() -> None:

@@ -111,7 +111,7 @@ def _solve(
     if model is None:
         from fiberbend.running.analytic import run_analytic
 
-        return on_rank_0(comm, lambda: run_analytic(case, folder, progress))  # type: ignore[no-any-return]
+        return on_rank_0(comm, lambda: run_analytic(case, folder, progress))
     if model.shared:
         whole = _whole(case)
         # asked now: later the half body takes of the memory that is free
@@ -127,7 +127,7 @@ def _solve(
             return run.go(False)
     # too small to share: one rank solves it
     alone = _Run(case, model, folder, progress, MPI.COMM_SELF, scratch)
-    return on_rank_0(comm, lambda: alone.go(False))  # type: ignore[no-any-return]
+    return on_rank_0(comm, lambda: alone.go(False))
 
 
 def _whole(case: Case) -> Case:
@@ -293,8 +293,7 @@ class _Run:
         if not (self.model.ends and section_guides(self.case)):
             return None
         self.progress.phase("section")
-        states: SectionStates | None = on_rank_0(self.comm, lambda: section_states(self.case))
-        return states
+        return on_rank_0(self.comm, lambda: section_states(self.case))
 
     def _recording(self, assembly: Assembly, again: bool) -> tuple[Recorder, Recording]:
         """The rows and what listens to the march, which goes on where the checkpoint is."""
@@ -355,11 +354,7 @@ class _Run:
             assert model is not None
             return _Run(beside, model, None, Progress(quiet=True), MPI.COMM_SELF).go(False)
 
-        check: Check = on_rank_0(
-            self.comm,
-            lambda: check_run(self.case, self.model, rows, solve, known),
-        )
-        return check
+        return on_rank_0(self.comm, lambda: check_run(self.case, self.model, rows, solve, known))
 
     def _wall(self, assembly: Assembly) -> dict[str, float]:
         seconds = {name: round(value, 3) for name, value in self.progress.wall_s.items()}

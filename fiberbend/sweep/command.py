@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from fiberbend.plan.memory import needed_mb, room, shortage
 from fiberbend.process.signals import Interrupted, stop_of
-from fiberbend.results.folder import REPORT, RunFolder
+from fiberbend.results.folder import ABOUT_SWEEP, REPORT, TABLE, TRENDS, RunFolder
 from fiberbend.running import launch
 from fiberbend.running.launch import FAILED
 from fiberbend.schema.problems import CaseError, Problem
@@ -199,21 +199,21 @@ def _write(
 
     rows, folder = collect(sweep, store), RunFolder(store.path)
     reported = quantities(sweep.report, rows)
-    folder.write_text("sweep.csv", as_csv(rows))
+    folder.write_text(TABLE, as_csv(rows))
     notes = as_markdown(sweep.title, sweep.columns, rows, reported, doubts)
-    folder.write_text("trends.md", notes)
+    folder.write_text(TRENDS, notes)
     for index, name in enumerate(sweep.report.history):
         if all(row.get(name) is None for row in rows):
             say(f"report.history.{index}: no point has a column {name}")
-    say(f"table: {store.path / 'sweep.csv'}")
-    say(f"trends: {store.path / 'trends.md'}")
+    say(f"table: {store.path / TABLE}")
+    say(f"trends: {store.path / TRENDS}")
     drawn: dict[str, list[str]] = {}
     if pictures:
         drawn = _draw(sweep, rows, reported, folder)
         if drawn:
             say(f"maps: {store.path / 'maps'}")
     about = as_json(sweep.title, sweep.columns, rows, reported, drawn, doubts)
-    folder.write_text("sweep.json", about)
+    folder.write_text(ABOUT_SWEEP, about)
 
     from fiberbend.report.sweep_page import write_sweep_report
     from fiberbend.running.outputs import page

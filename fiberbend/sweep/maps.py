@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.page import colormap, figure, literal, save
+from fiberbend.drawing.page import colormap, figure, fit, literal, save
 from fiberbend.states.snapshot import Target
 from fiberbend.sweep.fields import VariedField
 from fiberbend.sweep.quantities import ReportedQuantity, TableRow
@@ -115,8 +115,7 @@ def head(page: Any, title: str, label: str) -> None:
         shown = page.text(
             0.5, 1 - down / height, literal(text), ha="center", va="center", fontsize=size
         )
-        share = shown.get_window_extent().width / (0.96 * width)
-        shown.set_fontsize(size / max(share, 1.0))
+        fit(shown, 0.96 * width)
 
 
 def wrapped(text: str, width: int) -> list[str]:

@@ -23,10 +23,11 @@ from fiberbend.results.folder import (
     CHECKPOINT,
     CHECKPOINT_BEFORE,
     HISTORY_FILE,
+    POINTS,
     RUN_FILE,
     RunFolder,
-    read_history,
 )
+from fiberbend.results.reading import read_history
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.sweep.points import Point
 
@@ -80,7 +81,7 @@ class Store:
 
     def folder(self, point: Point) -> Path:
         """The run folder of a point."""
-        return self.path / "points" / point.name
+        return self.path / POINTS / point.name
 
     def result(self, point: Point) -> dict[str, Any] | None:
         """Content of run.json of a finished point, or None."""

@@ -42,6 +42,14 @@ def test_functions_are_documented_and_typed(name: str) -> None:
             assert f"{parameter.name}:" in text
 
 
+def test_the_style_of_a_plot_is_public() -> None:
+    style = inspect.signature(fiberbend.Result.plot).parameters["style"]
+    assert style.annotation == "Style | None"
+    assert fiberbend.Style("svg", width=85.0).inches[0] == pytest.approx(85 / 25.4)
+    with pytest.raises(ValueError, match="format 'gif', expected png or svg or pdf"):
+        fiberbend.Style("gif")  # type: ignore[arg-type]
+
+
 def test_import_is_quick() -> None:
     """It loads nothing but itself: until the command takes the signals, Ctrl-C is a traceback."""
     script = "import sys; old = {*sys.modules}; import fiberbend; print(*({*sys.modules} - old))"

@@ -22,8 +22,8 @@ from fiberbend.results.folder import (
     HISTORY_COLUMNS,
     RUN_KEYS,
     RunFolder,
-    read_history,
 )
+from fiberbend.results.reading import read_history
 from fiberbend.running.progress import Progress
 from fiberbend.schema.problems import CaseError
 

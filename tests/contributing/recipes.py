@@ -32,7 +32,7 @@ import fiberbend
 from fiberbend.plan.plan import make_plan
 from fiberbend.reader.json_schema import json_schema
 from fiberbend.reader.reader import read_case
-from fiberbend.results.folder import read_history
+from fiberbend.results.reading import read_history
 from fiberbend.schema.problems import CaseError
 
 assert Path(fiberbend.__file__).parents[1] == Path.cwd()

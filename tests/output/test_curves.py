@@ -13,7 +13,7 @@ import pytest
 from fiberbend import columns as col
 from fiberbend.case import convert
 from fiberbend.compare.check import crosscheck
-from fiberbend.drawing import curves, tip_path
+from fiberbend.drawing import curves
 from fiberbend.drawing.curves import contact_forces, draw_plots, plot_contact_force
 from fiberbend.drawing.style import Style
 from fiberbend.drawing.tip_path import plot_tip_path
@@ -27,21 +27,6 @@ from tests.output.test_labels import box
 
 PRESSURES = np.array([0.0, 10, 20, 30, 40, 50, 60])
 TOUCH = np.array([0.0, 0, 0, 1, 2, 3.5, 6]) / 5
-
-
-@pytest.fixture
-def drawn(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """The axes of every plot that is saved."""
-    axes: list[Any] = []
-    save = curves.save
-
-    def kept(page: Any, target: Any, style: Style) -> None:
-        axes.append(page.axes[0])
-        save(page, target, style)
-
-    monkeypatch.setattr(curves, "save", kept)
-    monkeypatch.setattr(tip_path, "save", kept)
-    return axes
 
 
 def into(folder: Path) -> Callable[[str, Callable[[Any], object]], None]:
@@ -318,7 +303,7 @@ def test_a_table_under_the_tip_is_in_sight(height: float, drawn: list[Any], tmp_
 
 def test_a_slanted_sheet_is_cut_by_the_plane_of_bending() -> None:
     sheet = Sheet((7.0, -50.0, 20.0), (0.3, 2.0, 0.5))
-    corners = tip_path._outline(sheet, np.array([100.0, 100.0]))
+    corners = sheet.cut(np.array([100.0, 100.0]))
     assert corners is not None
     for z, y in corners[:2]:
         offset = np.array([0.0, y, z]) - sheet.point
@@ -331,13 +316,12 @@ def test_a_slanted_sheet_is_cut_by_the_plane_of_bending() -> None:
 def test_obstacles_in_space_are_lines_on_their_surfaces() -> None:
     limits = np.array([[-30.0, -150.0, -50.0], [30.0, 10.0, 180.0]])
     bar, sheet, post = (
-        np.concatenate(tip_path._wires(OBSTACLES[name], limits))
-        for name in ("bar", "table", "post")
+        np.concatenate(OBSTACLES[name].wires(limits)) for name in ("bar", "table", "post")
     )
     assert np.hypot(bar[:, 1] + 45, bar[:, 2] - 60) == pytest.approx(25)
     assert sheet[:, 1] == pytest.approx(-60)
     assert post.min(axis=0) == pytest.approx((-9, -9, 173))
     assert post.max(axis=0) == pytest.approx((9, -1, 175))
     slanted = Sheet((7.0, -50.0, 20.0), (0.3, 2.0, 0.5))
-    lines = np.concatenate(tip_path._wires(slanted, limits))
+    lines = np.concatenate(slanted.wires(limits))
     assert (lines - slanted.point) @ slanted.normal == pytest.approx(0, abs=1e-9)

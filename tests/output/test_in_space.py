@@ -25,7 +25,8 @@ from fiberbend.drawing.space.rest import draw_rest, rest_image
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.reader.reader import parse_case
 from fiberbend.results.at_rest import body_at_rest, threads
-from fiberbend.results.folder import RunFolder, read_history
+from fiberbend.results.folder import RunFolder
+from fiberbend.results.reading import read_history
 from fiberbend.results.scenery import scenery
 from fiberbend.results.states import States
 from fiberbend.running.messages import on_state

@@ -13,10 +13,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fiberbend.drawing import curves, tip_path
 from fiberbend.drawing.curves import plot_pressure_angle, plot_tip_force
 from fiberbend.drawing.overlay import MODELS, Line, Overlay, Points
-from fiberbend.drawing.style import Style
 from tests.output.test_pictures import is_drawn
 
 LABELS = ("section model", "analytic (own rubber)", "analytic (area to winding)", "analytic (μ̄)")
@@ -27,21 +25,6 @@ ENDS = {
     "coincident": (187.0, 187.5, 188.0, 188.5),
     "far apart": (181.5, 800.0, 20.0, 3000.0),
 }
-
-
-@pytest.fixture
-def drawn(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """The axes of every plot that is saved."""
-    axes: list[Any] = []
-    save = curves.save
-
-    def kept(page: Any, target: Any, style: Style) -> None:
-        axes.append(page.axes[0])
-        save(page, target, style)
-
-    monkeypatch.setattr(curves, "save", kept)
-    monkeypatch.setattr(tip_path, "save", kept)
-    return axes
 
 
 def fan(ends: tuple[float, ...], bend: float = 1.0) -> Overlay:

@@ -18,7 +18,7 @@ from fiberbend.api.plot import PAPER, Plot, plot, select, write
 from fiberbend.api.runs import RunData, axis_label
 from fiberbend.cli import app, main
 from fiberbend.reader.yaml_file import load_yaml
-from fiberbend.results.folder import read_history
+from fiberbend.results.reading import read_history
 from fiberbend.schema.problems import CaseError
 from fiberbend.sweep.command import run_sweep
 from tests.conftest import ROOT
@@ -155,7 +155,7 @@ def test_files_of_a_run_are_never_replaced(runs: Path, tmp_path: Path) -> None:
 def test_runs_are_named_by_what_differs_between_their_cases(runs: Path) -> None:
     shown = select([runs / "thin", runs / "thick"])
     assert [curve.label for curve in shown.curves] == ["wall 2 mm", "wall 3 mm"]
-    axes = shown.draw(PAPER).axes[0]
+    axes: Any = shown.draw(PAPER).axes[0]
     assert covered(axes) == []
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["wall 2 mm", "wall 3 mm"]
     shown = select([runs / "thin", runs / "thick"], labels=["ours"])
@@ -380,7 +380,7 @@ def test_from_python(runs: Path, tmp_path: Path) -> None:
 def test_a_title_of_a_user_is_text(tmp_path: Path) -> None:
     cases: Sequence[dict[str, Any]] = [{"title": r"$\frac{broken$"}, {"title": "🐍 & <b>" * 20}]
     runs = [RunData("run", case, contact_rows()) for case in cases]
-    figure = plot(runs, target=tmp_path / "figure.pdf")
+    figure: Any = plot(runs, target=tmp_path / "figure.pdf")
     texts = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert texts[0] == r"\$\frac{broken\$"
     assert len(texts[1]) == 61
@@ -409,7 +409,7 @@ def test_examples_of_the_help_can_be_read(capsys: pytest.CaptureFixture[str]) ->
 def test_a_long_name_of_an_axis_is_written_smaller() -> None:
     name = "contact_" + 9 * "a_very_long_name_" + "area_mm2"
     rows = [{**row, name: row[col.PRESSURE]} for row in contact_rows()]
-    figure = select(RunData("run", {}, rows), y=name).draw(PAPER)
+    figure: Any = select(RunData("run", {}, rows), y=name).draw(PAPER)
     label = figure.axes[0].yaxis.label
     box = label.get_window_extent(figure.canvas.get_renderer())
     assert 0 < box.y0 < box.y1 < figure.bbox.height

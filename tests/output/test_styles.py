@@ -163,7 +163,7 @@ def test_sizes_that_are_none_are_refused(wrong: dict[str, Any]) -> None:
 def test_a_long_legend_makes_the_page_higher_where_no_height_is_given() -> None:
     crossing = [Curve(f"curve {i}", [0, 1, 1, 0], [i, 9 - i, i, 9 - i]) for i in range(9)]
     style = Style("svg", width=85, font_size=8)
-    figure = draw_overlay(crossing, "x", "y", style)
+    figure: Any = draw_overlay(crossing, "x", "y", style)
     width, height = 25.4 * figure.get_size_inches()
     assert width == pytest.approx(85)
     assert height > 0.75 * 85

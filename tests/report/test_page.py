@@ -260,8 +260,19 @@ def test_the_command_refuses_what_is_no_run(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["report", str(tmp_path)]) == 1
-    assert "contains no run and no sweep, expected the folder of one" in capsys.readouterr().err
+    assert "contains nothing, expected the folder of a run or a sweep" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_page_that_cannot_be_written_is_one_line(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    assert main(["report", str(folder), "--out", str(tmp_path / "file" / "page.html")]) == 1
+    error = capsys.readouterr().err
+    assert error.startswith(f"{tmp_path / 'file'}")
+    assert error.endswith("expected a file that can be written\n")
+    assert error.count("\n") == 1
 
 
 def test_open_starts_the_browser_that_is_asked_for(

@@ -28,8 +28,8 @@ from fiberbend.results.folder import (
     HISTORY_COLUMNS,
     RUN_KEYS,
     RunFolder,
-    read_history,
 )
+from fiberbend.results.reading import read_history
 from fiberbend.running.analytic import run_analytic
 from fiberbend.running.progress import Progress
 from materials.material import Material

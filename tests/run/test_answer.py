@@ -25,7 +25,7 @@ from fiberbend.answer.touch import touches
 from fiberbend.case.case import Case
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case, read_case
-from fiberbend.results.folder import read_history
+from fiberbend.results.reading import read_history
 from fiberbend.running.progress import Progress
 from fiberbend.running.runner import run_case
 from fiberbend.states.snapshot import ModelMesh, Snapshot

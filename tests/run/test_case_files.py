@@ -11,7 +11,7 @@ import pytest
 
 from fiberbend.cli import main
 from fiberbend.reader.reader import read_case
-from fiberbend.results.folder import read_history
+from fiberbend.results.reading import read_history
 from fiberbend.running.runner import run_case
 
 ROOT = Path(__file__).resolve().parents[2]

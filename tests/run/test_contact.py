@@ -17,7 +17,7 @@ from fiberbend import run
 from fiberbend.models.choice import meshed
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import as_case
-from fiberbend.results.folder import read_history
+from fiberbend.results.reading import read_history
 from fiberbend.running.assembly import assemble
 from fiberbend.schema.problems import CaseError
 from tests.conftest import MpiRun

@@ -24,8 +24,8 @@ from fiberbend.results.folder import (
     MESH,
     RUN_FILE,
     RunFolder,
-    read_history,
 )
+from fiberbend.results.reading import read_history
 from fiberbend.running.assembly import assemble
 from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording

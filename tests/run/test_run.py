@@ -16,7 +16,8 @@ import pytest
 
 from fiberbend import run
 from fiberbend.models.result import RunResult
-from fiberbend.results.folder import HISTORY_COLUMNS, RUN_KEYS, read_history
+from fiberbend.results.folder import HISTORY_COLUMNS, RUN_KEYS
+from fiberbend.results.reading import read_history
 from tests.conftest import MpiRun
 from tests.run.conftest import small, write_case
 
