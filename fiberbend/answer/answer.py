@@ -226,7 +226,7 @@ def _forces(case: Case, model: ModelKind, rows: Sequence[col.Row]) -> Iterator[E
     forces = ((col.ROOF_FORCE, "force of the roof", "N"), (col.AXIAL_FORCE, "axial force", "N"))
     for key, label, unit in (*forces, (col.MOMENT, "bending moment", "N mm")):
         if last.get(key) is not None:
-            yield Entry(label, quantity(last[key], unit))
+            yield Entry(label, quantity(last[key], unit), "at the end")
 
 
 def _force_name(case: Case, model: ModelKind) -> str:

@@ -73,6 +73,8 @@ def _place(actuator: Actuator, region: str, at: list[float]) -> str:
     elif height <= _ROUNDING:
         corner = across >= _CORNER * profile.half_width
         words.append("lower corner of the chamber" if corner else "lower face of the chamber")
+    elif abs(at[1] - profile.top) <= _ROUNDING and abs(across - profile.half_width) <= _ROUNDING:
+        words.append("upper corner of the chamber")
     elif height > (profile.top - profile.bottom) / 2 and across <= _CROWN * profile.half_width:
         words.append("crown")
     else:

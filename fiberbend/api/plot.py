@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from fiberbend import columns as col
 from fiberbend.api.runs import (
+    BLOCKED,
     RunData,
     SweepData,
     axis_label,
@@ -48,11 +49,13 @@ class Plot:
         x: columns along the lower axis, of one unit.
         y: columns along the left axis, of one unit.
         curves: runs first, measured points last.
+        remark: what the values are, in the name of the left axis; may be empty.
     """
 
     x: tuple[str, ...]
     y: tuple[str, ...]
     curves: tuple[Curve, ...]
+    remark: str = ""
 
     @property
     def name(self) -> str:
@@ -66,6 +69,8 @@ class Plot:
             CaseError: the page is too small for its text.
         """
         up = axis_label(self.y[0]) if len(self.y) == 1 else common_label(self.y)
+        if self.remark:
+            up = f"{words_of(self.y[0])}, {self.remark} ({unit_of(self.y[0])})"
         try:
             with own_style():
                 return draw_overlay(self.curves, axis_label(self.x[0]), up, style)
@@ -146,8 +151,12 @@ def select(
     if len(labels) > len(curves):
         text = f"{len(labels)} labels, expected at most {len(curves)}, one for each curve"
         raise CaseError([Problem("labels", text)])
+    remark = ""
+    if up == (BLOCKED,):
+        models = sorted({model for sweep in sweeps for model in sweep.force_models})
+        remark = models[0] if len(models) == 1 else ""
     named = [dataclasses.replace(c, label=text) for c, text in zip(curves, labels, strict=False)]
-    return Plot(across, up, (*named, *curves[len(named) :]))
+    return Plot(across, up, (*named, *curves[len(named) :]), remark)
 
 
 def write(figure: Figure, target: Path, style: Style) -> None:

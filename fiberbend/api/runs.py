@@ -17,7 +17,9 @@ from fiberbend.results.reading import read_history, read_table
 from fiberbend.schema.paths import differences, value_at
 from fiberbend.schema.problems import CaseError, Problem, found
 from fiberbend.sweep.fields import labels
+from fiberbend.sweep.quantities import FORCE_MODEL
 
+BLOCKED = "blocked_force_N"
 _FIRST, _STATUS = "point", "status"
 """Columns of sweep.csv before and after those of the varied fields."""
 _BESIDE = ("title", "output", "compare")
@@ -25,6 +27,8 @@ _BESIDE = ("title", "output", "compare")
 _MOST = 2
 """So many differences at most name a run."""
 _FORCE = re.compile(r"contact_(.+)_force_N")
+_AT = re.compile(r"(.*pressure|.*angle)_([-+.\de]+)(deg|kPa)_(?:kPa|deg)")
+"""Columns of a sweep's table at an asked state: "pressure_360deg_kPa"."""
 _WORDS = {
     col.PRESSURE: "pressure P",
     col.ANGLE: "bending angle θ",
@@ -158,6 +162,11 @@ class SweepData:
             name for name in self.header if any(_number(row, name) is not None for row in self.rows)
         ]
 
+    @property
+    def force_models(self) -> list[str]:
+        """What the blocked forces of its points are."""
+        return sorted({row[FORCE_MODEL] for row in self.rows if row.get(FORCE_MODEL)})
+
     def curves(self, x: str, y: str) -> dict[str, list[tuple[float, float]]]:
         """A column over another one, a curve for each group of points that differ in x alone.
 
@@ -169,11 +178,14 @@ class SweepData:
             for name in self.varied
             if name not in (x, y) and len({row[name] for row in self.rows}) > 1
         ]
+        # forces of a section and of a closed form are no curve
+        kinds = [FORCE_MODEL] if y == BLOCKED and len(self.force_models) > 1 else []
         groups: dict[str, list[tuple[float, float]]] = {}
         for row in self.rows:
             a, b = _number(row, x), _number(row, y)
             if a is not None and b is not None:
-                shared = ", ".join(_described(name, row[name]) for name in rest)
+                parts = [_described(name, row[name]) for name in rest]
+                shared = ", ".join([*parts, *(row.get(name, "") for name in kinds)])
                 groups.setdefault(shared, []).append((a, b))
         return {shared: sorted(points) for shared, points in groups.items()}
 
@@ -271,8 +283,10 @@ def words_of(name: str) -> str:
     """A column in words, without its unit: "chamber volume"."""
     end = name.rsplit("_", 1)[-1]
     stem = name.removesuffix(f"_{end}") if end in _UNITS else name
-    force = _FORCE.fullmatch(name)
+    force, at = _FORCE.fullmatch(name), _AT.fullmatch(name)
     words = f"force of the {force[1]}" if force else _WORDS.get(name, stem)
+    if at:
+        words = f"{at[1]} at {at[2]}{'°' if at[3] == 'deg' else ' kPa'}"
     return words.replace("_", " ")
 
 

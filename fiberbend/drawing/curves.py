@@ -194,7 +194,7 @@ def plot_contact_force(
     reason: str | None = None,
     style: Style = DEFAULT,
 ) -> None:
-    """Force of every obstacle on the body against pressure, with the first touch marked.
+    """Force of every obstacle on the body against pressure, with the first step in touch marked.
 
     Args:
         rows: rows of the history with pressure_kPa and forces of obstacles.
@@ -234,7 +234,7 @@ def plot_contact_force(
     free = Room(axes, style)
     legend(axes, style, free)
     for contact, touch in touches:
-        text = f"{contact.name}: first touch at {contact.pressure[touch]:.3g} kPa"
+        text = f"{contact.name}: touches by {contact.pressure[touch]:.3g} kPa"
         free.write(text, contact.pressure[touch], contact.force[touch])
     for contact in forces:
         if contact.acts:

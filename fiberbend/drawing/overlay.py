@@ -24,7 +24,8 @@ _DASHES = ("-", "--", "-.", ":")
 _MARKS = "xv+^*"
 _DOTTED = 12
 """Load steps of a curve that are still shown as dots."""
-_LABEL = 60
+_LABEL, _TAIL = 60, 32
+"""The most letters of a label, and those of its end."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -111,6 +112,8 @@ def draw_overlay(curves: Sequence[Curve], across: str, up: str, style: Style) ->
 def _overlay(curves: Sequence[Curve], across: str, up: str, style: Style) -> Figure:
     scale = style.scale
     page, axes = new_axes(style, "", None, literal(across), literal(up))
+    names = _names([curve.label for curve in curves])
+    curves = [dataclasses.replace(c, label=name) for c, name in zip(curves, names, strict=True)]
     runs = [curve for curve in curves if not curve.measured]
     points = [curve for curve in curves if curve.measured]
     for index, curve in enumerate(runs):
@@ -118,11 +121,11 @@ def _overlay(curves: Sequence[Curve], across: str, up: str, style: Style) -> Fig
         # where colours come again, the strokes are others
         dashes = _DASHES[(index % len(_COLORS) + index // len(_COLORS)) % len(_DASHES)]
         dots = {"marker": "o", "markersize": 4 * scale} if len(curve.up) <= _DOTTED else {}
-        axes.plot(curve.across, curve.up, dashes, **look, **dots, label=_name(curve.label))
+        axes.plot(curve.across, curve.up, dashes, **look, **dots, label=curve.label)
     for index, curve in enumerate(points):
         mark = {"color": "black", "markersize": 7 * scale, "markeredgewidth": 1.2 * scale}
         kind = _MARKS[index % len(_MARKS)]
-        axes.plot(curve.across, curve.up, kind, **mark, zorder=4, label=_name(curve.label))
+        axes.plot(curve.across, curve.up, kind, **mark, zorder=4, label=curve.label)
     for change, of in ((axes.set_xlim, "across"), (axes.set_ylim, "up")):
         change(*_span(np.concatenate([getattr(curve, of) for curve in curves])))
     fit(axes, style)
@@ -131,8 +134,20 @@ def _overlay(curves: Sequence[Curve], across: str, up: str, style: Style) -> Fig
     return page
 
 
-def _name(label: str) -> str:
-    return literal(label if len(label) <= _LABEL else f"{label[:_LABEL]}…")
+def _names(labels: Sequence[str]) -> list[str]:
+    """Labels of a legend, long ones with their beginning and their end; no two become alike."""
+    short = [label if len(label) <= _LABEL else _shortened(label) for label in labels]
+    return [
+        literal(f"{number}: {text}" if short.count(text) > 1 else text)
+        for number, text in enumerate(short, start=1)
+    ]
+
+
+def _shortened(label: str) -> str:
+    """The words at both ends of a label: titles begin alike, and columns end it."""
+    first = label[: _LABEL - _TAIL]
+    last = label[-_TAIL:]
+    return f"{first.rsplit(' ', 1)[0]} … {last.split(' ', 1)[-1]}"
 
 
 def _span(values: Floats) -> tuple[float, float]:

@@ -164,8 +164,7 @@ class NewCase:
     def _requests(self) -> str:
         if self.pressure:
             steps = _halves(self.pressure, "pressure")
-            stop = "" if self.blocked else "\n  stop_at_angle: 360 deg   # the caps meet near here"
-            return f"at_pressures: [{steps}]   # with pictures and fields{stop}"
+            return f"at_pressures: [{steps}]   # with pictures and fields"
         return f"at_angles: [{_halves(self.angle, 'angle')}]   # with pictures and fields"
 
 

@@ -17,6 +17,8 @@ _READ = (
 )
 """Columns that a user reads, where they have values other than zero."""
 _OBSTACLE = ("_y_N", "_z_N")
+_ROUND_OFF = 1e-12
+"""Part of a column's greatest value that no solver keeps."""
 _PLANNED = {
     *("effects", "model", "half", "elements", "unknowns", "error"),
     *("left out", "not used", "winding"),
@@ -92,7 +94,7 @@ def read_columns(rows: Sequence[Mapping[str, Any]]) -> list[str]:
 
 
 def steps(rows: Sequence[Mapping[str, Any]], names: Sequence[str]) -> Table:
-    """Columns of a history, a line a step.
+    """Columns of a history, a line a step; round-off beside a column's greatest value is 0.
 
     Args:
         rows: of the history.
@@ -102,7 +104,11 @@ def steps(rows: Sequence[Mapping[str, Any]], names: Sequence[str]) -> Table:
     for name in names:
         known = col.column(name)
         heads.append(Head(name, known.unit, known.meaning))
-    return Table(heads, [[_number(row.get(name)) for name in names] for row in rows])
+    least = {
+        name: _ROUND_OFF * max((abs(float(row[name])) for row in rows if row.get(name)), default=0)
+        for name in names
+    }
+    return Table(heads, [[_number(row.get(name), least[name]) for name in names] for row in rows])
 
 
 def all_columns(rows: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -118,10 +124,11 @@ def in_words(value: Any) -> str:
     return _inner(value)
 
 
-def _number(value: Any) -> str:
+def _number(value: Any, least: float) -> str:
+    """A cell; what is smaller than the least is 0."""
     if value is None or value == "":
         return ""
-    number = float(value) + 0.0
+    number = 0.0 if abs(float(value)) < least else float(value) + 0.0
     text = f"{number:.0f}" if number == round(number) and abs(number) < 1e6 else f"{number:.5g}"
     return text.replace("-", "−")
 

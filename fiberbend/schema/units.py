@@ -14,7 +14,7 @@ from decimal import Decimal
 from typing import Any
 
 _NUMBER = re.compile(
-    r"([+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|nan|inf(?:inity)?))\s*(\S.*)",
+    r"([+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|nan|inf(?:inity)?))\s*([^\s0-9.].*)",
     re.IGNORECASE,
 )
 _UNIT = re.compile(

@@ -12,7 +12,7 @@ import numpy as np
 from fiberbend.drawing.page import colormap, figure, fit, literal, save
 from fiberbend.states.snapshot import Target
 from fiberbend.sweep.fields import VariedField
-from fiberbend.sweep.quantities import ReportedQuantity, TableRow
+from fiberbend.sweep.quantities import FAILED, ReportedQuantity, TableRow
 from fiberbend.sweep.store import NOT_RUN
 from fiberbend.sweep.trends import in_words
 from geometry.mesh.data import Floats
@@ -27,8 +27,6 @@ _TOP, _BOTTOM = 92, 44
 _HEAD, _FOOT = 66, 66
 _MOST_LABELS = 12
 """More values of a field than this are drawn with contours instead of a number in each cell."""
-FAILED = "failed"
-"""Status of a point that failed."""
 LATER = "failed later"
 """What a map says of a point that failed beyond a state that it has reached."""
 _LEVEL = 1e-6

@@ -23,6 +23,8 @@ STRETCH = "stretch"
 """Kind of the quantity that every sweep has, asked for or not."""
 FORCE = "blocked-force"
 """Kind of the blocked force."""
+FAILED = "failed"
+"""Status of a point."""
 FORCE_MODEL = "blocked_force_model"
 """Column that says what the blocked force of a point is."""
 LINES = {lines.ZERO_FIT: "zero_fit", lines.PAPER: "paper", lines.WINDING: "winding"}
@@ -38,6 +40,8 @@ CAPTIONS = {
 _DRAWN = ("zero_fit", "paper")
 _PLAIN = str.maketrans({"°": "deg", "²": "2", "³": "3", " ": None})
 """From a unit to its letters in the name of a column."""
+_AT_END = " at the end"
+"""End of the label of what a run has at its end."""
 _LEVEL = 1e-6
 """A relative spread of a column below which it is the same at every point."""
 
@@ -80,9 +84,13 @@ class ReportedQuantity:
         return f"{self.label} ({self.unit})" if self.unit else self.label
 
     def value(self, row: Mapping[str, Any]) -> float | None:
-        """Its value at a point, or None."""
-        found = row.get(self.column)
+        """Its value at a point, or None: not known, or no state to compare with the others."""
+        found = row.get(self.column) if self.compares(row) else None
         return None if found is None else float(found)
+
+    def compares(self, row: Mapping[str, Any]) -> bool:
+        """Whether a point counts: what failed ended somewhere else than the others."""
+        return not (self.label.endswith(_AT_END) and row.get("status") == FAILED)
 
 
 def quantities(report: ReportSpec, rows: Sequence[TableRow]) -> list[ReportedQuantity]:
@@ -165,7 +173,7 @@ def _history(report: ReportSpec, run: str) -> Iterator[ReportedQuantity]:
     for name in report.history:
         unit = col.column(name).unit
         words = name.removesuffix(f"_{unit.translate(_PLAIN)}").replace("_", " ")
-        yield ReportedQuantity("history", f"end_{name}", f"{words} at the end", unit, {run: name})
+        yield ReportedQuantity("history", f"end_{name}", f"{words}{_AT_END}", unit, {run: name})
 
 
 def _ends(run: str, rows: Sequence[TableRow]) -> Iterator[ReportedQuantity]:
@@ -176,11 +184,11 @@ def _ends(run: str, rows: Sequence[TableRow]) -> Iterator[ReportedQuantity]:
     ):
         values = [row[name] for row in rows if row.get(name) is not None]
         if values and max(values) - min(values) > _LEVEL * max(map(abs, values)):
-            yield ReportedQuantity(kind, f"end_{kind}", f"{kind} at the end", unit, {run: name})
+            yield ReportedQuantity(kind, f"end_{kind}", f"{kind}{_AT_END}", unit, {run: name})
 
 
 def _stretch(report: ReportSpec, run: str) -> ReportedQuantity:
-    at = f" at {math.degrees(max(report.angles, key=abs)):.6g}°" if report.angles else " at the end"
+    at = f" at {math.degrees(max(report.angles, key=abs)):.6g}°" if report.angles else _AT_END
     found = {run: "greatest_stretch", CAPTIONS["uniform"]: "paper_stretch"}
     return ReportedQuantity(STRETCH, STRETCH, f"greatest axial stretch λ{at}", "", found)
 

@@ -147,7 +147,10 @@ def _changes(found: Sequence[Group], name: str, between: str) -> str:
     values = [y for group in found if _whole(y := group.values(name))]
     if not values:
         return ""
-    changes = [100 * (y[-1] / y[0] - 1) if y[0] else math.inf for y in values]
+    # of the first value's size: a vacuum that grows is a pressure that falls
+    changes = [
+        100 * (y[-1] - y[0]) / abs(y[0]) if y[0] else math.copysign(math.inf, y[-1]) for y in values
+    ]
     ends = dict.fromkeys(f"{bound:+.1f} %" for bound in (min(changes), max(changes)))
     return between.join(ends).replace("-", "−")
 
@@ -205,13 +208,16 @@ def as_markdown(
     counts = Counter(row["status"] for row in rows)
     states = ", ".join(f"{number} {status}" for status, number in counts.items())
     blocks = [f"# {title or 'Sweep'}\n\n{len(rows)} points: {states}.\n"]
-    along = [(column, groups(columns, rows, column)) for column in columns if column.numeric]
-    along = [(column, found) for column, found in along if found]
+    signs = False
     for quantity in quantities:
+        whole = [row for row in rows if quantity.compares(row)]
+        along = [(column, groups(columns, whole, column)) for column in columns if column.numeric]
+        along = [(column, found) for column, found in along if found]
         blocks.append(_in_words(quantity, columns, rows, along))
         if along:
             blocks.append(_signs(quantity, along))
-    if along:
+            signs = True
+    if signs:
         blocks.append(_KEY)
     if notes:
         blocks.append("".join(f"- {note}\n" for note in notes))

@@ -64,6 +64,14 @@ def test_every_section_has_a_valid_case(section: str, tmp_path: Path) -> None:
     assert all(getattr(case.actuator, name) for name in chamber_dimensions(section))
 
 
+def test_a_pressure_is_all_that_a_case_asks_for(tmp_path: Path) -> None:
+    """An angle to stop at counts as asked for: where it is not reached, a run is not converged."""
+    case = read_case(case_of(tmp_path / "a.yaml", "--pressure", "7.5 psi"))
+    assert case.output.stop_at_angle is None
+    assert case.output.at_angles == ()
+    assert len(case.output.at_pressures) == 2
+
+
 def test_a_blocked_one_asks_for_its_force(tmp_path: Path) -> None:
     case = read_case(case_of(tmp_path / "a.yaml", "--blocked", "--pressure", "80kPa"))
     assert case.straight

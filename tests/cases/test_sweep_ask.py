@@ -348,6 +348,29 @@ def test_a_group_without_an_end_has_no_change(read: Read) -> None:
     assert "| wall 1, 2, 3 mm | 2 | ↑ (+50.0 %) |" in text
 
 
+def test_a_vacuum_that_grows_is_a_pressure_that_falls(read: Read) -> None:
+    sweep = read(grid(report={"angles": ["45 deg"]}))
+    rows = rows_of(sweep)
+    for row in rows:
+        row["pressure_45deg_kPa"] = -10.0 * row["wall_mm"]
+    text = as_markdown("", sweep.columns, rows, quantities(sweep.report, rows))
+    assert "- wall 1 to 3 mm: falls in both groups; from first to last −200.0 %." in text
+
+
+def test_the_end_of_a_point_that_failed_is_no_answer(read: Read) -> None:
+    """It is somewhere else than that of the others, however great the value is there."""
+    sweep = read(grid(report={"history": ["chamber_mm3"], "angles": ["45 deg"]}))
+    rows = rows_of(sweep, pressure_45deg_kPa=1.0, chamber_mm3=100.0)
+    rows[2] |= {"status": "failed", "chamber_mm3": 9e9, "pressure_45deg_kPa": 3.0}
+    found = {quantity.label: quantity for quantity in quantities(sweep.report, rows)}
+    end, at = found["chamber at the end"], found["pressure at 45°"]
+    assert end.value(rows[2]) is None
+    assert at.value(rows[2]) == 3.0, "a state that it has reached counts"
+    text = as_markdown("", sweep.columns, rows, list(found.values()))
+    assert "9e+09" not in text
+    assert not any("9e+09" in line for line in in_brief(sweep.columns, rows, [end]))
+
+
 def test_without_a_question_the_ends_lead(read: Read) -> None:
     sweep = read(grid())
     rows = rows_of(sweep, end_angle_deg=90.0, greatest_stretch=1.0)

@@ -79,3 +79,10 @@ def test_show_writes_what_one_would_write() -> None:
     assert show(0.2, "pressure") == "200 kPa"
     assert show(parse("90 deg", "angle"), "angle") == "90 deg"
     assert show(1.1e-9, "density") == "1.1 g/cm^3"
+
+
+def test_a_number_without_a_unit_is_refused_as_that() -> None:
+    """No digit of it is taken for a unit."""
+    for text in ("10", "2.50", "-.5"):
+        with pytest.raises(ValueError, match=r'"200 kPa"$'):
+            parse(text, "pressure")

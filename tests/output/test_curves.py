@@ -159,7 +159,7 @@ def test_first_touch_is_marked_where_it_is(drawn: list[Any], tmp_path: Path) -> 
     plot_contact_force(contact_rows(**BAR), tmp_path / "force.png")
     (axes,) = drawn
     texts = {text.get_text(): text.xy for text in axes.texts}
-    assert texts["bar: first touch at 30 kPa"] == (30.0, pytest.approx(5**0.5 * 0.2))
+    assert texts["bar: touches by 30 kPa"] == (30.0, pytest.approx(5**0.5 * 0.2))
     labels = [line.get_label() for line in axes.lines if not line.get_label().startswith("_")]
     assert labels == ["bar, whole force", "bar along y", "bar along z"]
 

@@ -14,6 +14,7 @@ import yaml
 from fiberbend.cli import main
 from fiberbend.commands import opening
 from fiberbend.reader.reader import parse_case
+from fiberbend.report.case_tables import steps
 from fiberbend.report.run_page import report, rows_of_states, write_report
 from fiberbend.results.folder import REPORT, RunFolder
 from tests.report.folders import CASE, HOSTILE, bent_folder, case, rows, run_of
@@ -304,3 +305,13 @@ def test_help_has_examples(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["report", "--help"]) == 0
     _, _, examples = capsys.readouterr().out.partition("Examples:")
     assert "fiberbend report runs/section --open" in examples
+
+
+def test_round_off_is_nothing_beside_a_column() -> None:
+    angles = [-1.4e-13, 18.6, 40.0]
+    table = steps(
+        [{"step": i, "angle_deg": a, "volume_error": 1e-15 * i} for i, a in enumerate(angles)],
+        ["angle_deg", "volume_error"],
+    )
+    assert [line[0] for line in table.rows] == ["0", "18.6", "40"]
+    assert [line[1] for line in table.rows] == ["0", "1e−15", "2e−15"]

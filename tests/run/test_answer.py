@@ -361,6 +361,18 @@ def test_strain_of_a_bar_that_is_pulled_is_exact() -> None:
     assert strain["place"].startswith("sheath, crown")
 
 
+WINDING = {"winding": {"pattern": "double-helix", "pitch": "3 mm", "fiber": "kevlar"}}
+
+
+def test_the_upper_corner_of_a_box_is_named(tmp_path: Path) -> None:
+    quiet = {"pictures": False, "fields": False, "report": True, "at_angles": ["40 deg"]}
+    effects = [{"pressure": {"angle": "40 deg"}}, WINDING]
+    case = case_of("rectangle", effects=effects, output=quiet)
+    strain = run_case(case, tmp_path / "run").run["greatest_strain"]
+    assert (strain["x_mm"], strain["y_mm"]) == pytest.approx((8.0, 10.0))
+    assert strain["place"] == "wall, upper corner of the chamber"
+
+
 # --- of runs ----------------------------------------------------------------------------------
 
 
