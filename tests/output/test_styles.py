@@ -184,7 +184,9 @@ def test_long_names_of_a_legend_stay_apart() -> None:
     """A title and what a column is: the end says which curve it is."""
     title = "An actuator whose title is so long that no legend can have all of it"
     labels = [f"{title}, pressure P", f"{title}, analytic", f"{title}, analytic"]
-    figure = draw_overlay([Curve(text, [0, 1], [0, 1]) for text in labels], "x", "y", Style("svg"))
+    figure: Any = draw_overlay(
+        [Curve(text, [0, 1], [0, 1]) for text in labels], "x", "y", Style("svg")
+    )
     shown = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
     assert len(set(shown)) == 3
     assert shown[0].endswith(", pressure P")
