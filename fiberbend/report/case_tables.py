@@ -16,6 +16,7 @@ _READ = (
     *(col.TIP_FORCE, col.ROOF_FORCE, col.TWIST, col.SIDE_ANGLE, col.AXIS_STRETCH),
 )
 """Columns that a user reads, where they have values other than zero."""
+_NOTHING = 1e-9
 _OBSTACLE = ("_y_N", "_z_N")
 _PLANNED = {
     *("effects", "model", "half", "elements", "unknowns", "error"),
@@ -102,7 +103,9 @@ def steps(rows: Sequence[Mapping[str, Any]], names: Sequence[str]) -> Table:
     for name in names:
         known = col.column(name)
         heads.append(Head(name, known.unit, known.meaning))
-    return Table(heads, [[_number(row.get(name)) for name in names] for row in rows])
+    return Table(
+        heads, [[_number(row.get(head.name), head.unit) for head in heads] for row in rows]
+    )
 
 
 def all_columns(rows: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -118,10 +121,12 @@ def in_words(value: Any) -> str:
     return _inner(value)
 
 
-def _number(value: Any) -> str:
+def _number(value: Any, unit: str) -> str:
     if value is None or value == "":
         return ""
-    number = float(value) + 0.0
+    number = float(value)
+    # what round-off leaves of a zero angle or length is none; a residual has no unit
+    number = 0.0 if unit and abs(number) < _NOTHING else number
     text = f"{number:.0f}" if number == round(number) and abs(number) < 1e6 else f"{number:.5g}"
     return text.replace("-", "−")
 
