@@ -240,10 +240,7 @@ class Blueprint:
             axes.plot(z, y, **_THREAD)
 
     def _strip(self, sheet: Sheet) -> Floats:
-        """Corners of the strip below the body that stands for a plane, (4, 3), mm; none if edgeless.
-
-        A plane that is parallel to the section is a strip across.
-        """
+        """Corners of the strip that stands for a plane, (4, 3), mm; none for one seen face on."""
         along = np.array([-sheet.normal[2], sheet.normal[1]])
         size = float(np.linalg.norm(along))
         if size == 0:

@@ -124,6 +124,17 @@ def test_scale_is_that_of_the_image(renderer: Renderer) -> None:
 # --- texts -----------------------------------------------------------------------------------
 
 
+def test_a_text_does_not_cross_the_outline_of_an_obstacle() -> None:
+    taken, grey = np.zeros((100, 200), dtype=bool), np.zeros((100, 200), dtype=bool)
+    grey[:, 100:] = True
+    near, size = np.array([102.0, 50.0]), (40, 10)
+    place = free_place(taken, near, size, grey)
+    assert abs(place[0] - 100) > 18
+    assert abs(place[0] - 100) < 26
+    # half of it on either side where there is no other place
+    assert free_place(taken, near, (190, 90), grey) == pytest.approx([105, 50], abs=6)
+
+
 def test_a_text_finds_the_nearest_free_place() -> None:
     taken = np.zeros((200, 300), dtype=bool)
     assert free_place(taken, np.array([100.0, 60.0]), (40, 10)) == pytest.approx([100, 60])
