@@ -135,7 +135,7 @@ def test_lines_of_a_single_map_are_beside_each_other() -> None:
     def size(panels: dict[str, Any], lines: dict[str, str]) -> tuple[int, int]:
         quantity = ReportedQuantity("angle", "a", "angle", "°", lines)
         file = io.BytesIO()
-        map_page("A sweep", axes, panels, quantity, {c: (0.0, 6.0) for c in lines}, file)
+        map_page("A sweep", axes, panels, quantity, dict.fromkeys(lines, (0.0, 6.0)), file)
         return Image.open(file).size
 
     one, both = {"section model": "own"}, {"section model": "own", "closed form": "form"}
