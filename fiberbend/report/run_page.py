@@ -302,10 +302,18 @@ def _side(
         return None
     text = "Path of the tip."
     if space is not None:
-        what = "its plane x = 0 as seen from the side" if _leaves_plane(rows) else "cut at x = 0"
-        text = f"Path of the tip, and the actuator {what}."
+        aside = _leaves_plane(rows)
+        text = (
+            "Path of the tip, and the actuator's plane x = 0, both seen from the side."
+            if aside
+            else "Path of the tip, and the actuator cut at x = 0."
+        )
         if space.stack is not None:
-            text += " Dashed lines stand for the tip cap, which this model leaves out."
+            text += (
+                " The path is that of the tip cap's end; this model draws no caps."
+                if aside
+                else " Dashed lines stand for the tip cap, which this model leaves out."
+            )
     return Picture(data_address(content, "side.svg"), text)
 
 

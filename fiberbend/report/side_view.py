@@ -84,7 +84,9 @@ def side_view(
     for (_, loops), color in zip(drawn, colors, strict=True):
         _draw_outline(axes, loops, color)
     axes.plot(*path.T, ".-", color=_TIP, linewidth=1.2, markersize=5, zorder=4)
-    cap = case.actuator.cap if space is not None and space.stack is not None else 0.0
+    stacked = space is not None and space.stack is not None
+    aside = any(row.get(col.TIP_X) for row in rows)
+    cap = case.actuator.cap if stacked and not aside else 0.0
     _draw_tips(axes, rows, [kept.step for kept, _ in drawn], colors, cap)
     _legend(page, names, [*colors, _TIP], columns)
     content = io.BytesIO()
@@ -283,7 +285,7 @@ def _draw_tips(
         if row.get(col.TIP_Z) is None or row.get(col.TIP_Y) is None:
             continue
         tip = np.array([row[col.TIP_Z], row[col.TIP_Y]])
-        if cap and not row.get(col.TIP_X):
+        if cap:
             angle = np.radians(row[col.ANGLE])
             start = tip - cap * np.array([np.cos(angle), -np.sin(angle)])
             axes.plot(*np.stack([start, tip]).T, "--", color=color, linewidth=1.2, zorder=3)
