@@ -139,8 +139,7 @@ class Blueprint:
 
     def _side_limits(self) -> Limits:
         """Least and greatest z and y that the view from the side shows, mm."""
-        layers, end = self.layers, self.length + self.cap
-        bottom, top = layers[0][1], layers[-1][2]
+        bottom, top = self.layers[0][1], self.layers[-1][2]
         high = top - bottom
         ends = self._extent()
         return (
@@ -149,7 +148,7 @@ class Blueprint:
                 min(self._row - 0.4 * high, bottom - 1.1 * high, ends[0][1]),
             ),
             (
-                max(end + 2.6 * high, ends[1][0]),
+                max(self._tip + 2.6 * high, ends[1][0]),
                 max(self._over + 0.35 * high, top + 0.55 * high, ends[1][1]),
             ),
         )
@@ -157,6 +156,11 @@ class Blueprint:
     @property
     def _boxes(self) -> list[Box]:
         return [shape for shape in self.scenery.shapes.values() if isinstance(shape, Box)]
+
+    @property
+    def _tip(self) -> float:
+        """End of the body and of what stands under it, along z."""
+        return max([self.length + self.cap, *(box.high[2] for box in self._boxes)])
 
     @property
     def _row(self) -> float:
@@ -196,7 +200,7 @@ class Blueprint:
             _arrow(axes, (at, above), (at + self.pitch, above))
             axes.text(at + 1.5 * self.pitch, above, f"pitch {self.pitch:g} mm", **_TEXT)
         curl = {"arrowstyle": "-|>", "connectionstyle": "arc3,rad=-0.45", "color": "#c0392b"}
-        tip = end + 0.25 * high
+        tip = self._tip + 0.25 * high
         axes.annotate("", (tip, bottom - high), (tip, top), arrowprops=curl | {"linewidth": 1.6})
         axes.text(tip + 0.7 * high, bottom, "θ > 0", **_TEXT | {"color": "#c0392b"}, va="center")
         root = {"color": _INK, "linewidth": 2.0}
