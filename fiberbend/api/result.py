@@ -365,7 +365,8 @@ class Result(RunResult):
                     folder.write_case(self.case)
                     folder.write_history(self.rows)
                     folder.write_run(**self.run)
-                page = report(path, self.case, self.rows, self.run, links_to(self.folder, target))
+                links, loose = links_to(self.folder, target), self.folder is None
+                page = report(path, self.case, self.rows, self.run, links, loose)
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_text(page, encoding="utf-8")
         return target

@@ -11,22 +11,30 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.page import COLORS, NAMES, figure, literal, nice_above, save
+from fiberbend.drawing.page import COLORS, NAMES, figure, heading, nice_above, save
 from fiberbend.drawing.renderer import Renderer
-from fiberbend.drawing.space.obstacles import Scenery
-from fiberbend.drawing.space.panel import Panel
-from fiberbend.drawing.space.rest import rest_image, write_on
+from fiberbend.drawing.space.obstacles import COLOR, Scenery
+from fiberbend.drawing.space.panel import STRIP, Panel
+from fiberbend.drawing.space.rest import Rest, rest_image, write_on
 from fiberbend.states.obstacles import Bar, Box, Sheet
 from fiberbend.states.snapshot import ModelMesh, Target
 from geometry.mesh.data import Floats, MeshData, facet_positions
 
-SIZE = (1400, 1000)
-"""Width and height of the page in pixels."""
-_OBSTACLE, _INK = "#b5651d", "#303030"
+WIDTH = 1400
+"""Of the page, pixels; its height follows from what is drawn."""
+_TITLE, _LEGEND, _GAP, _EDGE = 50, 48, 16, 36
+"""Heights of title and legend, room between drawings, and beside them, pixels."""
+_SIDE_TALLEST, _CUT_WIDTH, _CUT_TALLEST = 560, 500, 400
+_INK = "#303030"
+_RIGID: dict[str, Any] = {"facecolor": COLOR, "edgecolor": "#707070", "hatch": "////"}
+_SHEET = 3.0
+"""Thickness in mm of the strip that stands for a plane."""
 _THREAD: dict[str, Any] = {"color": COLORS["fiber"], "linewidth": 0.5, "alpha": 0.6}
 _LINE: dict[str, Any] = {"color": _INK, "linewidth": 0.9}
 _TEXT: dict[str, Any] = {"fontsize": 11, "color": _INK, "zorder": 8}
 _MARGIN = 2.0
+Limits = tuple[tuple[float, float], tuple[float, float]]
+"""Least and greatest of two coordinates."""
 _TURNS = 40
 """So many turns at most are drawn; more would be a grey area."""
 
@@ -63,11 +71,30 @@ class Blueprint:
 
     def save(self, target: Target) -> None:
         """Draw the page as PNG into a path or a file open for writing bytes."""
-        page = figure(SIZE)
-        page.text(0.5, 0.972, literal(f"{self.title}: at rest"), ha="center", fontsize=17)
-        self._side(page.add_axes((0.04, 0.56, 0.92, 0.38)))
-        self._cut(page.add_axes((0.03, 0.08, 0.43, 0.45)))
-        self._oblique(page, (0.48, 0.08, 0.50, 0.45))
+        with Renderer() as renderer:
+            width = WIDTH - _CUT_WIDTH - 3 * _EDGE
+            rest = rest_image(
+                self.space, renderer, self.scenery, self.threads, 2 * width, dimensions=False
+            )
+        oblique = round(width * rest.image.shape[0] / rest.image.shape[1]) + STRIP
+        side, cut = self._side_limits(), self._cut_limits()
+        heights = [
+            _tall(side, WIDTH - 2 * _EDGE, _SIDE_TALLEST),
+            max(_tall(cut, _CUT_WIDTH, _CUT_TALLEST), oblique),
+        ]
+        size = (WIDTH, _TITLE + sum(heights) + 2 * _GAP + _LEGEND)
+        page = figure(size)
+        heading(page, f"{self.title}: at rest")
+        lower, upper = _LEGEND, _LEGEND + heights[1] + _GAP
+
+        def axes(left: float, bottom: float, width: float, height: float) -> Any:
+            box = (left / WIDTH, bottom / size[1], width / WIDTH, height / size[1])
+            return page.add_axes(box)
+
+        self._side(axes(_EDGE, upper, WIDTH - 2 * _EDGE, heights[0]), side)
+        self._cut(axes(_EDGE, lower, _CUT_WIDTH, heights[1]), cut)
+        left, bottom = _CUT_WIDTH + 2 * _EDGE, lower + (heights[1] - oblique) / 2
+        self._oblique(page, size, rest, axes(left, bottom + STRIP, width, oblique - STRIP))
         self._legend(page)
         save(page, target)
 
@@ -93,27 +120,61 @@ class Blueprint:
                 found.append((name, low[i], high[i]))
         return found
 
-    def _oblique(self, page: Any, box: tuple[float, float, float, float]) -> None:
+    def _oblique(self, page: Any, size: tuple[int, int], rest: Rest, axes: Any) -> None:
         """The body in space, cut open step by step, with axes and scale."""
-        with Renderer() as renderer:
-            width = 2 * round(box[2] * SIZE[0])
-            rest = rest_image(self.space, renderer, self.scenery, self.threads, width)
-        axes = page.add_axes(box)
         axes.imshow(rest.image)
         axes.set_axis_off()
         axes.autoscale(False)
         over = page.add_axes((0, 0, 1, 1))
-        over.set(xlim=(0, SIZE[0]), ylim=(0, SIZE[1]))
+        over.set(xlim=(0, size[0]), ylim=(0, size[1]))
         over.set_axis_off()
-        size = (rest.image.shape[1], rest.image.shape[0])
-        panel = Panel(page, over, axes, rest.image, rest.view, size, (0, 0))
-        # the other drawings have the dimensions
-        write_on(panel, dataclasses.replace(rest, lengths=[]), self.space, self.scenery)
-        panel.scale(box[0] * SIZE[0], box[1] * SIZE[1] - 10, nice_above(70 / panel.per_mm))
+        seen = (rest.image.shape[1], rest.image.shape[0])
+        panel = Panel(page, over, axes, rest.image, rest.view, seen, (0, 0))
+        write_on(panel, rest, self.space, self.scenery)
+        box = axes.get_position()
+        left, bottom = box.x0 * size[0], box.y0 * size[1] - STRIP
+        panel.scale(left, bottom, nice_above(70 / panel.per_mm))
 
     # --- from the side -------------------------------------------------------------------------
 
-    def _side(self, axes: Any) -> None:
+    def _side_limits(self) -> Limits:
+        """Least and greatest z and y that the view from the side shows, mm."""
+        bottom, top = self.layers[0][1], self.layers[-1][2]
+        high = top - bottom
+        ends = self._extent()
+        return (
+            (
+                min(-self.cap - 1.9 * high, ends[0][0]),
+                min(self._row - 0.4 * high, bottom - 1.1 * high, ends[0][1]),
+            ),
+            (
+                max(self._tip + 2.6 * high, ends[1][0]),
+                max(self._over + 0.35 * high, top + 0.55 * high, ends[1][1]),
+            ),
+        )
+
+    @property
+    def _boxes(self) -> list[Box]:
+        return [shape for shape in self.scenery.shapes.values() if isinstance(shape, Box)]
+
+    @property
+    def _tip(self) -> float:
+        """End of the body and of what stands under it, along z."""
+        return max([self.length + self.cap, *(box.high[2] for box in self._boxes)])
+
+    @property
+    def _row(self) -> float:
+        """Height of the lengths, below the body and what stands under it."""
+        bottom, top = self.layers[0][1], self.layers[-1][2]
+        return min([bottom, *(box.low[1] for box in self._boxes)]) - 0.3 * (top - bottom)
+
+    @property
+    def _over(self) -> float:
+        """Height of the pitch, above the body and what lies on it."""
+        bottom, top = self.layers[0][1], self.layers[-1][2]
+        return max([top, *(box.high[1] for box in self._boxes)]) + 0.15 * (top - bottom)
+
+    def _side(self, axes: Any, limits: Limits) -> None:
         from matplotlib.patches import Rectangle
 
         layers, start, end = self.layers, -self.cap, self.length + self.cap
@@ -130,21 +191,18 @@ class Blueprint:
         self._threads(axes)
         self._rigid(axes)
         high = top - bottom
-        row = bottom - 0.45 * high
+        row = self._row
         _dimension(axes, (start, row), (0.0, row), f"cap {self.cap:g} mm")
         _dimension(axes, (0.0, row), (self.length, row), f"length {self.length:g} mm")
         _dimension(axes, (self.length, row), (end, row), f"cap {self.cap:g} mm")
         if self.pitch is not None and self.pitch < self.length:
-            boxes = [
-                shape.high[1] for shape in self.scenery.shapes.values() if isinstance(shape, Box)
-            ]
-            above, at = max([top, *boxes]) + 0.15 * high, 0.1 * self.length
+            above, at = self._over, 0.1 * self.length
             _arrow(axes, (at, above), (at + self.pitch, above))
             axes.text(at + 1.5 * self.pitch, above, f"pitch {self.pitch:g} mm", **_TEXT)
         curl = {"arrowstyle": "-|>", "connectionstyle": "arc3,rad=-0.45", "color": "#c0392b"}
-        tip = end + 0.25 * high
+        tip = self._tip + 0.25 * high
         axes.annotate("", (tip, bottom - high), (tip, top), arrowprops=curl | {"linewidth": 1.6})
-        axes.text(tip + 0.9 * high, bottom, "θ > 0", **_TEXT | {"color": "#c0392b"}, va="center")
+        axes.text(tip + 0.7 * high, bottom, "θ > 0", **_TEXT | {"color": "#c0392b"}, va="center")
         root = {"color": _INK, "linewidth": 2.0}
         axes.plot([start, start], [bottom - 0.15 * high, top + 0.15 * high], **root)
         axes.text(start, top + 0.2 * high, "clamped", ha="center", va="bottom", **_TEXT)
@@ -158,10 +216,7 @@ class Blueprint:
             )
             place = (origin[0] + 1.15 * tip_of[0], origin[1] + 1.15 * tip_of[1])
             axes.text(*place, name, ha="center", va="center", **_TEXT | {"style": "italic"})
-        axes.set_aspect("equal")
-        ends = self._extent()
-        axes.set_xlim(min(origin[0], ends[0][0]) - 0.3 * high, max(tip + 2.2 * high, ends[1][0]))
-        axes.set_ylim(min(row - 0.6 * high, ends[0][1]), max(top + 0.9 * high, ends[1][1]))
+        _show(axes, limits)
         axes.set_axis_off()
 
     def _extent(self) -> tuple[Floats, Floats]:
@@ -171,7 +226,7 @@ class Blueprint:
             if not isinstance(shape, Sheet):
                 points.append(np.asarray(shape.surface(np.zeros((1, 3))).points))
             else:
-                points.append(np.array([[0.0, shape.point[1] - 3.0, self.length / 2]]))
+                points.append(self._strip(shape))
         every = np.concatenate(points)[:, [2, 1]]
         return every.min(axis=0) - _MARGIN, every.max(axis=0) + _MARGIN
 
@@ -188,37 +243,57 @@ class Blueprint:
             y[hidden] = np.nan
             axes.plot(z, y, **_THREAD)
 
-    def _rigid(self, axes: Any) -> None:
-        from matplotlib.patches import Circle, Rectangle
+    def _strip(self, sheet: Sheet) -> Floats:
+        """Corners of the strip that stands for a plane, (4, 3), mm; none for one seen face on."""
+        along = np.array([-sheet.normal[2], sheet.normal[1]])
+        size = float(np.linalg.norm(along))
+        if size == 0:
+            return np.zeros((0, 3))
+        along, reach = along / size, self.length / 2 + self.cap
+        down = np.array([-along[1], along[0]])
+        if down @ sheet.normal[1:] > 0:
+            down = -down
+        # nearest to the middle of the body
+        point = np.array(sheet.point[1:])
+        middle = point + along * (along @ (np.array([0.0, self.length / 2]) - point))
+        ends = [middle - reach * along, middle + reach * along]
+        corners = np.array([*ends, ends[1] + _SHEET * down, ends[0] + _SHEET * down])
+        return np.column_stack([np.zeros(4), corners])
 
-        look: dict[str, Any] = {"facecolor": _OBSTACLE, "edgecolor": _OBSTACLE, "alpha": 0.55}
+    def _rigid(self, axes: Any) -> None:
+        from matplotlib.patches import Circle, Polygon, Rectangle
+
+        label: dict[str, Any] = _TEXT | {"fontsize": 12}
         for name, shape in self.scenery.shapes.items():
-            label: dict[str, Any] = {"color": _OBSTACLE, "fontsize": 12, "ha": "center"}
             if isinstance(shape, Box):
                 (_, y0, z0), (_, y1, z1) = shape.low, shape.high
-                axes.add_patch(Rectangle((z0, y0), z1 - z0, y1 - y0, **look))
+                axes.add_patch(Rectangle((z0, y0), z1 - z0, y1 - y0, **_RIGID))
                 if y0 >= 0:
-                    axes.text((z0 + z1) / 2, y1, name, **label, va="bottom")
+                    axes.text((z0 + z1) / 2, y1, name, **label, ha="center", va="bottom")
                 else:
-                    axes.text(z1, y0, f" {name}", **label | {"ha": "left"}, va="bottom")
+                    axes.text(z0, y0, f"{name}  ", **label, ha="right", va="bottom")
             elif isinstance(shape, Bar):
                 y, z = shape.center
-                axes.add_patch(Circle((z, y), shape.radius, **look))
-                axes.text(z, y, name, **label, va="center")
-            elif isinstance(shape, Sheet):
-                y, z = shape.point[1], shape.point[2]
-                along = np.array([-shape.normal[1], shape.normal[2]])
-                if np.linalg.norm(along) > 0:
-                    along = along / np.linalg.norm(along) * (self.length / 2 + self.cap)
-                    middle = np.array([self.length / 2, y + _rise(shape, self.length / 2 - z)])
-                    ends = np.stack([middle - along, middle + along])
-                    axes.plot(*ends.T, color=_OBSTACLE, linewidth=3, alpha=0.7)
-                    left = ends[np.argmin(ends[:, 0])]
-                    axes.text(*left, name, **label | {"ha": "left"}, va="bottom")
+                axes.add_patch(Circle((z, y), shape.radius, **_RIGID))
+                text = f"{name}, radius {shape.radius:g} mm"
+                ground = {"facecolor": COLOR, "edgecolor": "none", "pad": 2.0}
+                axes.text(z, y, text, **label, ha="center", va="center", bbox=ground)
+            elif isinstance(shape, Sheet) and len(strip := self._strip(shape)):
+                corners = strip[:, [2, 1]]
+                axes.add_patch(Polygon(corners, **_RIGID))
+                left = corners[np.argmin(corners[:, 0])]
+                axes.text(left[0], corners[:2, 1].max(), name, **label, ha="left", va="bottom")
 
     # --- the cross-section ---------------------------------------------------------------------
 
-    def _cut(self, axes: Any) -> None:
+    def _cut_limits(self) -> Limits:
+        """Least and greatest x and y that the cross-section's drawing shows, mm."""
+        mesh = self.section
+        half, high = float(mesh.nodes[:, 0].max()), float(np.ptp(mesh.nodes[:, 1]))
+        low, top = float(mesh.nodes[:, 1].min()), float(mesh.nodes[:, 1].max())
+        return (-half - 0.62 * high, low - 0.36 * high), (half + 0.8 * high, top + 0.08 * high)
+
+    def _cut(self, axes: Any, limits: Limits) -> None:
         from matplotlib.collections import PolyCollection
 
         mesh = self.section
@@ -248,14 +323,12 @@ class Blueprint:
         _, y0, y1 = next(layer for layer in self.layers if not layer[0])
         axes.text(0.0, (y0 + y1) / 2, self.width, ha="center", va="center", **_TEXT)
         for name, tip in (("x", (0.3 * high, 0.0)), ("y", (0.0, 0.3 * high))):
-            origin = np.array([-half - 0.35 * high, bottom])
+            origin = np.array([-half - 0.5 * high, bottom])
             arrow = {"arrowstyle": "-|>", "color": "black", "shrinkA": 0}
             axes.annotate("", origin + tip, origin, arrowprops=arrow)
             place = origin + 1.2 * np.array(tip)
             axes.text(*place, name, ha="center", va="center", **_TEXT | {"style": "italic"})
-        axes.set_aspect("equal")
-        axes.set_xlim(-half - 0.5 * high, half + 0.95 * high)
-        axes.set_ylim(below - 0.2 * high, float(mesh.nodes[:, 1].max()) + 0.1 * high)
+        _show(axes, limits)
         axes.set_axis_off()
 
     def _legend(self, page: Any) -> None:
@@ -268,17 +341,28 @@ class Blueprint:
             for n in dict.fromkeys(regions)
         ]
         if self.winding:
-            handles.append(Line2D([], [], label=self.winding, **_THREAD))
+            size, _, how = self.winding.rpartition(", ")
+            handles.append(Line2D([], [], label=size, **_THREAD | {"linewidth": 1.5}))
+            if self.space.smeared:
+                handles.append(Patch(facecolor=COLORS["winding"], edgecolor="0.45", label=how))
+            else:
+                handles[-1].set_label(self.winding)
         if self.scenery.shapes:
-            handles.append(Patch(facecolor=_OBSTACLE, alpha=0.55, label="rigid obstacles"))
+            handles.append(Patch(**_RIGID, label="rigid obstacles"))
         page.legend(
             handles=handles, loc="lower center", ncols=len(handles), frameon=False, fontsize=12
         )
 
 
-def _rise(sheet: Sheet, along: float) -> float:
-    """Change of a sheet's y over a length along z, in the plane x = 0."""
-    return -sheet.normal[2] / sheet.normal[1] * along if sheet.normal[1] else 0.0
+def _tall(limits: Limits, width: float, most: float) -> int:
+    """Height in pixels of a drawing of a width, at one scale; at most so many."""
+    (left, low), (right, high) = limits
+    return round(min(width * (high - low) / (right - left), most))
+
+
+def _show(axes: Any, limits: Limits) -> None:
+    (left, low), (right, high) = limits
+    axes.set(xlim=(left, right), ylim=(low, high), aspect="equal")
 
 
 def _arrow(axes: Any, start: tuple[float, float], end: tuple[float, float]) -> None:

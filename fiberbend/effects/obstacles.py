@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 _ROOF_HEIGHT, _POST_HEIGHT = 2.0, 8.0
 """Heights in mm in which pictures show what has a lower or an upper face only."""
+_POST_BEYOND = 0.08
+"""By how much of the chamber's length a picture's post reaches beyond the tip at rest: the strip
+that rests on it moves outward under pressure."""
 EVERYWHERE = ("outer", "tip")
 """Surfaces that may touch an obstacle anywhere in space."""
 
@@ -137,9 +140,9 @@ def roof_shape(actuator: Actuator, width: float, gap: float = 0.0) -> Shape:
 
 
 def post_shape(actuator: Actuator, length: float, gap: float = 0.0) -> Shape:
-    """A block under the last piece of the tip cap, as wide as the body; mm."""
+    """A block under the last piece of the tip cap wherever that moves, as wide as the body; mm."""
     from fiberbend.states.obstacles import Box
 
     half, end = actuator.outer_half_width, actuator.length + actuator.cap
-    top = actuator.outer_bottom - gap
-    return Box((-half, top - _POST_HEIGHT, end - length), (half, top, end))
+    top, beyond = actuator.outer_bottom - gap, _POST_BEYOND * actuator.length
+    return Box((-half, top - _POST_HEIGHT, end - length), (half, top, end + beyond))

@@ -16,6 +16,7 @@ _READ = (
     *(col.TIP_FORCE, col.ROOF_FORCE, col.TWIST, col.SIDE_ANGLE, col.AXIS_STRETCH),
 )
 """Columns that a user reads, where they have values other than zero."""
+_NOTHING = 1e-9
 _OBSTACLE = ("_y_N", "_z_N")
 _ROUND_OFF = 1e-12
 """Part of a column's greatest value that no solver keeps."""
@@ -104,10 +105,11 @@ def steps(rows: Sequence[Mapping[str, Any]], names: Sequence[str]) -> Table:
     for name in names:
         known = col.column(name)
         heads.append(Head(name, known.unit, known.meaning))
-    least = {
-        name: _ROUND_OFF * max((abs(float(row[name])) for row in rows if row.get(name)), default=0)
-        for name in names
-    }
+    least = {}
+    for name in names:
+        greatest = max((abs(float(row[name])) for row in rows if row.get(name)), default=0.0)
+        # what round-off leaves of a zero angle or length is none; a residual has no unit
+        least[name] = max(_ROUND_OFF * greatest, _NOTHING if col.column(name).unit else 0.0)
     return Table(heads, [[_number(row.get(name), least[name]) for name in names] for row in rows])
 
 

@@ -17,6 +17,7 @@ from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
 from fiberbend.report import case_tables
+from fiberbend.report.captions import caption, in_short
 from fiberbend.report.case_tables import Line
 from fiberbend.report.page import (
     Download,
@@ -31,8 +32,10 @@ from fiberbend.report.page import (
     render,
 )
 from fiberbend.results.folder import CASE_FILE, HISTORY_FILE, MESH, REPORT, RUN_FILE, RunFolder
+from fiberbend.results.scenery import scenery
 from fiberbend.results.space import Space
 from fiberbend.results.states import DAMAGED, States, read_snapshot, snapshot_paths
+from fiberbend.states.labels import short_number
 from fiberbend.states.snapshot import Write
 
 _MOST_PICTURES = 4_000_000
@@ -77,6 +80,7 @@ def report(
     rows: Sequence[Mapping[str, Any]],
     run: Mapping[str, Any],
     links: str = "",
+    loose: bool = False,
 ) -> str:
     """The page of a run, see `write_report`.
 
@@ -87,6 +91,7 @@ def report(
         run: content of run.json.
         links: what leads from the page to the folder, such as "runs/finger/"; empty for a page in
             the folder itself.
+        loose: the folder will be gone: the page neither names it nor leads to it.
     """
     missing: list[str] = []
     if not rows:
@@ -103,17 +108,18 @@ def report(
     if states is not None:
         from fiberbend.report.scene import scene_data
 
-        found = scene_data(case, states, space)
+        found = scene_data(case, states, space, _forces(case, known))
         view, notes = found.content, list(found.notes)
-    curves = _curves(path, case, known)
+    words = _words(states)
+    curves = _curves(path, case, known, words)
     side = _side(case, known, states, space)
     model, why = choose_model(case)
     read = case_tables.read_columns(known)
     versions = run.get("versions") or {}
     return render(
         "run.html",
-        title=case.title or path.resolve().name,
-        folder=path.resolve().name,
+        title=case.title or (f"{model.name} model" if loose else path.resolve().name),
+        folder="" if loose else path.resolve().name,
         status=run.get("status") or "unknown",
         reason=run.get("reason") or "",
         model=model.name,
@@ -126,9 +132,9 @@ def report(
         view_notes=notes,
         curves=curves,
         side=side,
-        path_in_space=_pictures(path, _PATHS) if known and _leaves_plane(known) else [],
-        sections=_sections(path, states),
-        body=_limited(path, _BODY, links),
+        path_in_space=_pictures(path, _PATHS, words) if known and _leaves_plane(known) else [],
+        sections=_sections(path, states, words),
+        body=[each for each in _limited(path, _BODY, links, words) if each.inside or not loose],
         dimensions=list(case_tables.dimensions(case)),
         materials=list(case_tables.materials(case)),
         effects=list(case_tables.effects(case)),
@@ -139,7 +145,7 @@ def report(
         phases=_phases(run),
         counts=_counts(run),
         made=list(_made(run)),
-        downloads=list(_downloads(path, links)),
+        downloads=[file for file in _downloads(path, links) if file.inside or not loose],
         cite=citation(),
         version=str(versions.get("fiberbend", "")),
     )
@@ -175,8 +181,26 @@ def _states(
 # --- pictures ---------------------------------------------------------------------------------
 
 
-def _pictures(path: Path, patterns: Sequence[str]) -> list[Picture]:
-    return [picture(file, _in_words(file)) for file in _files(path / "pictures", patterns)]
+def _words(states: States | None) -> dict[str, str]:
+    """Pressure and angle of the states that pictures may show, by their labels."""
+    return {} if states is None else {each.label: in_short(each) for each in states.kept}
+
+
+def _forces(case: Case, rows: Sequence[Mapping[str, Any]]) -> dict[int, str]:
+    """What the line of a step says of the obstacles, by the number of the step."""
+    return {
+        step: ", ".join(
+            f"{name} {short_number(float(np.linalg.norm(force)))} N"
+            for name, force in forces.items()
+        )
+        for step, forces in scenery(case, rows).forces.items()
+    }
+
+
+def _pictures(path: Path, patterns: Sequence[str], words: Mapping[str, str]) -> list[Picture]:
+    return [
+        picture(file, caption(file.name, words)) for file in _files(path / "pictures", patterns)
+    ]
 
 
 def _files(path: Path, patterns: Sequence[str]) -> list[Path]:
@@ -184,28 +208,29 @@ def _files(path: Path, patterns: Sequence[str]) -> list[Path]:
     return list(dict.fromkeys(found))
 
 
-def _in_words(file: Path) -> str:
-    return file.stem.replace("_", " ")
-
-
-def _limited(path: Path, patterns: Sequence[str], links: str) -> list[Picture]:
+def _limited(
+    path: Path, patterns: Sequence[str], links: str, words: Mapping[str, str]
+) -> list[Picture]:
     """Pictures as far as there is room, the others as links."""
     shown, room = [], _MOST_PICTURES
     for file in _files(path / "pictures", patterns):
         room -= file.stat().st_size
         if room >= 0 and is_picture(file):
-            shown.append(picture(file, _in_words(file)))
+            shown.append(picture(file, caption(file.name, words)))
         else:
-            shown.append(Picture(link(file, path, links), _in_words(file), inside=False))
+            text = caption(file.name, words)
+            shown.append(Picture(link(file, path, links), text, inside=False))
     return shown
 
 
-def _curves(path: Path, case: Case, rows: Sequence[dict[str, Any]]) -> list[Picture]:
+def _curves(
+    path: Path, case: Case, rows: Sequence[dict[str, Any]], words: Mapping[str, str]
+) -> list[Picture]:
     """The plots of the run, drawn now where it has drawn none; the tip's path is another."""
     there = _files(path / "pictures", ("*.png", "*.svg"))
     if there or not rows:
         others = {*_files(path / "pictures", (*_SECTIONS, *_BODY, *_PATHS))}
-        return [picture(file, _in_words(file)) for file in there if file not in others]
+        return [picture(file, caption(file.name, words)) for file in there if file not in others]
     from fiberbend.drawing.curves import draw_plots
     from fiberbend.drawing.page import own_style
 
@@ -222,9 +247,9 @@ def _curves(path: Path, case: Case, rows: Sequence[dict[str, Any]]) -> list[Pict
     return pictures
 
 
-def _sections(path: Path, states: States | None) -> list[Picture]:
+def _sections(path: Path, states: States | None, words: Mapping[str, str]) -> list[Picture]:
     """Pictures of a section or cell in its own plane; where there are none, its shape now."""
-    there = _pictures(path, _SECTIONS)
+    there = _pictures(path, _SECTIONS, words)
     if there or states is None or not states.model_mesh.uniform:
         return there
     from fiberbend.drawing.page import own_style
@@ -253,7 +278,7 @@ def _drawn(left_out: Sequence[str]) -> Iterator[tuple[list[Picture], Write]]:
             return
         content = io.BytesIO()
         fill(content)
-        pictures.append(Picture(data_address(content.getvalue(), name), _in_words(Path(name))))
+        pictures.append(Picture(data_address(content.getvalue(), name), caption(name, {})))
 
     yield pictures, write
 
@@ -275,7 +300,20 @@ def _side(
         content = side_view(case, rows, states, space)
     if content is None:
         return None
-    text = "path of the tip" if states is None else "path of the tip, and the actuator cut at x = 0"
+    text = "Path of the tip."
+    if space is not None:
+        aside = _leaves_plane(rows)
+        text = (
+            "Path of the tip, and the actuator's plane x = 0, both seen from the side."
+            if aside
+            else "Path of the tip, and the actuator cut at x = 0."
+        )
+        if space.stack is not None:
+            text += (
+                " The path is that of the tip cap's end; this model draws no caps."
+                if aside
+                else " Dashed lines stand for the tip cap, which this model leaves out."
+            )
     return Picture(data_address(content, "side.svg"), text)
 
 

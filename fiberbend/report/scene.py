@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.drawing.page import COLORS, NAMES, nice_above
+from fiberbend.drawing.page import COLORS, NAMES
+from fiberbend.drawing.renderer import FROM_THE_SIDE
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.drawing.tessellation import Tessellation, boundary_facets, on_mirror
+from fiberbend.report.fields import QUANTITIES, Fields
 from fiberbend.report.packing import base64_of, packed
 from fiberbend.results.space import Space
 from fiberbend.results.states import Kept, States
 from fiberbend.states.bend import Bend, in_frame
 from fiberbend.states.fiber_lines import fiber_lines
-from fiberbend.states.recovery import SplitNodes, recover, split_nodes
+from fiberbend.states.recovery import SplitNodes, split_nodes
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 from fiberbend.states.stack import split_alike
 from geometry.mesh.data import Floats, Ints, MeshData
@@ -32,9 +33,10 @@ _FINE, _COARSE = 2, 1
 """Pieces along an element's edge: its three nodes, or its two ends."""
 _BYTES = 8
 """Of a point in a step: three coordinates of two, and two quantities of one."""
-_TOP = 255
-_QUANTILE = 0.998
-"""The colours end short of single peaks."""
+_BESIDE = 0.15
+"""So far from the body obstacles are within the view, as a part of the body's extent."""
+_EDGE_ON = 0.2
+"""A surface is hardly seen from the side whose normal has less than this along the view."""
 
 
 class Places:
@@ -75,6 +77,7 @@ class Skin:
         value: place of every point among the recovered fields, (n,).
         region: region of every point, (n,).
         triangles: counterclockwise seen from outside, (k, 3).
+        seen: places among the recovered fields that are seen from the side, not empty.
     """
 
     part: str
@@ -83,6 +86,7 @@ class Skin:
     value: Ints
     region: Ints
     triangles: Ints
+    seen: Ints
 
 
 @dataclasses.dataclass(frozen=True)
@@ -100,20 +104,26 @@ class SceneData:
     steps: int
 
 
-def scene_data(case: Case, states: States, space: Space | None = None) -> SceneData:
+def scene_data(
+    case: Case,
+    states: States,
+    space: Space | None = None,
+    forces: Mapping[int, str] | None = None,
+) -> SceneData:
     """The 3-D view of a run.
 
     Args:
         case: the case.
         states: what the run has kept.
         space: of the same model mesh, if at hand.
+        forces: by the number of a step, what its line says of forces.
 
     Raises:
         ValueError: no state but that at rest.
     """
     if len(states) < 2:
         raise ValueError("no load step was kept: nothing to see in space")
-    space = space or Space(case, states.model_mesh)
+    space, forces = space or Space(case, states.model_mesh), forces or {}
     notes = []
     skins = _skins(space, _FINE)
     if _size(skins) * len(states) > MOST_NUMBERS:
@@ -131,11 +141,12 @@ def scene_data(case: Case, states: States, space: Space | None = None) -> SceneD
         notes.append("Steps whose files are damaged are left out.")
     places = Places(space)
     threads = _Threads(space, places)
-    fields = _Fields(space.own, skins)
+    fields = Fields(space.own, _own_nodes(space.own), [(skin.value, skin.seen) for skin in skins])
     skin_nodes = np.concatenate([skin.node for skin in skins])
     positions = np.stack([places.at(shot, skin_nodes) for _, shot in shown])
     lines = np.stack([threads.at(shot) for _, shot in shown])
     values = [fields.at(shot) for _, shot in shown]
+    tops = fields.tops(values)
     if space.stack is not None:
         notes.append("The length between the end caps; this model has no caps.")
     if space.model_mesh.smeared:
@@ -158,6 +169,7 @@ def scene_data(case: Case, states: States, space: Space | None = None) -> SceneD
                 "pressure": round(each.pressure_kpa, 4),
                 "angle": round(each.angle_deg, 4),
                 "asked": each.asked,
+                "forces": forces.get(each.step, ""),
             }
             for each, _ in shown
         ],
@@ -169,7 +181,8 @@ def scene_data(case: Case, states: States, space: Space | None = None) -> SceneD
                 "triangles": packed(skin.triangles.astype("<u4")),
                 "positions": placed(position),
                 "region": packed(skin.region.astype("u1")),
-                "values": [packed(value) for value in fields.scaled(values, number)],
+                "values": [packed(value) for value in fields.scaled(values, number, tops[number])],
+                "tops": tops[number],
             }
             for number, (skin, position) in enumerate(
                 zip(skins, np.split(positions, ends, axis=1), strict=True)
@@ -179,11 +192,14 @@ def scene_data(case: Case, states: States, space: Space | None = None) -> SceneD
             {"number": number, "name": NAMES.get(name, name), "color": COLORS.get(name, "#999999")}
             for name, number in space.model_mesh.mesh.regions.items()
         ],
-        "quantities": fields.described(values),
+        "quantities": [
+            {"name": name, "label": label, "powers": powers} for name, label, powers in QUANTITIES
+        ],
         "colors": _colors(),
         "fibers": threads.content | {"positions": placed(lines)},
         "obstacles": _obstacles(case, around),
         "bounds": [around.min(axis=0).tolist(), around.max(axis=0).tolist()],
+        "around": _BESIDE * float(np.ptp(around, axis=0).max()),
     }
     return SceneData(content, tuple(notes), len(shown))
 
@@ -236,13 +252,13 @@ def _skins(space: Space, level: int) -> list[Skin]:
 
 def _own_copies(space: Space) -> Ints:
     """The copy of a node of the model's own mesh behind every node of a cell in space, (m, k)."""
-    copies: Ints = _split(space.own).cells
+    copies: Ints = _own_nodes(space.own).cells
     if space.stack is None:
         return copies
     return copies[space.stack.cell[:, None], space.stack.order]
 
 
-def _split(own: ModelMesh) -> SplitNodes:
+def _own_nodes(own: ModelMesh) -> SplitNodes:
     return split_alike(own.mesh) if own.uniform else split_nodes(own.mesh)
 
 
@@ -262,51 +278,19 @@ def _skin(mesh: MeshData, pairs: Ints, copies: Ints, level: int, part: str, cut:
     pieces = place[drawn.pieces]
     if pieces.shape[1] == 4:
         pieces = np.concatenate([pieces[:, [0, 1, 2]], pieces[:, [0, 2, 3]]])
-    return Skin(part, cut, node[first], copy[first], region[first], pieces)
+    return Skin(
+        part, cut, node[first], copy[first], region[first], pieces, _seen(mesh, drawn, node, copy)
+    )
 
 
-class _Fields:
-    """Quantities at the points of the surfaces, as numbers from 0 to 255."""
-
-    def __init__(self, own: ModelMesh, skins: Sequence[Skin]) -> None:
-        self._own, self._skins = own, skins
-        self._copies = _split(own)
-        self._top: list[float] = []
-
-    def at(self, state: Snapshot) -> list[Floats]:
-        """Strain and stress of a state at all recovered nodes."""
-        found = recover(self._own, state, self._copies)
-        # between the points at which an extreme state was solved there may be no stress
-        return [np.nan_to_num(values) for values in (found.log_strain, found.von_mises)]
-
-    def described(self, values: Sequence[Sequence[Floats]]) -> list[dict[str, Any]]:
-        """The quantities with their labels and the ends of their colours."""
-        names = ("strain", "stress")
-        labels = ("maximum principal logarithmic strain", "von Mises stress (MPa)")
-        tops = self._tops(values)
-        return [
-            {"name": name, "label": label, "top": top}
-            for name, label, top in zip(names, labels, tops, strict=True)
-        ]
-
-    def scaled(self, values: Sequence[Sequence[Floats]], number: int) -> list[NDArray[np.uint8]]:
-        """Each quantity at the points of a surface in all steps, (steps, n)."""
-        place = self._skins[number].value
-        return [
-            np.rint(
-                np.clip(np.stack([step[i][place] for step in values]) / top, 0, 1) * _TOP
-            ).astype(np.uint8)
-            for i, top in enumerate(self._tops(values))
-        ]
-
-    def _tops(self, values: Sequence[Sequence[Floats]]) -> list[float]:
-        """What the last colour stands for: the most of all steps, short of single peaks."""
-        if not self._top:
-            seen = np.concatenate([skin.value for skin in self._skins])
-            for i in range(len(values[0])):
-                found = (step[i][seen] for step in values)
-                self._top.append(nice_above(max(float(np.quantile(x, _QUANTILE)) for x in found)))
-        return self._top
+def _seen(mesh: MeshData, drawn: Tessellation, node: Ints, copy: Ints) -> Ints:
+    """Copies of the nodes at points that a viewer sees from the side: none of the chamber's."""
+    faces = drawn.normals(mesh.nodes[mesh.cells]) @ np.array(FROM_THE_SIDE)
+    inner = np.isin(node, mesh.facet_nodes("chamber"))
+    for seen in ((np.abs(faces) > _EDGE_ON) & ~inner, ~inner):
+        if seen.any():
+            return np.unique(copy[seen])
+    return np.unique(copy)
 
 
 class _Threads:

@@ -16,6 +16,7 @@ from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.drawing.page import colormap, figure, literal
 from fiberbend.drawing.tessellation import on_mirror
+from fiberbend.report.captions import in_short
 from fiberbend.report.scene import Places, thinned
 from fiberbend.results.space import Space
 from fiberbend.results.states import Kept, States
@@ -34,14 +35,16 @@ _UNSEEN = 0.02
 """By how much of a millimetre an outline may be off."""
 _DRAWN = 5
 """States of the actuator that are drawn."""
-_LEFT, _RIGHT, _BELOW = 75, 12, 60
+_LEFT, _RIGHT = 75, 12
 """Margins in pixels; that above is the right one."""
-_FLATTEST, _TALLEST = 0.3, 1.2
+_FLATTEST, _TALLEST = 0.22, 1.2
 """Height over width of the frame."""
 _TIP = "#c0392b"
 _ROOM = 0.06
-_TEXT = (0.18, 0.035)
-"""Width and height of a text, as parts of the frame's."""
+_ENTRY, _LINE = 165, 24
+"""Width and height in pixels of an entry of the legend."""
+_GAP = 46
+"""Pixels between the frame and the legend: ticks and their label."""
 
 
 def side_view(
@@ -70,15 +73,22 @@ def side_view(
     if states is not None and space is not None:
         drawn, around = _outlines(states, space, everything=bool(shapes))
         polygons = {name: _faces(shape.surface(around)) for name, shape in shapes.items()}
-    page, axes, (low, high) = _frame([path, *(loop for _, loops in drawn for loop in loops)])
+    colors = [colormap()(0.85 * i / max(1, len(drawn) - 1)) for i in range(len(drawn))]
+    names = [*(in_short(kept) for kept, _ in drawn), "path of the tip"]
+    columns = (_WIDTH - _LEFT) // _ENTRY
+    lines = -(-len(names) // columns)
+    columns = -(-len(names) // lines)
+    page, axes, (low, high) = _frame([path, *(loop for _, loops in drawn for loop in loops)], lines)
     for name, faces in polygons.items():
         _draw_obstacle(axes, name, faces, (low, high))
-    for number, (_, loops) in enumerate(drawn):
-        share = number / max(1, len(drawn) - 1)
-        _draw_outline(axes, loops, colormap()(0.85 * share))
+    for (_, loops), color in zip(drawn, colors, strict=True):
+        _draw_outline(axes, loops, color)
     axes.plot(*path.T, ".-", color=_TIP, linewidth=1.2, markersize=5, zorder=4)
-    steps = [kept.step for kept, _ in drawn] or [int(rows[-1][col.STEP])]
-    _name_tips(axes, rows, steps, low, high)
+    stacked = space is not None and space.stack is not None
+    aside = any(row.get(col.TIP_X) for row in rows)
+    cap = case.actuator.cap if stacked and not aside else 0.0
+    _draw_tips(axes, rows, [kept.step for kept, _ in drawn], colors, cap)
+    _legend(page, names, [*colors, _TIP], columns)
     content = io.BytesIO()
     page.savefig(content, format="svg", metadata={"Date": None}, transparent=False)
     return content.getvalue()
@@ -146,11 +156,12 @@ def loops_of(edges: Ints) -> list[Ints]:
     return loops
 
 
-def _frame(clouds: Sequence[Floats]) -> tuple[Any, Any, tuple[Floats, Floats]]:
+def _frame(clouds: Sequence[Floats], lines: int) -> tuple[Any, Any, tuple[Floats, Floats]]:
     """Figure, axes of one scale, and their least and greatest z and y.
 
     Args:
         clouds: points (z, y) that are seen; obstacles without an end are cut off.
+        lines: of the legend.
     """
     cloud = np.concatenate(clouds)
     low, high = cloud.min(axis=0), cloud.max(axis=0)
@@ -161,9 +172,10 @@ def _frame(clouds: Sequence[Floats]) -> tuple[Any, Any, tuple[Floats, Floats]]:
     low, high = (low + high - size) / 2, (low + high + size) / 2
     inner = _WIDTH - _LEFT - _RIGHT
     tall = inner * size[1] / size[0]
-    height = _BELOW + tall + _RIGHT
+    below = _GAP + _LINE * lines
+    height = below + tall + _RIGHT
     page = figure((_WIDTH, round(height)))
-    axes = page.add_axes((_LEFT / _WIDTH, _BELOW / height, inner / _WIDTH, tall / height))
+    axes = page.add_axes((_LEFT / _WIDTH, below / height, inner / _WIDTH, tall / height))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="z (mm)", ylabel="y (mm)")
     axes.grid(color="0.92")
     axes.set_axisbelow(True)
@@ -237,39 +249,68 @@ def _draw_obstacle(
         "zorder": 1,
     }
     axes.add_collection(PolyCollection(faces, **look), autolim=False)
-    points = np.concatenate(faces)
-    seen = points[((points >= frame[0]) & (points <= frame[1])).all(axis=1)]
-    place = (seen if len(seen) else np.clip(points, *frame)).mean(axis=0)
-    axes.text(*place, literal(name), ha="center", va="center", color="#3c4046", zorder=1.5)
+    points = np.clip(np.concatenate(faces), *frame)
+    low, high = points.min(axis=0), points.max(axis=0)
+    text: dict[str, Any] = {"ha": "center", "color": "#3c4046", "zorder": 1.5, "fontsize": 10.5}
+    place, size = (low + high) / 2, frame[1] - frame[0]
+    if ((high - low) > [0.12 * size[0], 0.06 * size[1]]).all():
+        axes.text(*place, literal(name), va="center", **text)
+        return
+    # too small to be written in: beside it, away from the middle of the picture
+    up = place[1] > (frame[0][1] + frame[1][1]) / 2
+    at = (place[0], high[1] if up else low[1])
+    side = {"va": "bottom" if up else "top", "textcoords": "offset points"}
+    axes.annotate(literal(name), at, (0, 3 if up else -3), **side, **text)
 
 
-def _name_tips(
-    axes: Any, rows: Sequence[Mapping[str, Any]], steps: Sequence[int], low: Floats, high: Floats
+def _draw_tips(
+    axes: Any,
+    rows: Sequence[Mapping[str, Any]],
+    steps: Sequence[int],
+    colors: Sequence[Any],
+    cap: float,
 ) -> None:
-    """Pressure and angle at the tips of the states that are drawn, none over another."""
-    from matplotlib.patheffects import withStroke
+    """Mark the tips of the states that are drawn, in their colours.
 
+    Args:
+        axes: in mm.
+        rows: of the history.
+        steps: numbers of the states.
+        colors: of the states.
+        cap: length in mm of a cap that the outlines do not have; 0 where they have it.
+    """
     by_step = {int(row[col.STEP]): row for row in rows}
-    size = high - low
-    taken: list[Floats] = []
-    for step in reversed(steps):
-        row = by_step.get(step)
-        if row is None or row.get(col.TIP_Z) is None or row.get(col.TIP_Y) is None:
+    for step, color in zip(steps, colors, strict=True):
+        row = by_step.get(step, {})
+        if row.get(col.TIP_Z) is None or row.get(col.TIP_Y) is None:
             continue
-        place = np.array([row[col.TIP_Z], row[col.TIP_Y]])
-        if any((np.abs(place - other) < size * _TEXT).all() for other in taken):
-            continue
-        taken.append(place)
-        axes.plot(*place, "o", color=_TIP, markersize=6, zorder=5)
-        # a zero has no sign
-        pressure, angle = round(row[col.PRESSURE], 1) + 0.0, round(row[col.ANGLE]) + 0.0
-        text = f"{pressure:.1f} kPa, {angle:.0f}°".replace("-", "−")
-        # at the right edge to the left of its point
-        inside = place[0] + _TEXT[0] * size[0] < high[0]
-        shift, side = ((7, 4), "left") if inside else ((-7, 6), "right")
-        look = {"ha": side, "zorder": 6, "fontsize": 10, "color": "#222222"}
-        label = axes.annotate(text, place, shift, textcoords="offset points", **look)
-        label.set_path_effects([withStroke(linewidth=3, foreground="white")])
+        tip = np.array([row[col.TIP_Z], row[col.TIP_Y]])
+        if cap:
+            angle = np.radians(row[col.ANGLE])
+            start = tip - cap * np.array([np.cos(angle), -np.sin(angle)])
+            axes.plot(*np.stack([start, tip]).T, "--", color=color, linewidth=1.2, zorder=3)
+        look = {"markerfacecolor": color, "markeredgecolor": _TIP, "zorder": 5}
+        axes.plot(*tip, "o", markersize=6, **look)
+
+
+def _legend(page: Any, names: Sequence[str], colors: Sequence[Any], columns: int) -> None:
+    """What each colour is, below the frame, where it covers nothing; the path's comes last."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    handles: list[Any] = [
+        Patch(facecolor=(*color[:3], 0.28), edgecolor=color, label=name)
+        for name, color in zip(names[:-1], colors[:-1], strict=True)
+    ]
+    handles.append(Line2D([], [], marker=".", color=colors[-1], label=names[-1]))
+    page.legend(
+        handles=handles,
+        loc="lower center",
+        ncols=min(columns, len(handles)),
+        frameon=False,
+        fontsize=10.5,
+        borderaxespad=0.1,
+    )
 
 
 def _simpler(loop: Floats) -> Floats:

@@ -76,7 +76,15 @@ def _maps(path: Path, quantities: Sequence[Mapping[str, Any]]) -> list[Picture]:
     there = sorted(file for file in path.glob("maps/*") if file.suffix in (".png", ".svg"))
     first = [name for each in quantities for name in each.get("pictures") or ()]
     ordered = sorted(there, key=lambda file: first.index(file.name) if file.name in first else 999)
-    return [picture(file, file.stem.replace("_", " ")) for file in ordered]
+    labels = {name: each.get("label") for each in quantities for name in each.get("pictures") or ()}
+    return [
+        picture(file, _sentence(labels.get(file.name) or file.stem.replace("_", " ")))
+        for file in ordered
+    ]
+
+
+def _sentence(text: str) -> str:
+    return f"{text[0].upper()}{text[1:]}."
 
 
 def _as_html(path: Path) -> str:

@@ -21,7 +21,10 @@ _REMARK, _LETTER = 18, 7.6
 """Height of a line of a remark, and width of a letter of it, pixels."""
 PANELS = 4
 """Most panels side by side on a page."""
-_PANEL = (400, 300)
+_PANEL, _ALONE = 400, 320
+"""Width of a panel on a page of several, and of one that has the page's lines beside each other."""
+_CELL, _LEAST, _MOST = 68, 160, 300
+"""Height of a row of cells, and the least and the greatest height of a panel."""
 _LEFT, _BAR = 92, 150
 _TOP, _BOTTOM = 92, 44
 _HEAD, _FOOT = 66, 66
@@ -50,6 +53,8 @@ def map_page(
 ) -> None:
     """A page of maps: a column for each panel, a row with its own colour scale for each line.
 
+    The lines of a single panel are beside each other.
+
     Args:
         title: text at the top.
         axes: the fields across and up.
@@ -58,21 +63,25 @@ def map_page(
         limits: values at the ends of the colour scale of each line, by its caption.
         target: a path, or a file open for writing bytes.
     """
-    across = len(panels) * _PANEL[0]
-    width = max(_LEFT + across + _BAR, 720)
-    each = _PANEL[1] + _HEAD + _FOOT
+    lines, alone = list(quantity.lines.items()), len(panels) == 1
+    ups = {row[axes[1].name] for rows in panels.values() for row in rows}
+    tall = min(max(_CELL * len(ups), _LEAST), _MOST)
+    wide = _ALONE if alone else _PANEL
+    across = wide * len(panels)
+    step = (across + _BAR, 0) if alone else (0, tall + _HEAD + _FOOT)
+    width = max(_LEFT + across + _BAR + step[0] * (len(lines) - 1), 720)
     remark = wrapped(quantity.remark, width)
     foot = _BOTTOM + _REMARK * len(remark)
-    height = _TOP + len(quantity.lines) * each + foot
+    height = _TOP + _HEAD + tall + _FOOT + step[1] * (len(lines) - 1) + foot
     page = figure((width, height))
     head(page, title, quantity.label)
-    left = _LEFT + (width - _LEFT - across - _BAR) / 2
+    start = _LEFT + (width - _LEFT - across - _BAR - step[0] * (len(lines) - 1)) / 2
     unlike: set[str] = set()
     decimals = _decimals(*next(iter(limits.values())))
-    for i, (caption, name) in enumerate(quantity.lines.items()):
-        top, scale = height - _TOP - i * each, limits[caption]
-        bottom = top - _HEAD - _PANEL[1]
-        page.text(
+    for i, (caption, name) in enumerate(lines):
+        left, top, scale = start + i * step[0], height - _TOP - i * step[1], limits[caption]
+        bottom = top - _HEAD - tall
+        named = page.text(
             left / width,
             (top - 18) / height,
             literal(caption),
@@ -80,18 +89,19 @@ def map_page(
             fontsize=14,
             weight="bold",
         )
+        fit(named, across + _BAR - 24)
         for j, (panel, rows) in enumerate(panels.items()):
-            corner = (left + j * _PANEL[0], bottom)
-            axis = page.add_axes(_box(corner, (_PANEL[0] - 22, _PANEL[1]), (width, height)))
+            corner = (left + j * wide, bottom)
+            axis = page.add_axes(_box(corner, (wide - 22, tall), (width, height)))
             own = name == quantity.column
             unlike |= _map(axis, axes, rows, name, scale, decimals, own)
             axis.set_title(literal(panel), fontsize=12.5)
             axis.set_xlabel(axis_label(axes[0]), fontsize=13)
-            if j == 0:
+            if j == 0 and (i == 0 or not alone):
                 axis.set_ylabel(axis_label(axes[1]), fontsize=13)
             else:
                 axis.tick_params(labelleft=False)
-        box = _box((left + across + 8, bottom), (16, _PANEL[1]), (width, height))
+        box = _box((left + across + 8, bottom), (16, tall), (width, height))
         _color_bar(page, box, scale, quantity.axis)
     _legend(page, sorted(unlike), height)
     for i, line in enumerate(reversed(remark)):

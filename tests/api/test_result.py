@@ -339,8 +339,10 @@ def test_report_is_written_by_its_own_module(
 
     given: list[Any] = []
 
-    def report(path: Path, case: Any, rows: Any, run: Any, links: str = "") -> str:
-        given.append((path, case, rows, run, links))
+    def report(
+        path: Path, case: Any, rows: Any, run: Any, links: str = "", loose: bool = False
+    ) -> str:
+        given.append((path, case, rows, run, links, loose))
         assert all((path / name).exists() for name in ("history.csv", "run.json", "mesh.npz"))
         return "page"
 
@@ -356,10 +358,10 @@ def test_report_is_written_by_its_own_module(
     assert loaded.report() == tmp_path / "run" / "report.html"
     assert loaded.report().read_text() == "page"
     assert loaded.report(tmp_path / "pages" / "one.html").read_text() == "page"
-    assert given[-1][4] == "../run/"
+    assert given[-1][4:] == ("../run/", False)
     assert "out: a run without a folder" in refusal(bent.report)
     assert bent.report(str(tmp_path / "two.html")).read_text() == "page"
-    assert given[-1] == (bent.kept_in, bent.case, bent.rows, bent.run, "")
+    assert given[-1] == (bent.kept_in, bent.case, bent.rows, bent.run, "", True)
 
 
 def test_plot_is_drawn_by_its_own_module(

@@ -12,6 +12,7 @@ from PIL import Image
 from fiberbend.api.show import blueprint, facts
 from fiberbend.cli import main
 from fiberbend.reader.reader import read_case
+from fiberbend.states.obstacles import Sheet
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 
@@ -50,12 +51,11 @@ def test_every_obstacle_is_drawn(name: str, tmp_path: Path) -> None:
     case = CASES / f"{name}.yaml"
     assert main(["show", str(case), "--out", str(target)]) == 0
     with Image.open(target) as image:
-        red, green, blue = np.asarray(image.convert("RGB"), dtype=int)[60:540].transpose(2, 0, 1)
-    # the obstacles' own brown over white, alone in the upper half
-    warm, pale = red - green, green - blue
-    brown = int(((warm > 15) & (warm < 80) & (pale > 25) & (pale < 70)).sum())
+        pixels = np.asarray(image.convert("RGB"), dtype=int)
+    # the obstacles' own grey in the view from the side: in space they are seen through
+    grey = int((pixels == 0xD9).all(axis=2).sum())
     has = bool(blueprint(read_case(case)).scenery.shapes)
-    assert (brown > 300) == has
+    assert (grey > 300) == has
 
 
 def test_show_refuses_what_it_cannot_write(
@@ -66,3 +66,25 @@ def test_show_refuses_what_it_cannot_write(
     assert ".png" in capsys.readouterr().err
     (tmp_path / "file").write_text("")
     assert main(["show", case, "--out", str(tmp_path / "file" / "a.png")]) == 1
+
+
+@pytest.mark.parametrize("name", ["section", "grasp", "grasp_table", "blocked_contact"])
+def test_the_page_is_as_high_as_what_it_shows(name: str, tmp_path: Path) -> None:
+    target = tmp_path / "rest.png"
+    assert main(["show", str(CASES / f"{name}.yaml"), "--out", str(target)]) == 0
+    with Image.open(target) as image:
+        empty = (np.asarray(image.convert("L")) > 250).all(axis=1)
+    # rows of white one after the other
+    runs = [len(list(rows)) for white, rows in itertools.groupby(empty) if white]
+    # the table is 40 mm below the body
+    assert max(runs) < 150
+
+
+@pytest.mark.parametrize("normal", [(0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (0.0, 1.0, 1.0)])
+def test_the_strip_of_a_plane_is_behind_it(normal: tuple[float, float, float]) -> None:
+    drawing = blueprint(read_case(CASES / "grasp_table.yaml"))
+    plane = Sheet((0.0, -40.0, 20.0), normal)
+    away = (drawing._strip(plane) - plane.point) @ np.array(normal)
+    assert away.max() == pytest.approx(0.0, abs=1e-9)
+    assert away.min() == pytest.approx(-3.0 * np.linalg.norm(normal))
+    assert len(drawing._strip(Sheet((1.0, 0.0, 0.0), (1.0, 0.0, 0.0)))) == 0

@@ -23,7 +23,7 @@ from fiberbend.drawing.space.page import Page
 from fiberbend.drawing.space.panel import Panel, free_place
 from fiberbend.drawing.space.rest import draw_rest, rest_image
 from fiberbend.drawing.surfaces import BodySurfaces
-from fiberbend.reader.reader import parse_case
+from fiberbend.reader.reader import parse_case, read_case
 from fiberbend.results.at_rest import body_at_rest, threads
 from fiberbend.results.folder import RunFolder
 from fiberbend.results.reading import read_history
@@ -41,6 +41,8 @@ from tests.output.bending import model_mesh, snapshot
 from tests.output.uniform import cell
 from tests.output.uniform import state as state_of
 from tests.run.conftest import small
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
 
 OBLIQUE = (-0.62, 0.42, -0.66)
 SIZE_OF = (400, 300)
@@ -123,6 +125,31 @@ def test_scale_is_that_of_the_image(renderer: Renderer) -> None:
 
 
 # --- texts -----------------------------------------------------------------------------------
+
+
+def test_a_post_is_under_its_strip_wherever_that_moves() -> None:
+    """A tip that is pressed on a post moves outward by a few hundredths of the length."""
+    from fiberbend.case.convert import dimensions, obstacle_shapes
+
+    for name in ("blocked_contact", "blocked_tip"):
+        case = read_case(CASES / f"{name}.yaml")
+        post, actuator = obstacle_shapes(case)["post"], dimensions(case.actuator)
+        assert isinstance(post, Box)
+        end = actuator.length + actuator.cap
+        assert post.low[2] == pytest.approx(end - 2.0)
+        assert post.high[2] > end + 0.04 * actuator.length
+        assert post.high[1] == pytest.approx(actuator.outer_bottom)
+
+
+def test_a_text_does_not_cross_the_outline_of_an_obstacle() -> None:
+    taken, grey = np.zeros((100, 200), dtype=bool), np.zeros((100, 200), dtype=bool)
+    grey[:, 100:] = True
+    near, size = np.array([102.0, 50.0]), (40, 10)
+    place = free_place(taken, near, size, grey)
+    assert abs(place[0] - 100) > 18
+    assert abs(place[0] - 100) < 26
+    # half of it on either side where there is no other place
+    assert free_place(taken, near, (190, 90), grey) == pytest.approx([105, 50], abs=6)
 
 
 def test_a_text_finds_the_nearest_free_place() -> None:

@@ -163,6 +163,42 @@ def test_parts_can_be_chosen(open_page: Browser, box: str) -> None:
     assert differ(before, open_page.picture()) > 300
 
 
+def test_the_first_picture_is_as_large_as_its_frame_and_others_are_at_one_scale(
+    open_page: Browser,
+) -> None:
+    def extent() -> tuple[float, float]:
+        """Parts of the frame's height and width that are filled."""
+        open_page.settle()
+        picture = open_page.picture()
+        seen = np.abs(picture - picture[2, 2]).max(axis=2) > 24
+        places = np.argwhere(seen[:-90])
+        tall, wide = (np.ptp(places, axis=0) + 1) / seen.shape
+        return float(tall), float(wide)
+
+    for box in ("show-obstacles", "show-fibers"):
+        open_page.page.locator(f"#{box}").uncheck()
+    open_page.page.locator("#fit-step").click()
+    own = extent()
+    assert max(own) > 0.75
+    open_page.page.locator("#fit-all").click()
+    last = extent()
+    open_page.step(0)
+    assert max(extent()) < 1.0
+    assert max(last) <= max(own)
+    open_page.step(3)
+    assert extent() == pytest.approx(last, abs=0.01)
+
+
+def test_the_marks_of_the_bar_are_where_their_values_are(open_page: Browser) -> None:
+    bar = open_page.page.locator("#bar-colors").bounding_box()
+    for name in ("strain", "stress"):
+        open_page.page.locator("#quantity").select_option(name)
+        for number, mark in enumerate(open_page.page.locator("#bar-ticks span").all()):
+            box = mark.bounding_box()
+            middle = box["x"] + box["width"] / 2
+            assert middle == pytest.approx(bar["x"] + bar["width"] * number / 4, abs=1.0)
+
+
 def test_a_cut_opens_the_chamber(open_page: Browser) -> None:
     before = open_page.picture()
     open_page.page.locator("#show-cut").check()

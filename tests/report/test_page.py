@@ -183,7 +183,7 @@ def test_a_damaged_state_is_left_out_and_the_page_says_so(folder: Path, tmp_path
     (path / "snapshots" / "step_0002.npz").write_bytes(b"PK no zip")
     found = Page(report(path, case(), rows(), run_of()))
     assert "damaged" in found.text
-    (scene,) = [text for text in found.scripts if text.startswith('{"bounds"')]
+    (scene,) = [text for text in found.scripts if text.startswith('{"around"')]
     assert [step["step"] for step in json.loads(scene)["steps"]] == [0, 1, 3]
 
 

@@ -86,8 +86,9 @@ def test_fibers_lie_in_the_surface(content: dict[str, Any]) -> None:
 
 
 def test_colours_are_the_strain_of_pure_bending(content: dict[str, Any]) -> None:
-    top = next(each["top"] for each in content["quantities"] if each["name"] == "strain")
+    assert [each["name"] for each in content["quantities"]] == ["strain", "stress"]
     for skin in content["skins"]:
+        top = skin["tops"][0]
         points = positions(content, skin["positions"])[0]
         shown = unpacked(skin["values"][0], "u1").reshape(len(content["steps"]), -1) / 255 * top
         assert not shown[0].any()
@@ -199,8 +200,8 @@ def test_section_and_cell_are_where_their_body_in_space_is(model: str, tmp_path:
     mesh = space.model_mesh.mesh
     moved = mesh.nodes + space.snapshot(shot).displacement
     strain = space.at_cells(shot)
-    top = found.content["quantities"][0]["top"]
     for skin in found.content["skins"]:
+        top = skin["tops"][0]
         points = positions(found.content, skin["positions"])
         distance, node = cKDTree(mesh.nodes).query(points[0])
         assert distance.max() < 2 * found.content["scale"]
@@ -223,6 +224,40 @@ def test_a_section_without_pictures_shows_its_shape(tmp_path: Path) -> None:
     own = uniform.section()
     path = uniform_folder(tmp_path / "run", given, own, uniform.state(own, 90.0))
     page = report(path, given, [row(0, 0.0), row(1, 90.0)], run_of(model="section"))
-    assert page.count('alt="section shape"') == 1
-    assert 'alt="section strain"' not in page
-    assert page.count('alt="pressure angle"') == 1
+    assert page.count('alt="Section of the actuator in several states') == 1
+    assert 'alt="Greatest principal strain in the section."' not in page
+    assert page.count('alt="Bending angle against pressure."') == 1
+
+
+def test_colours_span_what_is_seen_from_outside(tmp_path: Path) -> None:
+    """Not the chamber's surface, whose corners strain most and nobody sees."""
+    folder = bent_folder(tmp_path / "run", case(), run_of())
+    space = Space(case(), States(folder, case(), rows()).model_mesh)
+    own, mesh = scene._own_nodes(space.own), space.own.mesh
+    node_of = np.zeros(int(own.cells.max()) + 1, dtype=int)
+    node_of[own.cells.ravel()] = mesh.cells.ravel()
+    chamber = set(mesh.facet_nodes("chamber").ravel().tolist())
+    skins = scene._skins(space, 2)
+    assert {(skin.part, skin.cut) for skin in skins} >= {("body", False), ("sheath", False)}
+    for skin in skins:
+        if skin.part == "body" and not skin.cut:
+            assert chamber & set(node_of[skin.value].tolist())
+        if not skin.cut:
+            assert not chamber & set(node_of[skin.seen].tolist())
+
+
+def test_a_step_says_the_forces_of_obstacles(tmp_path: Path) -> None:
+    folder = bent_folder(tmp_path / "run", case(), run_of())
+    history = rows()
+    history[3] |= {"contact_cylinder_y_N": -3.0, "contact_cylinder_z_N": 4.0}
+    page = report(folder, case(), history, run_of())
+    assert page.count('"forces": "cylinder 5 N"') == 1
+    assert page.count('"forces": ""') == 3
+
+
+def test_stress_is_on_a_logarithmic_scale(content: dict[str, Any]) -> None:
+    powers = {each["name"]: each["powers"] for each in content["quantities"]}
+    assert powers["strain"] == 0 < powers["stress"]
+    tops = {skin["tops"][1] for skin in content["skins"]}
+    assert len(tops) == 1
+    assert np.log10(tops.pop()) % 1 == pytest.approx(0, abs=1e-9)

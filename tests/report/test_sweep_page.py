@@ -40,6 +40,7 @@ def test_a_sweep_leaves_a_page(folder: Path) -> None:
     maps = [address for tag, address in found.links() if tag == "img"]
     assert len(maps) == len(list((folder / "maps").iterdir())) > 0
     assert all(address.startswith("data:image/png;base64,") for address in maps)
+    assert "Pressure at 90°." in found.texts
 
 
 def test_points_lead_to_their_reports(folder: Path) -> None:

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from fiberbend.sweep.fields import VariedField
-from fiberbend.sweep.maps import limits_of
+from fiberbend.sweep.maps import limits_of, map_page
 from fiberbend.sweep.plots import draw
 from fiberbend.sweep.quantities import ReportedQuantity
 from tests.run.test_sweep import NAMES, Lab
@@ -118,10 +118,33 @@ def test_a_failed_point_is_hatched_and_no_contour_crosses_it(count: int) -> None
     def faces(pixels: Any) -> int:
         return int((np.abs(pixels - FAILED_FACE).max(axis=2) < 3).sum())
 
-    # a cell is 378/count by 300/count pixels, of which the hatch covers less than half
-    assert faces(picture(xs, ys, failed)) > 0.4 * 378 * 300 / count**2
+    # of a cell's pixels the hatch covers less than half
+    width, height = 298 / count, min(68 * count, 300) / count
+    assert faces(picture(xs, ys, failed)) > 0.4 * width * height
     assert faces(picture(xs, ys, {})) == 0
     assert faces(picture(xs, ys, {(2.0, 2.0): "not run"})) == 0
+
+
+def test_lines_of_a_single_map_are_beside_each_other() -> None:
+    axes = [VariedField(f"actuator.{n}", n, "mm", (1.0, 2.0)) for n in ("radius", "wall")]
+    rows = [
+        {"radius_mm": x, "wall_mm": y, "status": "converged", "own": x + y, "form": 2 * x + y}
+        for x in (1.0, 2.0)
+        for y in (1.0, 2.0)
+    ]
+
+    def size(panels: dict[str, Any], lines: dict[str, str]) -> tuple[int, int]:
+        quantity = ReportedQuantity("angle", "a", "angle", "°", lines)
+        file = io.BytesIO()
+        map_page("A sweep", axes, panels, quantity, dict.fromkeys(lines, (0.0, 6.0)), file)
+        return Image.open(file).size
+
+    one, both = {"section model": "own"}, {"section model": "own", "closed form": "form"}
+    assert size({"": rows}, both)[0] > size({"": rows}, one)[0]
+    assert size({"": rows}, both)[1] == size({"": rows}, one)[1]
+    several = {"wall 1 mm": rows, "wall 2 mm": rows}
+    assert size(several, both)[0] == size(several, one)[0]
+    assert size(several, both)[1] > size(several, one)[1] + 200
 
 
 def test_a_curve_has_a_gap_where_a_point_failed() -> None:

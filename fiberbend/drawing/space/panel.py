@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fiberbend.drawing.renderer import Image, View
-from geometry.mesh.data import Floats
+from geometry.mesh.data import Floats, Ints
 
 STRIP = 62
 """Height in pixels of what `scale` draws."""
@@ -19,6 +19,8 @@ _AWAY = 0.16
 _INK = "#222222"
 _FORCE = "#b01818"
 _TRIED = 4000
+_INSIDE = 0.97
+"""Part of a text's box that is grey where the text is within an obstacle."""
 _ARROW = 0.06
 """Length of the greatest force's arrow, as a part of the image's width."""
 
@@ -95,15 +97,20 @@ class Panel:
             body: middle of the body, (3,), mm.
             fontsize: in points.
         """
+        from matplotlib.patheffects import withStroke
+
         start, end = self.at(ends)
-        style = {"arrowstyle": "<|-|>", "color": "0.3", "shrinkA": 0, "shrinkB": 0, "lw": 0.9}
-        self.axes.annotate("", tuple(start), tuple(end), arrowprops=style, annotation_clip=False)
+        arrow = {"arrowstyle": "<|-|>", "color": "0.3", "shrinkA": 0, "shrinkB": 0, "lw": 0.9}
+        self.axes.annotate("", tuple(start), tuple(end), arrowprops=arrow, annotation_clip=False)
         middle, along = (start + end) / 2, end - start
         across = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-9)
         across *= np.sign(across @ (middle - self.at(body[None])[0])) or 1.0
         room = np.abs(across) @ (np.array(self._extent(text, fontsize)) / 2)
         place = middle + room * across
-        self.axes.text(*place, text, ha="center", va="center", fontsize=fontsize, color=_INK)
+        style = {"ha": "center", "va": "center", "fontsize": fontsize, "color": _INK}
+        written = self.axes.text(*place, text, **style)
+        # over the edge of an obstacle it can still be read
+        written.set_path_effects([withStroke(linewidth=3, foreground="white")])
 
     def name(self, text: str, point: Floats, fontsize: float = 11, color: str = _INK) -> None:
         """Write a text near a point, where it covers nothing that is drawn.
@@ -143,32 +150,52 @@ class Panel:
         self.axes.annotate("", tuple(head), tuple(tail), arrowprops=style, annotation_clip=False)
         # far enough from its end for the text's own size
         room = np.abs(along) @ (np.array(self._extent(text, fontsize)) / 2 + 2)
-        self._write(text, tail - room * along, fontsize, _FORCE)
+        self._write(text, tail - room * along, fontsize, _FORCE, tail)
 
     def _extent(self, text: str, fontsize: float) -> tuple[float, float]:
         """Width and height of a text in pixels of the image."""
         pixel = fontsize * self.figure.dpi / 72 / self.zoom
         return (0.62 * len(text) + 0.4) * pixel, 1.4 * pixel
 
-    def _write(self, text: str, near: Floats, fontsize: float, color: str) -> None:
-        """A text at the nearest place where no body is drawn, with a line to its point if far."""
+    def _write(
+        self, text: str, near: Floats, fontsize: float, color: str, of: Floats | None = None
+    ) -> None:
+        """A text at the nearest place where no body is drawn, with a line to its point if far.
+
+        Args:
+            text: one line.
+            near: column and row where it would be best, (2,).
+            fontsize: in points.
+            color: of the text.
+            of: its point, (2,); `near` unless given.
+        """
         wide, tall = self._extent(text, fontsize)
-        place = free_place(_body(self.image), near, (wide, tall))
+        place = free_place(_body(self.image), near, (wide, tall), _grey(self.image))
         apart = np.abs(place - near) - [wide / 2, tall / 2]
         if apart.max() > tall / 2:
-            ends = zip(near, place - np.sign(place - near) * [0, tall / 2], strict=True)
+            ends = zip(
+                near if of is None else of,
+                place - np.sign(place - near) * [0, tall / 2],
+                strict=True,
+            )
             self.axes.plot(*ends, color=color, linewidth=0.6)
         style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": fontsize}
         self.axes.text(*place, text, color=color, **style)
 
 
-def free_place(taken: NDArray[np.bool_], near: Floats, size: tuple[float, float]) -> Floats:
+def free_place(
+    taken: NDArray[np.bool_],
+    near: Floats,
+    size: tuple[float, float],
+    grey: NDArray[np.bool_] | None = None,
+) -> Floats:
     """Middle of the nearest box in an image that covers nothing, and is not beyond the body.
 
     Args:
         taken: pixels that must not be covered, (height, width).
         near: column and row, (2,).
         size: width and height of the box in pixels.
+        grey: pixels that are covered all or none, if that can be, (height, width).
 
     Returns:
         Column and row of the middle; `near`, moved into the image, where no box is free.
@@ -181,14 +208,24 @@ def free_place(taken: NDArray[np.bool_], near: Floats, size: tuple[float, float]
     step = max(4.0, min(size) / 3)
     grid = np.meshgrid(np.arange(low[0], high[0], step), np.arange(low[1], high[1], step))
     places = np.concatenate([np.clip(near, low, high)[None], np.stack(grid, -1).reshape(-1, 2)])
-    sums = np.zeros((rows + 1, columns + 1), dtype=np.int64)
-    sums[1:, 1:] = taken.cumsum(axis=0).cumsum(axis=1)
     left, top = np.floor(places - half).astype(int).clip(0).T
     right, below = np.ceil(places + half).astype(int).clip(None, [columns, rows]).T
-    covered = sums[below, right] - sums[top, right] - sums[below, left] + sums[top, left]
-    free = places[covered == 0]
+
+    def count(mask: NDArray[np.bool_]) -> Ints:
+        """Pixels of a mask in every box."""
+        sums = np.zeros((rows + 1, columns + 1), dtype=np.int64)
+        sums[1:, 1:] = mask.cumsum(axis=0).cumsum(axis=1)
+        found: Ints = sums[below, right] - sums[top, right] - sums[below, left] + sums[top, left]
+        return found
+
+    uncovered = count(taken) == 0
+    free = places[uncovered]
     if not len(free):
         return places[0]
+    if grey is not None:
+        share = count(grey) / ((below - top) * (right - left))
+        even = places[uncovered & ((share == 0) | (share > _INSIDE))]
+        free = even if len(even) else free
     free = free[np.argsort(np.linalg.norm(free - near, axis=1), kind="stable")[:_TRIED]]
     # a line from the point to its text that crosses the body would be taken for a part of it
     share = np.linspace(0.0, 1.0, 24)[:, None, None]
@@ -210,6 +247,13 @@ def _body(image: Image) -> NDArray[np.bool_]:
     return body
 
 
+def _grey(image: Image) -> NDArray[np.bool_]:
+    """Pixels that show an obstacle."""
+    least, most = image.min(axis=2), image.max(axis=2)
+    grey: NDArray[np.bool_] = (least >= 200) & (most < 250) & (most - least <= 8)
+    return grey
+
+
 def _axis(axes: Any, name: str, origin: Floats, end: Floats, is_near: bool) -> None:
     """One axis of a triad; a dot or a cross in a circle where it is along the view."""
     label: dict[str, Any] = {
@@ -222,7 +266,7 @@ def _axis(axes: Any, name: str, origin: Floats, end: Floats, is_near: bool) -> N
     if np.linalg.norm(end) < _AWAY * _ARM:
         axes.plot(*origin, "o", markersize=9, markerfacecolor="white", markeredgecolor="black")
         axes.plot(*origin, "o" if is_near else "x", markersize=3 if is_near else 5, color="black")
-        axes.text(origin[0] - 12, origin[1] - 6, name, **label)
+        axes.text(origin[0] - 15, origin[1] - 6, name, **label)
         return
     style = {"arrowstyle": "-|>", "color": "black", "shrinkA": 0, "shrinkB": 0, "lw": 1.3}
     axes.annotate("", tuple(origin + end), tuple(origin), arrowprops=style)

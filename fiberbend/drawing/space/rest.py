@@ -49,6 +49,7 @@ def rest_image(
     scenery: Scenery | None = None,
     threads: Sequence[Floats] = (),
     width: int = WIDTH,
+    dimensions: bool = True,
 ) -> Rest:
     """Draw an actuator at rest: toward its tip without its sheath, then without its near half.
 
@@ -58,6 +59,7 @@ def rest_image(
         scenery: has the obstacles.
         threads: polylines of a winding that the mesh does not have, (n, 3) each, mm.
         width: of the image, pixels; its height follows.
+        dimensions: leave room for the main dimensions.
 
     Raises:
         fiberbend.drawing.renderer.PictureError: nothing can be drawn on this machine.
@@ -67,7 +69,8 @@ def rest_image(
     obstacles = Obstacles(scenery or Scenery(), points)
     right = View(_FROM, np.zeros(3), 1.0).axes[0]
     wide = float(np.ptp(np.concatenate([points, obstacles.points]) @ right))
-    lengths = _lengths(surfaces, points, _APART * wide, {} if scenery is None else scenery.lengths)
+    known = {} if scenery is None else scenery.lengths
+    lengths = _lengths(surfaces, points, _APART * wide, known) if dimensions else []
     every = np.concatenate([points, obstacles.points, *(ends for _, ends in lengths)])
     view = frame(every, _FROM, 1.0, margin=0.0)
     right, up, _ = view.axes

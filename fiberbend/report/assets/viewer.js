@@ -44,10 +44,12 @@
     }`;
   const FRAGMENT = `
     uniform sampler2D colors;
+    uniform float share;
     varying float shown;
     varying float light;
     void main() {
-      vec3 color = texture2D(colors, vec2((floor(shown * 255.0 + 0.5) + 0.5) / 256.0, 0.5)).rgb;
+      float level = floor(min(shown * share, 1.0) * 255.0 + 0.5);
+      vec3 color = texture2D(colors, vec2((level + 0.5) / 256.0, 0.5)).rgb;
       gl_FragColor = vec4(color * light, 1.0);
     }`;
 
@@ -84,10 +86,10 @@
     const palettes = {
       scalar: palette(scalarColors), region: palette(regionColors(data.regions)),
     };
-    const coloring = new THREE.ShaderMaterial({
+    const coloring = () => new THREE.ShaderMaterial({
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
-      uniforms: { colors: { value: palettes.scalar } },
+      uniforms: { colors: { value: palettes.scalar }, share: { value: 1 } },
       side: THREE.DoubleSide,
       polygonOffset: true,
     });
@@ -117,14 +119,16 @@
       const points = new Float32Array(3 * skin.points);
       geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
       geometry.setIndex(new THREE.BufferAttribute(await unpacked(skin.triangles, Uint32Array), 1));
+      const material = coloring();
       const make = () => {
-        const mesh = new THREE.Mesh(geometry, coloring);
+        const mesh = new THREE.Mesh(geometry, material);
         mesh.frustumCulled = false;
         return mesh;
       };
       skins.push({
         ...skin,
         geometry,
+        material,
         numbers: await unpacked(skin.positions, Uint16Array),
         byRegion: await unpacked(skin.region, Uint8Array),
         byQuantity: await Promise.all(skin.values.map((text) => unpacked(text, Uint8Array))),
@@ -202,7 +206,8 @@
       }
       showValues();
       const rounded = (value) => value.toFixed(1).replace(/^-0\.0$/, "0.0").replace("-", "−");
-      const text = `step ${step.step}: ${rounded(step.pressure)} kPa, θ = ${rounded(step.angle)}°`;
+      const state = `step ${step.step}: ${rounded(step.pressure)} kPa, θ = ${rounded(step.angle)}°`;
+      const text = step.forces ? `${state}; ${step.forces}` : state;
       element("step-text").textContent = text;
       slider.setAttribute("aria-valuetext", text);
       slider.value = String(number);
@@ -211,8 +216,10 @@
 
     function showValues() {
       const which = data.quantities.findIndex((each) => each.name === quantity.value);
-      coloring.uniforms.colors.value = which < 0 ? palettes.region : palettes.scalar;
+      const top = greatest(which);
       for (const skin of skins) {
+        skin.material.uniforms.colors.value = which < 0 ? palettes.region : palettes.scalar;
+        skin.material.uniforms.share.value = which < 0 ? 1 : skin.tops[which] / top;
         const all = which < 0 ? skin.byRegion : skin.byQuantity[which];
         const first = which < 0 ? 0 : shown * skin.points;
         const values = all.subarray(first, first + skin.points);
@@ -220,8 +227,19 @@
       }
       element("bar").hidden = which < 0;
       element("regions").hidden = which >= 0;
-      if (which >= 0) drawBar(data.quantities[which]);
+      if (which >= 0) drawBar(data.quantities[which], top);
       needed = true;
+    }
+
+    // The colours span what is seen from outside, and what a cut shows where it is cut open.
+    function greatest(which) {
+      const cut = checked("show-cut");
+      const sheath = checked("show-sheath");
+      const seen = skins.filter((skin) => cut
+        ? (skin.part === "sheath" ? sheath : checked("show-body"))
+        : !skin.cut && (skin.part === "sheath") === sheath);
+      const tops = (seen.length ? seen : skins).map((skin) => skin.tops[which]);
+      return Math.max(...tops);
     }
 
     function showParts() {
@@ -236,22 +254,24 @@
         if (fibers.whole.children[1]) fibers.whole.children[1].visible = !cut;
       }
       obstacles.visible = checked("show-obstacles");
-      needed = true;
+      showValues();
     }
 
-    function drawBar(each) {
+    function drawBar({ label, powers }, top) {
       const bar = element("bar-colors");
       const context = bar.getContext("2d");
       for (let i = 0; i < 256; i++) {
         context.fillStyle = `rgb(${scalarColors.subarray(3 * i, 3 * i + 3).join(",")})`;
         context.fillRect(i, 0, 1, 1);
       }
-      element("bar-label").textContent = each.label;
+      element("bar-label").textContent = label;
       const ticks = element("bar-ticks");
       ticks.replaceChildren(...[0, 1, 2, 3, 4].map((i) => {
         const tick = document.createElement("span");
-        const value = String(Number(((i * each.top) / 4).toPrecision(3)));
-        tick.textContent = i === 4 ? `≥ ${value}` : value;
+        const value = powers ? top * 10 ** (powers * (i / 4 - 1)) : (i * top) / 4;
+        const sign = i === 4 ? "≥ " : i === 0 && powers ? "≤ " : "";
+        tick.textContent = sign + String(Number(value.toPrecision(3)));
+        tick.style.left = `${25 * i}%`;
         return tick;
       }));
     }
@@ -261,6 +281,7 @@
     const low = new THREE.Vector3(...data.bounds[0]);
     const high = new THREE.Vector3(...data.bounds[1]);
     const reach = low.distanceTo(high);
+    let all = false;
     const views = {
       side: [-1, 0, 0], front: [0, 0, -1], top: [0, 1, 0.001], oblique: [-0.75, 0.42, -0.5],
     };
@@ -290,7 +311,8 @@
       camera.near = 0;
       camera.far = 6 * reach;
       // fibers lie in a surface that is drawn flat between its points: it steps back behind them
-      coloring.polygonOffsetUnits = (FIBER_LIFT / camera.far) * 2 ** 24;
+      const behind = (FIBER_LIFT / camera.far) * 2 ** 24;
+      for (const skin of skins) skin.material.polygonOffsetUnits = behind;
       camera.updateProjectionMatrix();
       needed = true;
     }
@@ -306,7 +328,30 @@
       fit();
     }
 
+    function withObstacles(box) {
+      const beside = new THREE.Vector3(1, 1, 1).multiplyScalar(data.around);
+      const least = box[0].clone().sub(beside), greatest = box[1].clone().add(beside);
+      if (!obstacles.visible) return box;
+      for (const drawn of obstacles.children) {
+        const points = drawn.geometry.getAttribute("position");
+        for (let i = 0; i < points.count; i++) {
+          const point = new THREE.Vector3().fromBufferAttribute(points, i);
+          point.clamp(least, greatest);
+          box[0].min(point);
+          box[1].max(point);
+        }
+      }
+      return box;
+    }
+
+    // all steps, or the one that is shown
+    function fitAll() {
+      all = true;
+      aim(...withObstacles(data.bounds.map((corner) => new THREE.Vector3(...corner))));
+    }
+
     function fitStep() {
+      all = false;
       const box = [new THREE.Vector3(1, 1, 1), new THREE.Vector3(-1, -1, -1)];
       box.forEach((corner) => corner.multiplyScalar(1e9));
       for (const skin of skins) {
@@ -318,16 +363,15 @@
           if (data.half) box[0].x = Math.min(box[0].x, -point.x);
         }
       }
-      aim(...box);
+      aim(...withObstacles(box));
     }
 
     function look(name) {
-      low.set(...data.bounds[0]);
-      high.set(...data.bounds[1]);
-      controls.target.copy(low).add(high).multiplyScalar(0.5);
-      const toward = new THREE.Vector3(...views[name]).normalize();
-      camera.position.copy(controls.target).addScaledVector(toward, 3 * reach);
-      camera.zoom = 1;
+      camera.position.copy(controls.target).addScaledVector(
+        new THREE.Vector3(...views[name]).normalize(), 3 * reach,
+      );
+      if (all) fitAll();
+      else fitStep();
       camera.lookAt(controls.target);
       controls.update();
       fit();
@@ -400,7 +444,13 @@
     // --- what the reader does --------------------------------------------------------------------
 
     slider.max = String(data.steps.length - 1);
-    slider.addEventListener("input", () => { stop(); showStep(Number(slider.value)); });
+    // the first picture is as large as the frame; who goes through the steps sees all at one scale
+    const go = (number) => {
+      if (!all && !chosen && camera.zoom === 1) fitAll();
+      showStep(number);
+    };
+    let chosen = false;
+    slider.addEventListener("input", () => { stop(); go(Number(slider.value)); });
     quantity.addEventListener("change", showValues);
     for (const box of document.querySelectorAll("#view-controls input[type=checkbox]")) {
       box.addEventListener("change", showParts);
@@ -408,7 +458,8 @@
     for (const button of document.querySelectorAll("[data-look]")) {
       button.addEventListener("click", () => look(button.dataset.look));
     }
-    element("fit-step").addEventListener("click", fitStep);
+    element("fit-step").addEventListener("click", () => { chosen = true; fitStep(); });
+    element("fit-all").addEventListener("click", fitAll);
     const play = element("play");
     let timer = 0;
     function stop() {
@@ -419,7 +470,7 @@
     play.addEventListener("click", () => {
       if (timer) return stop();
       play.textContent = "Pause";
-      if (shown === data.steps.length - 1) showStep(0);
+      go(shown === data.steps.length - 1 ? 0 : shown);
       timer = setInterval(() => {
         if (shown >= data.steps.length - 1) return stop();
         showStep(shown + 1);
@@ -428,9 +479,9 @@
     controls.addEventListener("change", () => { needed = true; });
     new ResizeObserver(fit).observe(canvas);
 
-    look("side");
     showStep(data.steps.length - 1);
     showParts();
+    look("side");
     (function draw() {
       requestAnimationFrame(draw);
       if (!needed) return;
