@@ -154,9 +154,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         from fiberbend.schema.problems import CaseError
 
-        if not isinstance(error, (CaseError, MachineError)):
-            raise
-        return launch.refuse(str(error), WRONG_INPUT)
+        if isinstance(error, (CaseError, MachineError)):
+            return launch.refuse(str(error), WRONG_INPUT)
+        if isinstance(error, OSError) and error.filename is not None:
+            return launch.refuse(f"{error.filename}: {error.strerror}", WRONG_INPUT)
+        raise
     return code or 0
 
 
@@ -346,7 +348,11 @@ def sweep(
         return launch.crash(error, folder)
 
 
-@app.command
+@app.command(
+    help_epilogue="""Examples:
+  fiberbend schema > case.schema.json
+"""
+)
 def schema() -> None:
     """Print the JSON schema of a case, for editors."""
     from fiberbend.reader.json_schema import json_schema
@@ -370,7 +376,11 @@ def completion(shell: Literal["bash", "zsh", "fish"], /) -> None:
     say(app.generate_completion(shell=shell).rstrip("\n"))
 
 
-@app.command
+@app.command(
+    help_epilogue="""Examples:
+  fiberbend version
+"""
+)
 def version() -> int:
     """Print the version."""
     say(__version__)

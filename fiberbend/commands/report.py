@@ -10,6 +10,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 
 from fiberbend.running.launch import say
+from fiberbend.schema.problems import CaseError, Problem
 
 
 def report(
@@ -34,11 +35,15 @@ def report(
 
     target = out or folder / REPORT
     page = _page(folder, _links(folder, target))
-    if out is None:
-        RunFolder(folder).write_text(REPORT, page)
-    else:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        out.write_text(page, encoding="utf-8")
+    try:
+        if out is None:
+            RunFolder(folder).write_text(REPORT, page)
+        else:
+            out.parent.mkdir(parents=True, exist_ok=True)
+            out.write_text(page, encoding="utf-8")
+    except OSError as error:
+        text = f"{error.strerror}, expected a file that can be written"
+        raise CaseError([Problem(str(target), text)]) from None
     say(f"report in {target}")
     if open_it:
         from fiberbend.commands.opening import open_file
@@ -56,7 +61,6 @@ def _links(folder: Path, target: Path) -> str:
 def _page(folder: Path, links: str) -> str:
     from fiberbend.report.sweep_page import TABLE, sweep_report
     from fiberbend.results.folder import CASE_FILE, HISTORY_FILE, read_history
-    from fiberbend.schema.problems import CaseError, Problem
 
     if (folder / TABLE).exists():
         return sweep_report(folder, links=links)
@@ -74,7 +78,6 @@ def _page(folder: Path, links: str) -> str:
 def _run(folder: Path) -> dict[str, Any]:
     """Content of run.json; of a run that was killed before it could write any: nothing."""
     from fiberbend.results.folder import RUN_FILE
-    from fiberbend.schema.problems import CaseError, Problem
 
     try:
         content = json.loads((folder / RUN_FILE).read_text(encoding="utf-8"))

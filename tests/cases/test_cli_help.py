@@ -23,6 +23,22 @@ def test_version(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> No
     assert capsys.readouterr().out.strip() == __version__
 
 
+def test_a_file_that_cannot_be_written_is_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = tmp_path / "run"
+    case = str(ROOT / "cases" / "section.yaml")
+    quick = ["--set", "model=analytic", "--set", "output={pictures: false, report: false}"]
+    assert main(["run", case, "--out", str(run), "--quiet", *quick]) == 0
+    capsys.readouterr()
+    (tmp_path / "file").write_text("")
+    for target in (tmp_path, tmp_path / "file" / "page.html"):
+        assert main(["report", str(run), "--out", str(target)]) == 1
+        said = capsys.readouterr().err
+        assert said.startswith(f"{target}: ")
+        assert said.count("\n") == 1
+
+
 COMMANDS = ("validate", "plan", "run", "sweep", "control", "mesh", "completion")
 
 

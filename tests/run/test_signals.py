@@ -13,6 +13,8 @@ import pytest
 import yaml
 
 from bench.survive import LIMIT, end, files, kill, launch, session
+from fiberbend.cli import main
+from fiberbend.results.folder import read_history
 from tests.conftest import MpiRun
 from tests.run.conftest import small
 
@@ -73,6 +75,33 @@ def test_told_to_stop_on_two_ranks(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         assert run["status"] == "running"
     assert run["ranks"] == 2
     assert run["load_steps"] >= 1
+
+
+@pytest.mark.parametrize("phase", ["crosscheck", "output", "report"])
+def test_told_to_stop_after_the_last_load_step(phase: str, tmp_path: Path) -> None:
+    """The curves are whole, and a run says so; the rest is made by --resume."""
+    case, out = tmp_path / "case.yaml", tmp_path / "run"
+    case.write_text(yaml.safe_dump(small(model="section")))
+    process = launch(1, ["run", case, "--out", out, "--verbose"])
+    assert process.stdout is not None
+    for line in process.stdout:
+        if line == f"{phase} …\n":
+            break
+    process.send_signal(signal.SIGINT)
+    code, text = end(process)
+    assert code == 130
+    assert "stopped after the last load step" in text
+    assert "nothing kept" not in text
+    run = json.loads((out / "run.json").read_text())
+    rows = read_history(out / "history.csv")
+    assert (run["status"], run["load_steps"]) == ("interrupted", len(rows) - 1)
+    assert rows[-1]["pressure_kPa"] > 0
+    assert main(["plot", str(out), "--out", str(tmp_path / "a.png")]) == 0
+    assert main(["report", str(out)]) == 0
+    assert main(["run", str(case), "--out", str(out), "--resume", "--quiet"]) == 0
+    run = json.loads((out / "run.json").read_text())
+    assert run["status"] == "converged"
+    assert {"output", "report"} <= run["wall_s"].keys()
 
 
 def assert_said(text: str, run: dict[str, Any]) -> None:
