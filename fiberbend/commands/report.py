@@ -20,7 +20,7 @@ def report(
     out: Path | None = None,
     open_it: Annotated[bool, Parameter(name="--open")] = False,
 ) -> None:
-    """Write the page of a run or a sweep anew.
+    """Write report.html of a run or a sweep again.
 
     The page is one HTML file that needs no network: case, plan, answer, curves, the body in space
     at every load step, tables and files. Nothing is solved. A run and a sweep write it at their
