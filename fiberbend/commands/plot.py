@@ -7,7 +7,7 @@ from typing import Annotated, Literal, get_args
 
 from cyclopts import Parameter
 
-from fiberbend.running.launch import say
+from fiberbend.running.launch import say, settle_folders
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.units import parse, show
 
@@ -80,6 +80,7 @@ def plot(
         _number("--dpi", dpi, _DPI, "dots per inch"),
         _number("--font-size", font_size, _FONT, "pt"),
     )
+    settle_folders()
     shown: Plot = select(runs, x, y, measured, label)
     target = out
     if target is None:

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from fiberbend.running.launch import say
+from fiberbend.running.launch import say, settle_folders
 from fiberbend.schema.problems import CaseError, Problem
 
 
@@ -33,6 +33,7 @@ def report(
     """
     from fiberbend.results.folder import REPORT, RunFolder
 
+    settle_folders()
     target = out or folder / REPORT
     page = _page(folder, _links(folder, target))
     try:
