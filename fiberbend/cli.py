@@ -92,7 +92,7 @@ app.command(
 app.command(
     "fiberbend.commands.report:report",
     name="report",
-    help="Write the page of a run or a sweep anew.",
+    help="Write report.html of a run or a sweep again.",
     help_epilogue="""Examples:
   fiberbend report runs/section --open
   fiberbend report runs/section --out section.html
@@ -155,9 +155,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         from fiberbend.schema.problems import CaseError
 
-        if not isinstance(error, (CaseError, MachineError)):
-            raise
-        return launch.refuse(str(error), WRONG_INPUT)
+        if isinstance(error, (CaseError, MachineError)):
+            return launch.refuse(str(error), WRONG_INPUT)
+        if isinstance(error, OSError) and error.filename is not None:
+            return launch.refuse(f"{error.filename}: {error.strerror}", WRONG_INPUT)
+        raise
     return code or 0
 
 
@@ -187,7 +189,7 @@ def plan(case: CaseFile, /, *, settings: Changes = (), force: bool = False) -> i
     Args:
         case: Case file.
         settings: Changes to it.
-        force: Do not mind whether there is enough memory.
+        force: Plan even if there is not enough memory.
     """
     from fiberbend.plan.plan import make_plan
     from fiberbend.reader.reader import read_case
@@ -235,7 +237,7 @@ def run(
         resume: Go on with an interrupted run.
         quiet: No progress; the answer alone.
         verbose: Print phases, cut-backs, counts and comparisons with other models too.
-        force: Run whether there is enough memory or not.
+        force: Run even if there is not enough memory.
     """
     from fiberbend.reader.reader import read_case
     from fiberbend.results.folder import REPORT
@@ -318,7 +320,7 @@ def sweep(
     ] = (),
     dry_run: bool = False,
 ) -> int:
-    """Solve a case at many points, in a folder that can be gone on with.
+    """Solve a case at many points, in a folder; started again, it goes on.
 
     Args:
         file: Sweep file, YAML.
@@ -326,7 +328,7 @@ def sweep(
         out: Folder; runs/SWEEP unless given.
         jobs: Processes that solve at once; 1 by default.
         retry: Run failed points again.
-        force: Run whether there is enough memory for all jobs or not.
+        force: Run even if there is not enough memory for all jobs.
         only: Solve the points with this value of a varied field, such as wall=2mm; repeatable.
         dry_run: Print points, models, time and memory; solve and write nothing.
     """
@@ -347,7 +349,11 @@ def sweep(
         return launch.crash(error, folder)
 
 
-@app.command
+@app.command(
+    help_epilogue="""Examples:
+  fiberbend schema > case.schema.json
+"""
+)
 def schema() -> None:
     """Print the JSON schema of a case, for editors."""
     from fiberbend.reader.json_schema import json_schema
@@ -366,12 +372,16 @@ def completion(shell: Literal["bash", "zsh", "fish"], /) -> None:
     """Print a script that lets a shell complete commands, options and files.
 
     Args:
-        shell: Shell that shall run it.
+        shell: Your shell.
     """
     say(app.generate_completion(shell=shell).rstrip("\n"))
 
 
-@app.command
+@app.command(
+    help_epilogue="""Examples:
+  fiberbend version
+"""
+)
 def version() -> int:
     """Print the version."""
     say(__version__)

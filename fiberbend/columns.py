@@ -130,7 +130,7 @@ COLUMNS = (
     Column(
         DET_F,
         "",
-        "least det F at a point of quadrature; low beside a fiber, it tells of the mesh",
+        "least det F at a point of quadrature; low beside a fiber on a coarse mesh",
         ELEMENTS,
         always=True,
     ),

@@ -83,6 +83,7 @@ def answer(case: Case, rows: Sequence[col.Row], run: Mapping[str, Any]) -> Answe
         *_critical(run),
         *_strain(run),
         *_errors(case, model),
+        *_measured(run),
     ]
     return Answer(
         title=case.title,
@@ -317,8 +318,22 @@ def _errors(case: Case, model: ModelKind) -> Iterator[Entry]:
         yield Entry("" if index else "expected error", line)
 
 
+def _measured(run: Mapping[str, Any]) -> Iterator[Entry]:
+    """How far the run is from what the user has measured; what is not expected is a warning too."""
+    text = _beside(run, "measured").get("text")
+    if text:
+        yield Entry("measured points", text)
+
+
 def _comparisons(run: Mapping[str, Any]) -> Iterator[str]:
-    yield from (run.get("crosscheck") or {}).get("lines", ())
+    known = _beside(run, "measured").get("text")
+    lines = (run.get("crosscheck") or {}).get("lines", ())
+    yield from (line for line in lines if line != known)
+
+
+def _beside(run: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    """A comparison of run.json; empty where there is none."""
+    return (run.get("crosscheck") or {}).get(name) or {}
 
 
 def _trust(run: Mapping[str, Any]) -> str:
@@ -326,7 +341,7 @@ def _trust(run: Mapping[str, Any]) -> str:
     parts, warnings = [], run.get("warnings") or ()
     if run.get("status") != "converged":
         parts.append("the values up to the end of the run are valid")
-    beside = (run.get("crosscheck") or {}).get("section") or {}
+    beside = _beside(run, "section")
     text = beside.get("text")
     # what is not expected stands among the warnings
     if text and beside.get("band_percent") is not None and text not in warnings:

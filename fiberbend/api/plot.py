@@ -320,11 +320,14 @@ def _with_measured(case: Mapping[str, Any], file: Path, columns: tuple[str, str]
     try:
         return parse_case({**case, "output": output})
     except CaseError as error:
-        raise CaseError(Problem(_place(p, file), p.text) for p in error.problems) from None
+        raise CaseError(_of_file(problem, file) for problem in error.problems) from None
 
 
-def _place(problem: Problem, file: Path) -> str:
-    return str(file) if problem.path.startswith("output.measured") else problem.path
+def _of_file(problem: Problem, file: Path) -> Problem:
+    """A problem of a case's measured points as one of the file, which it names once."""
+    if not problem.path.startswith("output.measured"):
+        return problem
+    return Problem(str(file), problem.text.removeprefix(file.name).lstrip(":, "))
 
 
 def _short(name: str) -> str:

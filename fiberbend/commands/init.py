@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import functools
+import shlex
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 from fiberbend.running.launch import say
-from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.schema.problems import CaseError, Problem, found, meant
+from fiberbend.schema.units import parse
+
+if TYPE_CHECKING:
+    from fiberbend.reader.new_case import Part as NewPart
 
 _PART = Parameter(consume_multiple=True, metavar="THICKNESS|MATERIAL", show_default=False)
 Part = Annotated[tuple[str, ...], _PART]
@@ -73,36 +79,43 @@ def init(
     asks = not any((*options, pitch, fiber, pressure, angle, blocked))
     ask: Ask = _question if asks and sys.stdin.isatty() else _as_given
     sections = list(new_case.SECTIONS)
-    shape = ask("section", section, "hemicircle", f"shape of the section ({', '.join(sections)})")
-    if shape not in sections:
-        text = f'"{shape}", expected one of {", ".join(sections)}'
-        raise CaseError([Problem("--section", text)])
+
+    def check_section(text: str) -> None:
+        if text not in sections:
+            wanted = f"expected one of {', '.join(sections)}{meant(text, sections)}"
+            raise CaseError([Problem("--section", f"{found(text)}, {wanted}")])
+
+    question = f"shape of the section ({', '.join(sections)})"
+    shape = ask("section", section, "hemicircle", question, check_section)
+    check_section(shape)
     needed = new_case.chamber_dimensions(shape)
     for name, value in given.items():
         if value and name not in needed:
             text = f"no effect on a section {shape}, expected {' and '.join(needed)}"
             raise CaseError([Problem(f"--{name}", text)])
     chamber = {
-        name: ask(name, given[name], _DEFAULTS.get(name, "8 mm"), f"{name} of the chamber")
+        name: ask(name, given[name], _DEFAULTS[name], f"{name} of the chamber", _check_length)
         for name in needed
     }
-    along = ask("length", length, "100 mm", "length of the chamber, without caps")
+    question = "length of the chamber, without caps"
+    along = ask("length", length, "100 mm", question, _check_length)
     parts = {}
     for name, words in (("wall", wall), ("floor", floor), ("sheath", sheath)):
         usual = new_case.usual_part(name, shape)
         default = new_case.NONE if name == "sheath" else f"{usual.thickness} {usual.material}"
-        text = ask(name, " ".join(words), default, f"{name}: thickness and material")
-        part = new_case.Part.read(name, text.split(), usual)
+        read = functools.partial(_read_part, name, usual)
+        text = ask(name, " ".join(words), default, f"{name}: thickness and material", read)
+        part = read(text)
         if part is not None:
             parts[name] = part
-    turn = ask("pitch", pitch, "3 mm", "pitch of the double helix")
+    turn = ask("pitch", pitch, "3 mm", "pitch of the double helix", _check_length)
     if ask is _question:
-        kind = ask("force", "", "bend", "what you want to see: bend, or force of a straight one")
-        blocked = kind.startswith("f")
+        question = "what to compute: bend, or force (of an actuator that is kept straight)"
+        blocked = ask("force", "", "bend", question, _check_wish) == "force"
         if blocked:
-            pressure = ask("pressure", "", "100 kPa", "pressure at the end")
+            pressure = ask("pressure", "", "100 kPa", "pressure at the end", _check_pressure)
         else:
-            end = ask("end", "", angle or "180 deg", "end: an angle, or a pressure")
+            end = ask("end", "", "180 deg", "end: an angle, or a pressure", _check_end)
             pressure, angle = (end, "") if _is_pressure(end) else ("", end)
     if blocked and angle:
         raise CaseError([Problem("--angle", "no effect on one that is blocked, expected none")])
@@ -124,31 +137,75 @@ def init(
     content = case.text()
     schema = new_case.schema_beside(file)
     try:
+        file.parent.mkdir(parents=True, exist_ok=True)
         if schema is not None:
             (file.parent / new_case.SCHEMA_FILE).write_text(schema, encoding="utf-8")
         file.write_text(content, encoding="utf-8")
     except OSError as error:
         raise CaseError([Problem(str(file), f"{error.strerror}, expected a file")]) from None
-    say(f"{file}: written. Next:")
-    say(f"  fiberbend show {file} --open")
-    say(f"  fiberbend run {file}")
+    beside = "" if schema is None else f", and {new_case.SCHEMA_FILE} for editors beside it"
+    say(f"{file}: written{beside}. Next:")
+    typed = shlex.quote(str(file))
+    say(f"  fiberbend show {typed} --open")
+    say(f"  fiberbend run {typed}")
     return 0
 
 
-Ask = Callable[[str, str, str, str], str]
-"""Takes name, given value, default and meaning; returns what is used."""
+Check = Callable[[str], object]
+"""Raises CaseError or ValueError for an answer of no use."""
+Ask = Callable[[str, str, str, str, Check], str]
+"""Takes name, given value, default, meaning and check; returns what is used."""
 
 
-def _as_given(name: str, given: str, default: str, meaning: str) -> str:
+def _as_given(name: str, given: str, default: str, meaning: str, check: Check) -> str:
+    """What an option gives; the case as a whole is checked later."""
     return given or default
 
 
-def _question(name: str, given: str, default: str, meaning: str) -> str:
-    try:
-        return input(f"{meaning} [{default}]: ").strip() or default
-    except EOFError:
-        say("")
-        raise CaseError([Problem(f"--{name}", "no answer, expected one, or options")]) from None
+def _question(name: str, given: str, default: str, meaning: str, check: Check) -> str:
+    """The answer to a question, which is asked again until it is of use."""
+    while True:
+        try:
+            text = input(f"{meaning} [{default}]: ").strip() or default
+        except EOFError:
+            say("")
+            raise CaseError([Problem(f"--{name}", "no answer, expected one, or options")]) from None
+        try:
+            check(text)
+        except CaseError as error:
+            say(f"  {'; '.join(problem.text for problem in error.problems)}")
+        except ValueError as error:
+            say(f"  {found(text)}, {error}")
+        else:
+            return text
+
+
+def _read_part(name: str, usual: NewPart, text: str) -> NewPart | None:
+    from fiberbend.reader.new_case import Part as NewPart
+
+    return NewPart.read(name, text.split(), usual)
+
+
+def _check_length(text: str) -> None:
+    if parse(text, "length") <= 0:
+        raise ValueError("expected a length above zero")
+
+
+def _check_pressure(text: str) -> None:
+    parse(text, "pressure")
+
+
+def _check_end(text: str) -> None:
+    if not _is_pressure(text):
+        try:
+            parse(text, "angle")
+        except ValueError:
+            raise ValueError('expected an angle such as "180 deg", or a pressure') from None
+
+
+def _check_wish(text: str) -> None:
+    if text not in ("bend", "force"):
+        raise ValueError("expected bend or force")
 
 
 def _as_title(stem: str) -> str:
@@ -157,8 +214,6 @@ def _as_title(stem: str) -> str:
 
 
 def _is_pressure(text: str) -> bool:
-    from fiberbend.schema.units import parse
-
     try:
         parse(text, "pressure")
     except ValueError:

@@ -7,7 +7,7 @@ from typing import Annotated, Literal, get_args
 
 from cyclopts import Parameter
 
-from fiberbend.running.launch import say
+from fiberbend.running.launch import say, settle_folders
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.units import parse, show
 
@@ -16,20 +16,37 @@ _WIDTHS = (20.0, 2000.0)
 """Least and greatest width and height of a page, mm."""
 _DPI = (20.0, 2400.0)
 _FONT = (2.0, 72.0)
+# A docstring's line breaks would be those of the help.
+_X = (
+    "Column along the lower axis, of history.csv or of a sweep's sweep.csv; repeatable, such as "
+    "pressure_kPa and section_kPa; pressure_kPa by default."
+)
+_LABEL = (
+    "Name of a curve in the legend, in the order of the curves; repeatable. By default what "
+    "differs between the runs, or their titles."
+)
+_OUT = (
+    "File; by default such as pressure_angle.pdf, in the folder of the run, or in the working "
+    "folder for several runs."
+)
 
 
 def plot(
     *runs: Annotated[Path, Parameter(name="RUN")],
-    x: Annotated[tuple[str, ...], Parameter(consume_multiple=False, metavar="COLUMN")] = (),
+    x: Annotated[
+        tuple[str, ...], Parameter(consume_multiple=False, metavar="COLUMN", help=_X)
+    ] = (),
     y: Annotated[tuple[str, ...], Parameter(consume_multiple=False, metavar="COLUMN")] = (),
     measured: Annotated[tuple[Path, ...], Parameter(consume_multiple=False, metavar="CSV")] = (),
-    label: Annotated[tuple[str, ...], Parameter(consume_multiple=False, metavar="TEXT")] = (),
+    label: Annotated[
+        tuple[str, ...], Parameter(consume_multiple=False, metavar="TEXT", help=_LABEL)
+    ] = (),
     format: Annotated[FormatName | None, Parameter(metavar="pdf|svg|png")] = None,
     width: Annotated[str, Parameter(metavar="LENGTH")] = "85 mm",
     height: Annotated[str, Parameter(metavar="LENGTH")] = "",
     dpi: Annotated[float, Parameter(metavar="N")] = 300.0,
     font_size: Annotated[float, Parameter(metavar="N")] = 8.0,
-    out: Path | None = None,
+    out: Annotated[Path | None, Parameter(help=_OUT)] = None,
     open: bool = False,
 ) -> int:
     """Draw a figure for a paper: curves of runs, sweeps and measured points.
@@ -39,19 +56,16 @@ def plot(
 
     Args:
         runs: Folders of runs or sweeps; each point of a sweep is a curve.
-        x: Column along the lower axis, of history.csv or of a sweep's sweep.csv; repeatable, such
-            as pressure_kPa and section_kPa; pressure_kPa by default.
+        x: Columns along the lower axis.
         y: Column along the left axis; repeatable, of one unit.
         measured: CSV file of measured points with the columns x and y; repeatable.
-        label: Name of a curve in the legend, in the order of the curves; repeatable. By default
-            what differs between the runs, or their titles.
+        label: Names of curves in the legend.
         format: pdf by default, or as --out ends.
         width: Width of the figure; 85 mm by default, one column of a journal.
         height: Height of the figure; 0.7 of its width by default, more for a long legend.
         dpi: Pixels per inch of a PNG; 300 by default.
         font_size: Size of the names of axes in pt, other text somewhat smaller; 8 by default.
-        out: File; by default such as pressure_angle.pdf, in the folder of the run, or in the
-            working folder for several runs.
+        out: File.
         open: Show the figure.
     """
     from fiberbend.api.plot import Plot, select, write
@@ -66,6 +80,7 @@ def plot(
         _number("--dpi", dpi, _DPI, "dots per inch"),
         _number("--font-size", font_size, _FONT, "pt"),
     )
+    settle_folders()
     shown: Plot = select(runs, x, y, measured, label)
     target = out
     if target is None:

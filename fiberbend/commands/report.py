@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from fiberbend.running.launch import say
+from fiberbend.running.launch import say, settle_folders
 from fiberbend.schema.problems import CaseError, Problem
 
 
@@ -18,7 +18,7 @@ def report(
     out: Path | None = None,
     open_it: Annotated[bool, Parameter(name="--open")] = False,
 ) -> None:
-    """Write the page of a run or a sweep anew.
+    """Write report.html of a run or a sweep again.
 
     The page is one HTML file that needs no network: case, plan, answer, curves, the body in space
     at every load step, tables and files. Nothing is solved. A run and a sweep write it at their
@@ -31,6 +31,7 @@ def report(
     """
     from fiberbend.api.loading import load
 
+    settle_folders()
     found = load(folder)
     try:
         target = found.report(out)

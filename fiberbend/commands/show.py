@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from fiberbend.reader.arguments import CaseFile, Changes
-from fiberbend.running.launch import say
+from fiberbend.running.launch import say, settle_folders
 
 
 def show(
@@ -32,6 +32,7 @@ def show(
     from fiberbend.schema.problems import CaseError, Problem
 
     checked = read_case(case, settings)
+    settle_folders()
     target = out or case.with_name(f"{case.stem}_at_rest.png")
     if target.suffix.lower() != ".png":
         raise CaseError([Problem(str(target), "expected a name that ends in .png")])

@@ -9,15 +9,20 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
+import sys
+import threading
 import time
 from collections.abc import Iterator
 from types import FrameType
+from typing import Any
 
 from fiberbend.process import ranks
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _PATIENCE = 5.0
 """Seconds after which a second signal ends a process that has not ended by the first."""
+_AGAIN = 0.02
+"""Seconds after which a signal that was lost in a finaliser comes again."""
 
 
 class Interrupted(KeyboardInterrupt):
@@ -42,12 +47,13 @@ class Interrupted(KeyboardInterrupt):
 
 
 class _Pending:
-    """What has come, and whether it is an exception."""
+    """What has come, whether it is an exception, and whether that went nowhere."""
 
     number = 0
     since = 0.0
     raises = False
     held = False
+    lost = False
 
 
 _pending = _Pending()
@@ -58,6 +64,7 @@ def install() -> None:
     for number in _SIGNALS:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, _handle)
+    sys.unraisablehook = _lost
     # PETSc would take SIGTERM and SIGHUP and print a page
     options = os.environ.get("PETSC_OPTIONS", "")
     if "-no_signal_handler" not in options:
@@ -90,6 +97,7 @@ def held() -> Iterator[None]:
 def check() -> None:
     """Raise what was lost: in a finaliser or a library's callback an exception goes nowhere."""
     if _pending.number:
+        _pending.lost = False
         raise Interrupted(_pending.number)
 
 
@@ -98,14 +106,26 @@ def stop_of(error: KeyboardInterrupt) -> Interrupted:
     return error if isinstance(error, Interrupted) else Interrupted(signal.SIGINT)
 
 
+def _lost(what: Any) -> None:
+    """Send a signal again whose exception went nowhere; print what else is lost as ever."""
+    error = what.exc_value
+    if not isinstance(error, Interrupted):
+        sys.__unraisablehook__(what)
+        return
+    _pending.lost = True
+    again = threading.Timer(_AGAIN, os.kill, (os.getpid(), error.number))
+    again.daemon = True
+    again.start()
+
+
 def _handle(number: int, _frame: FrameType | None) -> None:
     if not _pending.raises:
         if ranks.rank() == 0:
             with contextlib.suppress(OSError):
                 os.write(2, b"fiberbend: stopped before anything was written\n")
         os._exit(128 + number)
-    if not _pending.number:
-        _pending.number, _pending.since = number, time.monotonic()
+    if not _pending.number or _pending.lost:
+        _pending.number, _pending.since, _pending.lost = number, time.monotonic(), False
         if not _pending.held:
             raise Interrupted(number)
         return

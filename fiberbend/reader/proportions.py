@@ -1,4 +1,4 @@
-"""Loads out of all proportion to the body: most often a slip of the unit, which is asked back."""
+"""Loads and shapes out of all proportion: most often a slip of the unit, which is asked back."""
 
 from __future__ import annotations
 
@@ -21,17 +21,23 @@ braid carries all, burst at some 100."""
 _LIKELY = 20.0
 VOLUME = 1000.0
 """Greatest volume over the chamber's at rest: ten times as long, wide and high."""
+WIDE = 50.0
+"""Greatest width of a chamber over its length."""
+LONG = 5000.0
+"""Greatest length of a chamber over its width."""
 _COLLAPSED = 0.01
 """Least volume over the chamber's at rest."""
 
 
 def disproportions(draft: Draft, materials: Materials | None) -> Iterator[Problem]:
-    """Pressures beyond any rubber, and volumes beyond any chamber.
+    """Pressures beyond any rubber, volumes beyond any chamber, and chambers like a plate or a hair.
 
     Args:
         draft: what is valid of a case.
         materials: those of the case where they are valid.
     """
+    if draft.actuator is not None:
+        yield from _shape(draft.actuator)
     for path, effect in draft.effects.items():
         load = effect.inflation()
         if load is None:
@@ -40,6 +46,20 @@ def disproportions(draft: Draft, materials: Materials | None) -> Iterator[Proble
             yield from _pressure(f"{path}.to", load.to, materials)
         if load.volume is not None and draft.actuator is not None:
             yield from _volume(f"{path}.volume", load.volume, draft.actuator)
+
+
+def _shape(actuator: Actuator) -> Iterator[Problem]:
+    width, length = 2 * actuator.profile.half_width, actuator.length
+    if not width / WIDE <= length <= width * LONG:
+        yield Problem(
+            "actuator",
+            f"a chamber {_short(width)} wide and {_short(length)} long, expected from 1/{WIDE:g} "
+            f"to {LONG:g} times as long as wide; is a unit wrong?",
+        )
+
+
+def _short(length: float) -> str:
+    return f"{length / 1e3:.4g} m" if length >= 1e4 else f"{length:.4g} mm"
 
 
 def _pressure(path: str, pressure: float, materials: Materials) -> Iterator[Problem]:

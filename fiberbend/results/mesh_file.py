@@ -71,7 +71,10 @@ def write_mesh_file(case: Case, path: Path, overwrite: bool = False) -> list[str
         model_mesh = mesh_of(case, elements)
     except MeshError as error:
         raise CaseError([Problem("mesh", str(error))]) from None
-    handle, part = remains.begin(path)
+    try:
+        handle, part = remains.begin(path)
+    except OSError as error:
+        raise CaseError([Problem(str(path), f"{error.strerror}, expected a file")]) from None
     os.close(handle)
     whole = Path(part).with_suffix(path.suffix)
     try:

@@ -117,7 +117,12 @@ def run_analytic(
                 kind.name,
                 progress.message,
             )
-        write_page(folder, case, rows, run, progress.message)
+        if case.output.report and folder.writes:
+            progress.phase("report")
+            write_page(folder, case, rows, run, progress.message)
+        progress.close()
+        run["wall_s"] = {name: round(value, 6) for name, value in progress.wall_s.items()}
+        folder.write_run(**run)
     progress.answer(answer(case, rows, run))
     return RunResult(status, reason, rows, run, folder.path if folder is not None else None)
 

@@ -53,14 +53,23 @@ def set_threads() -> None:
             os.environ.setdefault(name, "1")
 
 
+def settle_folders() -> None:
+    """Give libraries folders that they can use, before they are loaded; say what is not followed.
+
+    Raises:
+        MachineError: no folder can be used.
+    """
+    for line in settle():
+        say(f"fiberbend: {line}", sys.stderr)
+
+
 def start_mpi() -> None:
     """Start MPI; without mpirun in a quarter of the time, by looking for no other process.
 
     What is set for it is taken back: an mpirun that is launched from here must not find it. An
     error that nobody catches ends all ranks from here on.
     """
-    for line in settle():
-        say(f"fiberbend: {line}", sys.stderr)
+    settle_folders()
     alone = not ranks.launched()
     new = [name for name in _ALONE if alone and name not in os.environ]
     os.environ.update({name: _ALONE[name] for name in new})

@@ -121,6 +121,25 @@ def stopped(report: Report, ramp: Ramp, beyond: float) -> str:
     return f"{amount(ramp.scalar, ramp.target)} is not reached: {remark(limit)}; {followed}"
 
 
+def interrupted(rows: Sequence[col.Row], kept: int, solved: bool) -> str:
+    """What a signal has left of a run.
+
+    Args:
+        rows: of the history so far.
+        kept: the last step that is kept; 0: none.
+        solved: all load steps are done, and what is missing are files made from them.
+    """
+    if solved:
+        return (
+            f"stopped after the last load step, {kept}: history.csv is whole; pictures, fields or "
+            "report are missing, --resume makes them"
+        )
+    if kept:
+        return f"stopped at step {kept}, kept; go on with --resume"
+    step = rows[-1][col.STEP] if rows else 0
+    return f"stopped at step {step}, nothing kept; --resume begins anew"
+
+
 def uncounted(ramps: Sequence[Ramp], rows: Sequence[col.Row]) -> list[str]:
     """A warning of half a body that does not know its opposite modes, where it may lose one.
 

@@ -27,7 +27,7 @@ from fiberbend.models.result import RunResult
 from fiberbend.plan.doubts import doubts
 from fiberbend.plan.memory import refuse_shortage
 from fiberbend.process.signals import Interrupted, stop_of
-from fiberbend.results.folder import MESH, RunFolder
+from fiberbend.results.folder import MESH, REPORT, RunFolder
 from fiberbend.results.states import LAST, write_fibers
 from fiberbend.running import launch, messages, record, restart
 from fiberbend.running.assembly import Assembly, assemble
@@ -91,6 +91,8 @@ def run_case(
         result = _solve(case, folder, progress, comm, resume, force)
         progress.log(f"{result.status}{': ' if result.reason else ''}{result.reason}")
         progress.log(f"results in {out}")
+        if (out / REPORT).exists():
+            progress.log(f"report in {out / REPORT}")
         return result
 
 
@@ -163,6 +165,8 @@ class _Run:
         self.progress, self.comm = progress, comm
         self.remarks, self.may_leave = remarks, may_leave
         self.recording: Recording | None = None
+        self.solved = False
+        self.run: dict[str, Any] = {}
 
     def go(self, again: bool) -> RunResult:
         """Mesh, compile, solve, write; stopped by a signal, leave run.json."""
@@ -196,6 +200,7 @@ class _Run:
         if report.reason == ACROSS and mesh.half and self.may_leave:
             progress.message(messages.WHOLE)
             raise _AcrossError
+        self.solved = True
         status, reason = ended(case, assembly, recorder.rows)
         self._warn_of_ends(status, assembly, recorder, recording)
         check = self._cross_check(recorder.rows, section)
@@ -217,18 +222,16 @@ class _Run:
         run |= on_rank_0(self.comm, lambda: record.strain(case, assembly, recording.last))
         if self.folder is not None:
             self.folder.write_history(rows)
+            self.run = run
             self.folder.write_run(**run)
             if self.comm.rank == 0:
                 why = f"{status}: {reason}" if reason else None
                 self._draw(assembly, recording, why, rows, check)
+                self._close(run, assembly, recording)
                 if case.output.report:
                     progress.phase("report")
-                run |= {"wall_s": self._wall(assembly), "warnings": list(recording.warnings)}
-                self.folder.write_run(**run)
-                write_page(self.folder, case, rows, run, lambda text: recording.warn([text]))
-                if run["warnings"] != recording.warnings:
-                    run["warnings"] = list(recording.warnings)
-                    self.folder.write_run(**run)
+                    write_page(self.folder, case, rows, run, lambda text: recording.warn([text]))
+                    self._close(run, assembly, recording)
         self.comm.barrier()
         self._report(run, rows)
         return RunResult(status, reason, rows, run, self.folder.path if self.folder else None)
@@ -238,8 +241,7 @@ class _Run:
         try:
             yield
         except KeyboardInterrupt as error:
-            stop = stop_of(error)
-            self._stopped(stop)
+            self._stopped(stop := stop_of(error))
             raise stop from None
 
     def _stopped(self, stop: Interrupted) -> None:
@@ -247,24 +249,19 @@ class _Run:
         folder = self.folder
         if folder is None:
             return
-        rows = self.recording.rows if self.recording else []
-        kept = self.recording.kept if self.recording else 0
-        if kept:
-            stop.reason = f"stopped at step {kept}, kept; go on with --resume"
-        else:
-            step = rows[-1][col.STEP] if rows else 0
-            stop.reason = f"stopped at step {step}, nothing kept; --resume begins anew"
+        rows, kept = (self.recording.rows, self.recording.kept) if self.recording else ([], 0)
+        kept = len(rows) - 1 if self.solved else kept
+        stop.reason = messages.interrupted(rows, kept, self.solved)
         stop.together = self.comm.size == 1 == launch.size() or launch.all_stopped()
         if folder.writes or not stop.together:
+            known, spent = rows[: kept + 1] if kept else rows, self.progress.wall_s
             run = record.unfinished(
-                "interrupted",
-                stop.reason,
-                self.model.name,
-                rows[: kept + 1] if kept else rows,
-                self.progress.wall_s,
-                launch.size(),
+                "interrupted", stop.reason, self.model.name, known, spent, launch.size()
             )
-            RunFolder(folder.path).write_run(**run)
+            own = RunFolder(folder.path)
+            if self.solved and not self.run:
+                own.write_history(rows)
+            own.write_run(**{**run, **self.run, "status": run["status"], "reason": stop.reason})
             self.progress.log(f"interrupted: {stop.reason}")
 
     # --- before the march ----------------------------------------------------------------------
@@ -336,7 +333,8 @@ class _Run:
         lines += record.doubts(self.case, rows)
         if assembly.scene.domain.data.half and assembly.scene.free_opposite is None:
             lines += messages.uncounted(assembly.ramps, rows)
-        recording.warn(lines)
+        # the answer, which follows, has them
+        recording.warn(lines, silent=True)
 
     def _cross_check(
         self, rows: list[dict[str, Any]], section: SectionStates | None
@@ -355,6 +353,13 @@ class _Run:
             return _Run(beside, model, None, Progress(quiet=True), MPI.COMM_SELF).go(False)
 
         return on_rank_0(self.comm, lambda: check_run(self.case, self.model, rows, solve, known))
+
+    def _close(self, run: dict[str, Any], assembly: Assembly, recording: Recording) -> None:
+        """Write how long the last phase took, and what it warned of; on the rank that writes."""
+        assert self.folder is not None
+        self.progress.close()
+        run |= {"wall_s": self._wall(assembly), "warnings": list(recording.warnings)}
+        self.folder.write_run(**run)
 
     def _wall(self, assembly: Assembly) -> dict[str, float]:
         seconds = {name: round(value, 3) for name, value in self.progress.wall_s.items()}

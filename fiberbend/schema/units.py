@@ -14,7 +14,8 @@ from decimal import Decimal
 from typing import Any
 
 _NUMBER = re.compile(
-    r"([+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|nan|inf(?:inity)?))\s*([^\s0-9.].*)",
+    # whole: of "85" the 5 is no unit
+    r"((?>[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|nan|inf(?:inity)?)))\s*(\S.*)",
     re.IGNORECASE,
 )
 _UNIT = re.compile(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shlex
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -15,12 +16,58 @@ from fiberbend.reader.reader import read_case
 from fiberbend.sweep.points import read_sweep
 
 ROOT = Path(__file__).resolve().parents[2]
+PYTHON = Path(sys.executable)
 
 
 @pytest.mark.parametrize("arguments", [["version"], ["--version"]])
 def test_version(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(arguments) == 0
     assert capsys.readouterr().out.strip() == __version__
+
+
+def test_a_file_that_cannot_be_written_is_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = tmp_path / "run"
+    case = str(ROOT / "cases" / "section.yaml")
+    quick = ["--set", "model=analytic", "--set", "output={pictures: false, report: false}"]
+    assert main(["run", case, "--out", str(run), "--quiet", *quick]) == 0
+    capsys.readouterr()
+    (tmp_path / "file").write_text("")
+    for target in (tmp_path, tmp_path / "file" / "page.html"):
+        assert main(["report", str(run), "--out", str(target)]) == 1
+        said = capsys.readouterr().err
+        assert said.startswith(f"{target}: ")
+        assert said.count("\n") == 1
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root becomes somebody else")
+def test_pictures_of_a_folder_that_is_read_only(tmp_path: Path) -> None:
+    """One line on the file, and none of matplotlib on its settings, where HOME is not writable."""
+    if not all(place.stat().st_mode & 0o001 for each in (ROOT, PYTHON) for place in each.parents):
+        pytest.skip("nobody else can read the program")
+    cache = tmp_path / "cache"
+    cache.mkdir(mode=0o700)
+    os.chown(cache, 65534, 65534)
+    case = tmp_path / "case.yaml"
+    case.write_text((ROOT / "cases" / "section.yaml").read_text())
+    for place in (tmp_path, *tmp_path.parents[:-1]):
+        if place.is_relative_to("/tmp") and place != Path("/tmp"):
+            place.chmod(0o755)
+    command = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"]
+    environment = os.environ | {"HOME": str(tmp_path / "none"), "PYTHONPATH": str(ROOT)}
+    environment |= {"PYTHONDONTWRITEBYTECODE": "1", "XDG_CACHE_HOME": str(cache)}
+    environment.pop("MPLCONFIGDIR", None)
+    code = "import sys; from fiberbend.cli import main; sys.exit(main(sys.argv[1:]))"
+    done = subprocess.run(
+        [*command, sys.executable, "-c", code, "show", str(case)],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    target = tmp_path / "case_at_rest.png"
+    assert (done.returncode, done.stderr) == (1, f"{target}: Permission denied, expected a file\n")
 
 
 COMMANDS = ("validate", "plan", "run", "sweep", "control", "mesh", "completion")

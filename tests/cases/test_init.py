@@ -131,6 +131,40 @@ def test_questions_are_asked_on_a_terminal(tmp_path: Path, monkeypatch: pytest.M
     assert len(asked) == 9
 
 
+def test_a_wrong_answer_is_asked_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    answers = {
+        "shape": ["oval", "rectangle"],
+        "width": ["20", "-20 mm", "20mm"],
+        "wall": ["3mm dragonskin-30", "3mm dragon-skin-30"],
+        "what to compute": ["both", "force"],
+        "pressure": ["90 mm", "90 kPa"],
+    }
+
+    def reply(question: str) -> str:
+        left = next((left for key, left in answers.items() if question.startswith(key)), [])
+        return left.pop(0) if left else ""
+
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True)
+    monkeypatch.setattr("builtins.input", reply)
+    case = read_case(case_of(tmp_path / "a.yaml"))
+    assert not any(answers.values())
+    assert (case.actuator.width, case.actuator.wall) == (20.0, 3.0)
+    assert case.straight
+    said = capsys.readouterr().out
+    assert "did you mean dragon-skin-30?" in said
+    assert '"-20 mm", expected a length above zero' in said
+    assert "expected bend or force" in said
+
+
+def test_the_next_commands_can_be_pasted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = case_of(tmp_path / "new folder" / "my finger.yaml", "--radius", "7 mm")
+    assert f"  fiberbend run '{path}'\n" in capsys.readouterr().out
+
+
 def test_a_space_goes_before_a_unit() -> None:
     assert spaced("2mm") == "2 mm"
     assert spaced("1e-3 m") == "1e-3 m"

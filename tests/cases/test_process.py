@@ -106,6 +106,30 @@ def _stopped(code: str, number: int, *arguments: str) -> tuple[int, str, str]:
     return process.returncode, out, err
 
 
+SWALLOWED = """
+import sys, time
+from fiberbend.process import signals
+
+class Finalised:
+    def __del__(self):
+        print("up", flush=True)
+        time.sleep(30)
+
+signals.install()
+try:
+    with signals.raising():
+        Finalised()
+        time.sleep(30)
+except KeyboardInterrupt as error:
+    sys.exit(signals.stop_of(error).code)
+"""
+
+
+def test_a_signal_that_a_finaliser_swallows_comes_again() -> None:
+    """Nobody asks for it: what draws pictures for ten seconds knows of no signals."""
+    assert _stopped(SWALLOWED, signal.SIGINT) == (130, "", "")
+
+
 HELD = """
 import time
 from fiberbend.process import signals

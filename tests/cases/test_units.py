@@ -18,6 +18,12 @@ def test_common_factors_are_pints(kind: str, unit: str) -> None:
     assert parse(f"1 {unit}", kind) == pytest.approx(expected, rel=1e-14)
 
 
+def test_a_number_without_a_unit_has_none() -> None:
+    with pytest.raises(ValueError, match="expected a length with its unit") as error:
+        parse("85", "length")
+    assert "no unit" not in str(error.value)
+
+
 @pytest.mark.parametrize(
     ("text", "kind", "value"),
     [

@@ -54,6 +54,17 @@ def found(said: Answer, label: str) -> Entry:
     return entry
 
 
+def test_measured_points_are_part_of_the_answer() -> None:
+    """Who names a file of points wants to read of them, without --verbose."""
+    text = "run: pressure 3.3 % lower than measured (trial.csv) at 38.0°, as expected"
+    other = "analytic (own rubber): pressure 43.6 % higher at 10.0°"
+    check = {"measured": {"text": text}, "lines": [other, text]}
+    run = {**CONVERGED, "crosscheck": check}
+    said = answer(case_of(), [row(0, 0, 0), row(1, 50, 90), row(2, 200, 360)], run)
+    assert found(said, "measured points").value == text
+    assert said.comparisons == (other,)
+
+
 def labels(said: Answer) -> list[str]:
     return [entry.label for entry in said.entries]
 
@@ -417,8 +428,9 @@ def test_a_section_answers_from_its_folder_as_on_the_screen(tmp_path: Path) -> N
     log = (tmp_path / "run" / "run.log").read_text(encoding="utf-8").splitlines()
     for line in (*printed, "mesh …", "882 unknowns: 36 steps"):
         assert any(line in entry for entry in log), line
-    assert log[-2].endswith("  converged")
-    assert log[-1].endswith(f"  results in {tmp_path / 'run'}")
+    assert log[-3].endswith("  converged")
+    assert log[-2].endswith(f"  results in {tmp_path / 'run'}")
+    assert log[-1].endswith(f"  report in {tmp_path / 'run' / 'report.html'}")
 
 
 def test_a_verbose_run_says_phases_counts_and_comparisons(tmp_path: Path) -> None:

@@ -13,10 +13,15 @@ import pytest
 import yaml
 
 from bench.survive import LIMIT, end, files, kill, launch, session
+from fiberbend.cli import main
+from fiberbend.results.reading import read_history
 from tests.conftest import MpiRun
 from tests.run.conftest import small
 
-STOPPED = r"fiberbend: (stopped at step (\d+), kept; go on with --resume)\n"
+STOPPED = (
+    r"fiberbend: (stopped at step (\d+), kept; go on with --resume)\n"
+    r"|fiberbend: (stopped after the last load step, (\d+): .*)\n"
+)
 
 
 def _stop(ranks: int, number: int, tmp_path: Path) -> tuple[int, str, dict[str, Any]]:
@@ -24,7 +29,7 @@ def _stop(ranks: int, number: int, tmp_path: Path) -> tuple[int, str, dict[str, 
     case, out = tmp_path / "case.yaml", tmp_path / "run"
     output = {"fields": False, "pictures": False}
     case.write_text(
-        yaml.safe_dump(small(solver={"max_step": "3 kPa"}, mesh={"axial": "8 mm"}, output=output))
+        yaml.safe_dump(small(solver={"max_step": "1 kPa"}, mesh={"axial": "8 mm"}, output=output))
     )
     process = launch(ranks, ["run", case, "--out", out])
     assert process.stdout is not None
@@ -75,9 +80,37 @@ def test_told_to_stop_on_two_ranks(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert run["load_steps"] >= 1
 
 
+@pytest.mark.parametrize("phase", ["crosscheck", "output", "report"])
+def test_told_to_stop_after_the_last_load_step(phase: str, tmp_path: Path) -> None:
+    """The curves are whole, and a run says so; the rest is made by --resume."""
+    case, out = tmp_path / "case.yaml", tmp_path / "run"
+    case.write_text(yaml.safe_dump(small(model="section")))
+    process = launch(1, ["run", case, "--out", out, "--verbose"])
+    assert process.stdout is not None
+    for line in process.stdout:
+        if line == f"{phase} …\n":
+            break
+    process.send_signal(signal.SIGINT)
+    code, text = end(process)
+    assert code == 130
+    assert "stopped after the last load step" in text
+    assert "nothing kept" not in text
+    run = json.loads((out / "run.json").read_text())
+    rows = read_history(out / "history.csv")
+    assert (run["status"], run["load_steps"]) == ("interrupted", len(rows) - 1)
+    assert (rows[-1]["pressure_kPa"] or 0) > 0
+    assert main(["plot", str(out), "--out", str(tmp_path / "a.png")]) == 0
+    assert main(["report", str(out)]) == 0
+    assert main(["run", str(case), "--out", str(out), "--resume", "--quiet"]) == 0
+    run = json.loads((out / "run.json").read_text())
+    assert run["status"] == "converged"
+    assert {"output", "report"} <= run["wall_s"].keys()
+
+
 def assert_said(text: str, run: dict[str, Any]) -> None:
     """One line, of one rank, and the same in run.json."""
-    [(line, step)] = re.findall(STOPPED, text)
+    # a signal by mpirun may come late
+    [(line, step)] = [tuple(filter(None, found)) for found in re.findall(STOPPED, text)]
     assert (run["status"], run["reason"], run["load_steps"]) == ("interrupted", line, int(step))
 
 
