@@ -30,6 +30,7 @@ def report(
         open_it: Open the page in the browser.
     """
     from fiberbend.api.loading import load
+    from fiberbend.results.folder import REPORT
 
     settle_folders()
     found = load(folder)
@@ -37,7 +38,7 @@ def report(
         target = found.report(out)
     except OSError as error:
         text = f"{error.strerror}, expected a file that can be written"
-        raise CaseError([Problem(str(error.filename or out or folder), text)]) from None
+        raise CaseError([Problem(str(out or folder / REPORT), text)]) from None
     say(f"report in {target}")
     if open_it:
         from fiberbend.commands.opening import open_file
