@@ -249,6 +249,7 @@ def run(
     if quiet and verbose:
         raise CycloptsError(msg="--quiet and --verbose together, expected one of them")
     checked = read_case(case, settings)
+    launch.prepare_drawing(checked)
     folder = out or Path("runs") / case.stem
     progress = Progress(quiet=quiet, verbose=verbose, answers=True)
     try:

@@ -2,30 +2,94 @@
 
 from __future__ import annotations
 
+import atexit
+import contextlib
 import ctypes
+import importlib
 import os
 import pickle
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Generic, TypeVar
 
 T = TypeVar("T")
-_SERVE = "from fiberbend.process.beside import serve; serve({}, {})"
+_SERVE = "from fiberbend.process.beside import serve; serve({}, {}, {!r})"
 _DIE_WITH_PARENT = 1
 """PR_SET_PDEATHSIG of Linux's prctl."""
 
 
+class _Child:
+    """Another process of this program, which waits for a task.
+
+    Args:
+        modules: what it imports meanwhile.
+
+    Raises:
+        OSError: it cannot be started.
+    """
+
+    def __init__(self, modules: Sequence[str] = ()) -> None:
+        read, write = os.pipe()
+        self.answer = os.fdopen(read, "rb")
+        try:
+            self.process = subprocess.Popen(
+                [sys.executable, "-P", "-c", _SERVE.format(write, os.getpid(), [*modules])],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                pass_fds=[write],
+            )
+        finally:
+            os.close(write)
+
+    def take(self, task: bytes) -> None:
+        """Give it its task, pickled.
+
+        Raises:
+            OSError: it has ended.
+        """
+        assert self.process.stdin is not None
+        with self.process.stdin as stdin:
+            stdin.write(task)
+
+    def end(self) -> None:
+        """End it at once."""
+        self.process.kill()
+        self.process.wait()
+        self.answer.close()
+
+
 class _Setting:
-    """Whether this process may start others."""
+    """Whether this process may start others, and the one that waits for a task."""
 
     enabled = False
+    waiting: _Child | None = None
 
 
 def enable(yes: bool = True) -> None:
     """Let this process start others: a command that has the machine to itself, on two cores."""
     _Setting.enabled = yes and len(os.sched_getaffinity(0)) > 1
+
+
+def prepare(*modules: str) -> None:
+    """Start the process of the next task now, while this one has not got it yet.
+
+    Args:
+        modules: what the task imports.
+    """
+    if _Setting.enabled and _Setting.waiting is None:
+        with contextlib.suppress(OSError):
+            _Setting.waiting = _Child(modules)
+            atexit.register(dismiss)
+
+
+def dismiss() -> None:
+    """End a process that waits for a task."""
+    child, _Setting.waiting = _Setting.waiting, None
+    if child is not None:
+        child.end()
 
 
 class Beside(Generic[T]):
@@ -41,27 +105,16 @@ class Beside(Generic[T]):
 
     def __init__(self, function: Callable[..., T], *arguments: Any) -> None:
         self._function, self._arguments = function, arguments
-        self._child: subprocess.Popen[bytes] | None = None
+        self._child: _Child | None = None
         if not _Setting.enabled:
             return
         task = pickle.dumps((function, arguments))
-        read, write = os.pipe()
+        child, _Setting.waiting = _Setting.waiting, None
         try:
-            self._child = subprocess.Popen(
-                [sys.executable, "-P", "-c", _SERVE.format(write, os.getpid())],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
-                pass_fds=[write],
-            )
-            assert self._child.stdin is not None
-            with self._child.stdin as stdin:
-                stdin.write(task)
+            self._child = child or _Child()
+            self._child.take(task)
         except OSError:
             self.stop()
-        finally:
-            os.close(write)
-        self._answer = os.fdopen(read, "rb")
 
     def result(self) -> T:
         """What the task returns, once it is done.
@@ -72,15 +125,12 @@ class Beside(Generic[T]):
         if self._child is None:
             return self._function(*self._arguments)
         try:
-            with self._answer as pipe:
-                value, error = pickle.load(pipe)
+            value, error = pickle.load(self._child.answer)
         except (EOFError, pickle.UnpicklingError):
             self.stop()
             return self._function(*self._arguments)
-        except BaseException:
+        finally:
             self.stop()
-            raise
-        self._child.wait()
         if error is not None:
             raise error
         done: T = value
@@ -90,23 +140,30 @@ class Beside(Generic[T]):
         """End the other process; its result is not wanted any more."""
         child, self._child = self._child, None
         if child is not None:
-            child.kill()
-            child.wait()
+            child.end()
 
 
-def serve(target: int, parent: int) -> None:
+def serve(target: int, parent: int, modules: Sequence[str]) -> None:
     """Do the task that standard input has, in the other process.
 
     Args:
         target: descriptor that takes the result.
         parent: process that waits for it.
+        modules: what is imported before the task is there.
     """
     for number in (signal.SIGINT, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     ctypes.CDLL(None).prctl(_DIE_WITH_PARENT, signal.SIGKILL)
     if os.getppid() != parent:
         return
-    function, arguments = pickle.load(sys.stdin.buffer)
+    for module in modules:
+        # a task that needs what cannot be imported says so itself
+        with contextlib.suppress(ImportError):
+            importlib.import_module(module)
+    task = sys.stdin.buffer.read()
+    if not task:
+        return
+    function, arguments = pickle.loads(task)
     answer: tuple[Any, Exception | None]
     try:
         answer = (function(*arguments), None)

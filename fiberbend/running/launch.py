@@ -9,13 +9,16 @@ import traceback
 from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
-from typing import Any, TextIO, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TextIO, TypeVar, cast
 
-from fiberbend.process import ranks
+from fiberbend.process import beside, ranks
 from fiberbend.process.ranks import rank as rank
 from fiberbend.process.ranks import size as size
 from fiberbend.process.signals import Interrupted
 from machine.folders import settle
+
+if TYPE_CHECKING:
+    from fiberbend.case.case import Case
 
 FAILED = 2
 """Exit code of a solution that failed."""
@@ -213,3 +216,19 @@ def _end_all(kind: type[BaseException], error: BaseException, trace: TracebackTy
         sys.__excepthook__(kind, error, trace)
     if not together:
         end_all(1)
+
+
+def prepare_drawing(case: Case) -> None:
+    """Start the process that draws beside a run of seconds; see `fiberbend.process.beside`.
+
+    It imports meanwhile what drawing needs. One that waits beside a body of minutes would only
+    take memory.
+
+    Args:
+        case: the case that is run.
+    """
+    from fiberbend.models.choice import choose_model
+
+    model = choose_model(case)[0].elements()
+    if case.output.pictures and model is not None and not model.shared:
+        beside.prepare("fiberbend.running.outputs", "fiberbend.drawing.curves", "pyvista")

@@ -49,16 +49,25 @@ def draw(
         model: the run's own model.
     """
     output = case.output
+    # a section or a cell is small enough to be handed to another process
+    own = model_mesh if model_mesh.uniform else None
+    overlays = None if check is None else (check.angles, check.forces)
     flat: Beside[list[str]] | None = None
     if output.pictures:
-        plane = (model_mesh, snapshots) if model_mesh.uniform and snapshots else None
-        overlays = None if check is None else (check.angles, check.forces)
-        flat = Beside(_draw_flat, folder.path, case, rows, reason, overlays, model, plane)
+        flat = Beside(
+            _draw_flat,
+            folder.path,
+            case,
+            rows,
+            reason,
+            overlays,
+            model,
+            own,
+            snapshots if own else None,
+        )
     try:
-        if output.fields:
-            from fiberbend.results.fields import write_fields
-
-            write_fields(folder, case, model_mesh, snapshots, rows, say)
+        if output.fields and (flat is None or own is None):
+            _write_fields(folder, case, model_mesh, snapshots, rows, say)
         if output.pictures or output.animation:
             _draw_states(folder, case, model_mesh, snapshots, rows, say)
         for line in [] if flat is None else flat.result():
@@ -75,31 +84,48 @@ def _draw_flat(
     reason: str | None,
     overlays: tuple[Overlay | None, Overlay | None] | None,
     model: str,
-    plane: tuple[ModelMesh, Sequence[Snapshot]] | None,
+    own: ModelMesh | None,
+    snapshots: Sequence[Snapshot] | None,
 ) -> list[str]:
-    """Draw what needs no OpenGL: the curves, and a section or cell in its own plane.
+    """Draw what needs no OpenGL: the curves, and a section or cell in its own plane; its fields.
 
     Returns:
         Lines on what cannot be drawn.
     """
     folder, lines = RunFolder(path), list[str]()
     draw_curves(folder, case, rows, reason, overlays, model, lines.append)
-    if plane is not None:
+    if own is None:
+        return lines
+    if snapshots:
         from fiberbend.results.scenery import scenery
         from fiberbend.results.space import Space
         from fiberbend.running import uniform_outputs
 
         with pictures(lines.append):
-            model_mesh, snapshots = plane
-            space = Space(case, model_mesh)
+            space = Space(case, own)
             uniform_outputs.draw_in_plane(
-                model_mesh,
+                own,
                 snapshots,
                 [space.recovered(state) for state in snapshots],
                 lambda name, fill: folder.write(f"pictures/{name}", fill),
                 scenery(case, rows),
             )
+    if case.output.fields:
+        _write_fields(folder, case, own, snapshots or (), rows, lines.append)
     return lines
+
+
+def _write_fields(
+    folder: RunFolder,
+    case: Case,
+    model_mesh: ModelMesh,
+    snapshots: Sequence[Snapshot],
+    rows: Sequence[dict[str, Any]],
+    say: Callable[[str], None],
+) -> None:
+    from fiberbend.results.fields import write_fields
+
+    write_fields(folder, case, model_mesh, snapshots, rows, say)
 
 
 def _draw_states(

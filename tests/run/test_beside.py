@@ -26,11 +26,16 @@ def _enabled(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1})
     beside.enable()
     yield
+    beside.dismiss()
     beside.enable(False)
 
 
 def pid_and(value: int) -> tuple[int, int]:
     return os.getpid(), value
+
+
+def loaded(module: str) -> tuple[int, bool]:
+    return os.getpid(), module in sys.modules
 
 
 def fails() -> None:
@@ -69,6 +74,39 @@ def test_its_error_is_that_of_the_task() -> None:
 @pytest.mark.usefixtures("_enabled")
 def test_a_process_that_dies_leaves_its_task_to_this_one() -> None:
     assert Beside(dies_elsewhere, os.getpid()).result() == os.getpid()
+
+
+@pytest.mark.usefixtures("_enabled")
+def test_a_process_that_waits_takes_the_next_task() -> None:
+    beside.prepare("fractions", "no_such_module")
+    beside.prepare("a second one is not started")
+    child = beside._Setting.waiting
+    assert child is not None
+    assert Beside(loaded, "fractions").result() == (child.process.pid, True)
+    assert Beside(loaded, "fractions").result()[0] != child.process.pid
+
+
+@pytest.mark.usefixtures("_enabled")
+def test_a_process_without_a_task_is_dismissed() -> None:
+    beside.prepare()
+    child = beside._Setting.waiting
+    assert child is not None
+    beside.dismiss()
+    assert gone(child.process.pid)
+
+
+def test_the_task_of_a_process_that_died_waiting_is_done_here() -> None:
+    """In a process of its own: where PETSc came before the command, a broken pipe ends it."""
+    script = (
+        "import os; os.sched_getaffinity = lambda _: {0, 1}\n"
+        "from fiberbend.process import beside; beside.enable(); beside.prepare()\n"
+        "from tests.run.test_beside import pid_and\n"
+        "child = beside._Setting.waiting.process; child.kill(); child.wait()\n"
+        "assert beside.Beside(pid_and, 1).result() == (os.getpid(), 1)"
+    )
+    root = str(CASE.parents[1])
+    environment = {**os.environ, "PYTHONPATH": root}
+    subprocess.run([sys.executable, "-c", script], cwd=root, env=environment, check=True)
 
 
 @pytest.mark.usefixtures("_enabled")
