@@ -54,7 +54,7 @@ tables: setup ## make the accuracy tables in docs/ again; half an hour
 	$(MPIRUN) $(BIN)/python bench/tables.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/contact.py
 
-speed: setup ## measure what an answer costs in each model; a minute on an idle machine
+speed: setup ## measure what an answer costs in each model; four minutes on an idle machine
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/speed.py
 
 check: tools ## lint, format, types, the order of the folders and dead code
