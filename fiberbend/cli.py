@@ -105,7 +105,8 @@ def entry() -> NoReturn:
     """The command as a process: `main`, with signals, streams and other ranks in order."""
     signals.install()
     streams.guard()
-    beside.enable(launch.size() == 1)
+    # the points of a sweep share the cores already
+    beside.enable(launch.size() == 1 and sys.argv[1:2] == ["run"])
     try:
         code: Any = main()
     except SystemExit as stop:
