@@ -81,9 +81,9 @@ def _place(actuator: Actuator, region: str, at: list[float]) -> str:
         words.append("side")
     if len(at) == 3:
         length, z = actuator.length, at[2]
-        if z < 0:
+        if z < -_ROUNDING:
             words.append("in the root cap")
-        elif z > length:
+        elif z > length + _ROUNDING:
             words.append("in the tip cap")
         elif z <= _NEAR_END * length:
             words.append("near the root")

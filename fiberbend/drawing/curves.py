@@ -88,7 +88,9 @@ def contact_forces(rows: Sequence[col.Row]) -> list[ContactForce]:
             pair = (col.PRESSURE, column)
             if any(complete(row, pair) for row in rows):
                 pressure, force = whole_rows(rows, pair)
-                found.append(_contact(name, pressure, np.stack([sign * force, 0 * force])))
+                kept = _contact(name, pressure, np.stack([sign * force, 0 * force]))
+                # what is kept in place meets nothing
+                found.append(dataclasses.replace(kept, touch=None))
     return found
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
 from fiberbend.process.beside import Beside
+from fiberbend.results.fields import write_fields
 from fiberbend.results.folder import RunFolder
 from fiberbend.results.states import States
 from fiberbend.states.snapshot import ModelMesh, Snapshot
@@ -67,7 +68,7 @@ def draw(
         )
     try:
         if output.fields and (flat is None or own is None):
-            _write_fields(folder, case, model_mesh, snapshots, rows, say)
+            write_fields(folder, case, model_mesh, snapshots, rows, say)
         if output.pictures or output.animation:
             _draw_states(folder, case, model_mesh, snapshots, rows, say)
         for line in [] if flat is None else flat.result():
@@ -111,21 +112,8 @@ def _draw_flat(
                 scenery(case, rows),
             )
     if case.output.fields:
-        _write_fields(folder, case, own, snapshots or (), rows, lines.append)
+        write_fields(folder, case, own, snapshots or (), rows, lines.append)
     return lines
-
-
-def _write_fields(
-    folder: RunFolder,
-    case: Case,
-    model_mesh: ModelMesh,
-    snapshots: Sequence[Snapshot],
-    rows: Sequence[dict[str, Any]],
-    say: Callable[[str], None],
-) -> None:
-    from fiberbend.results.fields import write_fields
-
-    write_fields(folder, case, model_mesh, snapshots, rows, say)
 
 
 def _draw_states(

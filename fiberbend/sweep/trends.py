@@ -16,6 +16,8 @@ from geometry.mesh.data import Floats
 
 INSENSITIVE = 0.01
 """A relative change from the least to the greatest value that counts as none."""
+_ROUND_OFF = 1e-9
+"""Part of the greatest value, or of the whole change, that no solver keeps."""
 _WORDS = {
     "↑": "rises",
     "↓": "falls",
@@ -149,7 +151,10 @@ def _changes(found: Sequence[Group], name: str, between: str) -> str:
         return ""
     # of the first value's size: a vacuum that grows is a pressure that falls
     changes = [
-        100 * (y[-1] - y[0]) / abs(y[0]) if y[0] else math.copysign(math.inf, y[-1]) for y in values
+        100 * (y[-1] - y[0]) / abs(y[0])
+        if abs(y[0]) > _ROUND_OFF * abs(y[-1])
+        else math.copysign(math.inf, y[-1])
+        for y in values
     ]
     ends = dict.fromkeys(f"{bound:+.1f} %" for bound in (min(changes), max(changes)))
     return between.join(ends).replace("-", "−")
@@ -158,7 +163,9 @@ def _changes(found: Sequence[Group], name: str, between: str) -> str:
 def _shape(y: Floats) -> str:
     if np.ptp(y) < INSENSITIVE * abs(y[0]):
         return "—"
-    rises = np.diff(y) > 0
+    steps = np.diff(y)
+    # a plateau neither rises nor falls, whatever its last digits do
+    rises = steps[np.abs(steps) > _ROUND_OFF * np.ptp(y)] > 0
     turns = int(np.count_nonzero(np.diff(rises)))
     if turns > 1:
         return "~"
