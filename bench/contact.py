@@ -34,7 +34,7 @@ def fig11(actuators: Sequence[Fig11]) -> list[str]:
         "## Fig. 11",
         "",
         "'Held': strips of roof (4 mm wide) and post (2 mm long) keep their height, as in "
-        "docs/accuracy_blocked.md. 'Pushed': a level roof and a post that the body can leave. "
+        "docs/evidence/blocked.md. 'Pushed': a level roof and a post that the body can leave. "
         "L_f = 14 mm reaches to the middle of the post.",
         "",
         "![tip force of the three actuators](images/contact_force.png)",

@@ -1,6 +1,6 @@
 """Accuracy tables of the body model: mesh, winding, blocked tip. `make tables` runs it.
 
-Writes docs/accuracy.md. Runs on any number of ranks; every number in the file comes from here.
+Writes pages of docs/evidence/. Runs on any number of ranks; every number in them comes from here.
 """
 
 from __future__ import annotations
@@ -252,7 +252,8 @@ def main() -> None:
     for name in wanted:
         lines = parts[name]()
         if launch.rank() == 0:
-            (ROOT / "docs" / f"accuracy_{name}.md").write_text("\n".join(lines), encoding="utf-8")
+            page = ROOT / "docs" / "evidence" / f"{name}.md"
+            page.write_text("\n".join(lines), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """Accuracy tables of section and cell: meshes, ribbon, pitch, and the body beside them.
 
-Writes docs/accuracy_uniform.md; names of parts on the command line renew only these. Runs on any
+Writes docs/evidence/uniform.md; names of parts on the command line renew only these. Runs on any
 number of ranks; every number in the file comes from here.
 """
 
@@ -21,7 +21,7 @@ from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import read_case
 from fiberbend.running import launch
 
-PAGE = Path(__file__).resolve().parent.parent / "docs" / "accuracy_uniform.md"
+PAGE = Path(__file__).resolve().parent.parent / "docs" / "evidence" / "uniform.md"
 CASES = PAGE.parent.parent / "cases"
 ANGLES = (90.0, 180.0, 270.0, 360.0)
 SECTION = (45.1, 89.2, 134.3, 181.5)

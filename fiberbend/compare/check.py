@@ -47,7 +47,7 @@ _LEAST_ANGLE = 1.0
 _LEAST_LOSS = 0.5
 _LEAST_FORCE = -60.0
 """Percent by which the tip force of a body, guided and under a soft sheath, is below that of the
-section kept straight at most; measured: 45 to 50 (docs/accuracy_blocked.md)."""
+section kept straight at most; measured: 45 to 50 (docs/evidence/blocked.md)."""
 _FULL = 0.4
 """Part of the greatest pressure from which a body lies firmly on roof and post."""
 

@@ -70,7 +70,7 @@ class BlockedTipEffect(Effect):
 
     def uncertainties(self, straight: bool) -> Iterator[str]:
         """The strips' widths."""
-        yield "strips: other roofs and posts move it by up to 12 % (docs/accuracy_blocked.md)"
+        yield "strips: other roofs and posts move it by up to 12 % (docs/evidence/blocked.md)"
 
     def alone(self) -> str:
         """The section beside it is kept straight."""

@@ -167,11 +167,11 @@ class Body(MeshedModel):
         if case.inflation is None:
             return
         if case.straight:
-            yield "mesh: moves the tip force by 1 to 3 % (docs/accuracy_blocked.md)"
+            yield "mesh: moves the tip force by 1 to 3 % (docs/evidence/blocked.md)"
         else:
             yield (
-                "mesh: shorter elements move P by 0.1 to 0.3 % (docs/accuracy_free.md), a finer "
-                f"section by up to {section_error(case)} % (docs/accuracy_uniform.md)"
+                "mesh: shorter elements move P by 0.1 to 0.3 % (docs/evidence/free.md), a finer "
+                f"section by up to {section_error(case)} % (docs/evidence/uniform.md)"
             )
         for effect in case.effects:
             yield from effect.uncertainties(case.straight)

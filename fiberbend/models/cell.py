@@ -27,7 +27,7 @@ _ITERATIONS = 3.3
 """Newton iterations in a step."""
 _ERRORS = ((8, 0.3), (4, 0.5), (0, 1.9))
 """Layers a half pitch, and percent of the pressure for an angle from 5 to 360°
-(docs/accuracy_uniform.md)."""
+(docs/evidence/uniform.md)."""
 
 
 class Cell(UniformModel):

@@ -1,7 +1,7 @@
 """How far the elements of a section move the pressure for an angle, as measured.
 
 On the baseline with its hemicircle, and on the shipped cases of the other sections, at angles from
-2 to 360° and against elements eight times as fine (docs/accuracy_uniform.md). Sharp corners cost
+2 to 360° and against elements eight times as fine (docs/evidence/uniform.md). Sharp corners cost
 most, and most where the angle is small or a flat wall bulges; the moment of an actuator that is
 kept straight is off by no more.
 """

@@ -56,7 +56,7 @@ def lost_pressure(case: Case, model: ModelKind) -> Iterator[str]:
             f"between turns {turns.pitch:g} mm apart bulges (docs/crosscheck.md{scaled})"
         )
     elif model.ends:
-        yield "winding: resolved; against a cell within 1.5 % (docs/accuracy_winding.md)"
+        yield "winding: resolved; against a cell within 1.5 % (docs/evidence/winding.md)"
 
 
 def winding_remark(case: Case) -> str | None:

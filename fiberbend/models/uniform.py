@@ -75,7 +75,7 @@ class UniformModel(MeshedModel):
         """A real tip turns, and passes half of the moment on."""
         return (
             f"the force of a {self.name} kept straight is about twice that of a body whose tip "
-            "presses on a post: 94 beside 49 N mm on the baseline (docs/accuracy_causes.md)"
+            "presses on a post: 94 beside 49 N mm on the baseline (docs/evidence/causes.md)"
         )
 
     @abstractmethod
@@ -90,10 +90,10 @@ class UniformModel(MeshedModel):
             yield f"mesh: moves the moment by up to {self.mesh_error(case)} %"
             yield (
                 "tip: a real one turns, its sheath yields: about half the force "
-                "(docs/accuracy_causes.md)"
+                "(docs/evidence/causes.md)"
             )
             return
-        yield f"mesh: moves P by up to {self.mesh_error(case)} % (docs/accuracy_uniform.md)"
+        yield f"mesh: moves P by up to {self.mesh_error(case)} % (docs/evidence/uniform.md)"
         yield f"ends: left out; {ENDS_BEND}"
 
 

@@ -243,7 +243,7 @@ assert any("| section, fine-section, cell |" in line for line in table(MODELS.va
     assert (fine["resolved"]["mesh"]["section"], usual["resolved"]["mesh"]["section"]) == (4, 2)
     assert "model: fine-section (given in the case)" in fine["plan"]
     assert "mesh: moves P by up to 0.05 %" in fine["plan"]
-    # as far apart as docs/accuracy_uniform.md has the refinements 2 and 4 at this angle
+    # as far apart as docs/evidence/uniform.md has the refinements 2 and 4 at this angle
     ratio = end(usual, "pressure_kPa") / end(fine, "pressure_kPa")
     assert ratio == pytest.approx(45.111 / 45.067, abs=3e-5)
     # the section itself stands beside it

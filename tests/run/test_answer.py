@@ -411,7 +411,7 @@ def test_a_section_answers_from_its_folder_as_on_the_screen(tmp_path: Path) -> N
     assert said == answer(case, result.rows, result.run)
     assert printed[-len(lines(said)) :] == lines(said)
     assert not any(line.endswith("…") or "unknowns" in line for line in printed)
-    # docs/accuracy_uniform.md: an independent section model, 45.1 to 181.5 kPa
+    # docs/evidence/uniform.md: an independent section model, 45.1 to 181.5 kPa
     for angle, kpa in ((90, 45.1), (180, 89.2), (270, 134.3), (360, 181.5)):
         value = found(said, f"pressure at {angle}°").value
         assert float(value.removesuffix(" kPa")) == pytest.approx(kpa, abs=0.1)

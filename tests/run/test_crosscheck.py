@@ -168,7 +168,7 @@ def test_greatest_difference_and_where() -> None:
 
 
 def test_bands() -> None:
-    # docs/accuracy_free.md: ends 1.1 %; independent cell: pitch 3 mm 5.1 %, 1.5 mm 1.8 %
+    # docs/evidence/free.md: ends 1.1 %; independent cell: pitch 3 mm 5.1 %, 1.5 mm 1.8 %
     assert band(case_of(), BODY) == 2.0
     assert band(case_of(), MODELS["cell"]) == 0.5
     assert band(discrete(), BODY) == 6.0
@@ -218,7 +218,7 @@ def test_discrete_winding_explains_more_pressure_and_not_less() -> None:
 
 
 def test_agreement_of_an_unresolved_winding_is_no_proof() -> None:
-    # docs/accuracy_winding.md: elements of 4 mm give a fifth of what a pitch of 3 mm costs
+    # docs/evidence/winding.md: elements of 4 mm give a fifth of what a pitch of 3 mm costs
     check = crosscheck(discrete(axial="4 mm"), BODY, rows_of(), SECTION)
     assert not compared(check, "section").beyond
     (remark,) = check.remarks
@@ -327,7 +327,7 @@ def blocked_rows(force: float, rotation: float) -> list[dict[str, Any]]:
 def test_force_of_a_blocked_tip() -> None:
     # independent section model: 94 N mm at 100 kPa kept straight
     straight = StraightSection(np.array([0, 0.1, 0.2]), np.array([0, 94.0, 188.0]))
-    # docs/accuracy_blocked.md: 3.6 N, and z = L turns by 8.9°
+    # docs/evidence/blocked.md: 3.6 N, and z = L turns by 8.9°
     check = crosscheck(case_of("blocked_tip"), BODY, blocked_rows(3.6, 8.9), straight=straight)
     last = check.columns[-1]
     assert last["section_tip_force_N"] == pytest.approx(94 / 14)

@@ -2,7 +2,7 @@
 
 Their origin, unless said: plain numpy and scipy models of uniform bending, sections of 47 quadratic
 quadrilaterals and cells of 40 to 120 hexahedra, of the baseline and its variants; their own band
-is 1 %. docs/accuracy_uniform.md says how far meshes of that size are from converged.
+is 1 %. docs/evidence/uniform.md says how far meshes of that size are from converged.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ def test_cell_with_lines_for_fibers() -> None:
 
 def test_cell_that_resolves_its_ribbons() -> None:
     # 46.46, 92.06, 139.0, 188.3: this program's limit, by refining layers, section and lines, see
-    # docs/accuracy_uniform.md; four layers and nine lines stay within 0.3 % of it
+    # docs/evidence/uniform.md; four layers and nine lines stay within 0.3 % of it
     fine = _bend("cell", {"section": 1, "axial": "0.375 mm"}, lines=9)
     assert fine == pytest.approx([46.46, 92.06, 139.0, 188.3], rel=0.003)
 
