@@ -43,15 +43,17 @@ def blas() -> dict[str, Any] | None:
 
     The kernel decides in which order sums are taken, and so about the last digits.
     """
-    for path in _loaded():
-        kind = next((name for part, name in _LIBRARIES.items() if part in path.name), None)
-        if kind is None:
-            continue
-        found: dict[str, Any] = {"library": kind, "kernel": None, "threads": None}
-        if kind == "OpenBLAS":
-            found |= _openblas(path)
-        return found
-    return None
+    path = blas_file()
+    if path is None:
+        return None
+    kind = next(name for part, name in _LIBRARIES.items() if part in path.name)
+    found: dict[str, Any] = {"library": kind, "kernel": None, "threads": None}
+    return found | _openblas(path) if kind == "OpenBLAS" else found
+
+
+def blas_file() -> Path | None:
+    """The library of it; None before this process has loaded one."""
+    return next(iter(_loaded()), None)
 
 
 def commit(source: Path) -> str | None:

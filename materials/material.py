@@ -2,60 +2,33 @@
 
 from __future__ import annotations
 
+import cmath
 import dataclasses
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from materials.invariants import Invariants
 from materials.laws.table import LAWS
 
-Floats = NDArray[np.float64]
+if TYPE_CHECKING:
+    from materials.stretches import Floats
+
 ROUND_OFF = 1e-9
 """Part of the parameters by which a shear modulus may cancel: no modulus is left then."""
-_STEP = 1e-30
-_CIRCLE = 0.02 * np.exp(2j * np.pi * np.arange(16) / 16)
+_CIRCLE = [0.02 * cmath.exp(2j * math.pi * i / 16) for i in range(16)]
 
 
-class Stretches:
-    """A deformation by its principal stretches: a `materials.laws.law.Deformation` in numpy.
-
-    Args:
-        stretches: λ1, λ2, λ3, arrays of one shape, real or complex.
-    """
-
-    def __init__(self, *stretches: Any) -> None:
-        self._stretches = stretches
-
-    @property
-    def i1(self) -> Any:
-        """λ1² + λ2² + λ3²."""
-        a, b, c = self._stretches
-        return a * a + b * b + c * c
-
-    @property
-    def i2(self) -> Any:
-        """λ1² λ2² + λ2² λ3² + λ3² λ1²."""
-        a, b, c = (stretch * stretch for stretch in self._stretches)
-        return a * b + b * c + c * a
-
-    def power_sum(self, exponent: Any) -> Any:
-        """λ1^a + λ2^a + λ3^a."""
-        a, b, c = self._stretches
-        return a**exponent + b**exponent + c**exponent
+class _Number(Invariants):
+    """At one point, in complex numbers: whoever only checks a material loads no numpy."""
 
     def ln(self, x: Any) -> Any:
         """Natural logarithm; NaN where the real part is not positive."""
-        good = np.real(x) > 0
-        # of a complex number both parts: the imaginary one carries a derivative
-        none = np.nan if np.isrealobj(x) else complex(np.nan, np.nan)
-        return np.where(good, np.log(np.where(good, x, 1.0)), none)
+        return cmath.log(x) if complex(x).real > 0 else complex(math.nan, math.nan)
 
     def exp(self, x: Any) -> Any:
         """Exponential function."""
-        return np.exp(x)
+        return cmath.exp(x)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -117,8 +90,9 @@ class Material:
         The second derivative by Cauchy's formula on a circle of ε, good to 3e-13 of the law's
         parameters.
         """
-        energy = self.energy(np.exp(_CIRCLE), np.exp(-_CIRCLE), np.ones_like(_CIRCLE))
-        return float(np.mean(energy / _CIRCLE**2).real) / 2
+        energies = (self._energy(_Number(cmath.exp(e), cmath.exp(-e), 1.0)) for e in _CIRCLE)
+        slopes = [(energy / e**2).real for energy, e in zip(energies, _CIRCLE, strict=True)]
+        return float(sum(slopes)) / len(slopes) / 2
 
     @property
     def mass_density(self) -> float | None:
@@ -134,9 +108,13 @@ class Material:
         Returns:
             Array of this shape; NaN where the law has no value.
         """
+        from materials.stretches import Stretches
+
+        return self._energy(Stretches(*stretches))
+
+    def _energy(self, state: Invariants) -> Any:
         law, values = LAWS[self.law], self.values
-        used = {name: values[name] for name in law.used([values])}
-        return law.energy(Stretches(*stretches), **used)
+        return law.energy(state, **{name: values[name] for name in law.used([values])})
 
     def principal(self, *stretches: Floats) -> tuple[Floats, Floats, Floats]:
         """λi ∂W/∂λi in MPa, exact to round-off by a complex step.
@@ -150,10 +128,6 @@ class Material:
         Returns:
             Three arrays of this shape; NaN where the law has no value.
         """
+        from materials.stretches import slopes
 
-        def slope(i: int) -> Floats:
-            moved = [np.asarray(s, dtype=complex) for s in stretches]
-            moved[i] = moved[i] * (1 + 1j * _STEP)
-            return np.asarray(np.imag(self.energy(*moved)) / _STEP, dtype=float)
-
-        return slope(0), slope(1), slope(2)
+        return slopes(self.energy, stretches)

@@ -22,7 +22,7 @@ from fem.ranks import total
 from fem.scene import Scene
 from fem.solver.newton import Outcome
 from materials.laws.law import Law
-from materials.material import Stretches
+from materials.stretches import Stretches
 
 Floats = npt.NDArray[np.float64]
 

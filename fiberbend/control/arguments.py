@@ -14,6 +14,7 @@ from fiberbend.process import signals
 from fiberbend.reader.arguments import CaseFile, Changes
 from fiberbend.running import launch
 from fiberbend.running.launch import say
+from fiberbend.schema.descriptions import descriptions
 from fiberbend.schema.quantities import Quantity
 from fiberbend.schema.units import KINDS
 from machine.folders import MachineError
@@ -32,7 +33,7 @@ def _text(name: str) -> tuple[str, Any, Any]:
         annotation = field.annotation
     option = Parameter(
         name=f"--{field.alias}",
-        help=field.description,
+        help=descriptions(Options).get(name),
         show_default=shown,
         metavar="LOW HIGH" if pair else kind.upper(),
         # "-10 deg" is a value

@@ -7,6 +7,7 @@ from typing import Any
 from pydantic.json_schema import GenerateJsonSchema
 
 from fiberbend.case.case import Case
+from fiberbend.schema.descriptions import descriptions
 
 
 class _Schema(GenerateJsonSchema):
@@ -22,6 +23,16 @@ class _Schema(GenerateJsonSchema):
             result["default"] = write(result["default"])
         if result.get("default", 0) is None:
             del result["default"]
+        return result
+
+    def model_schema(self, schema: Any) -> Any:
+        """With the text of every field."""
+        result = super().model_schema(schema)
+        spec = schema["cls"]
+        texts = descriptions(spec)
+        for name, field in spec.model_fields.items():
+            if name in texts:
+                result["properties"][field.alias or name]["description"] = texts[name]
         return result
 
 

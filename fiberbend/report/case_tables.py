@@ -10,6 +10,7 @@ import yaml
 from fiberbend import columns as col
 from fiberbend.case.case import ActuatorSpec, Case
 from fiberbend.plan.plan import make_plan
+from fiberbend.schema.descriptions import descriptions
 
 _READ = (
     *(col.STEP, col.PRESSURE, col.ANGLE, col.TIP_X, col.TIP_Y, col.TIP_Z, col.VOLUME),
@@ -53,7 +54,7 @@ class Table(NamedTuple):
 def dimensions(case: Case) -> Iterator[Line]:
     """The dimensions of the actuator."""
     for name, value in case.resolved()["actuator"].items():
-        yield Line(name, str(value), ActuatorSpec.model_fields[name].description or "")
+        yield Line(name, str(value), descriptions(ActuatorSpec).get(name, ""))
 
 
 def materials(case: Case) -> Iterator[Line]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import sys
 import time
@@ -15,7 +16,9 @@ from fiberbend.process import beside, ranks
 from fiberbend.process.ranks import rank as rank
 from fiberbend.process.ranks import size as size
 from fiberbend.process.signals import Interrupted
+from machine import origin
 from machine.folders import settle
+from machine.kernel import settle_kernel, slow_kernel
 
 if TYPE_CHECKING:
     from fiberbend.case.case import Case
@@ -73,6 +76,7 @@ def start_mpi() -> None:
     error that nobody catches ends all ranks from here on.
     """
     settle_folders()
+    settle_kernel()
     alone = not ranks.launched()
     new = [name for name in _ALONE if alone and name not in os.environ]
     os.environ.update({name: _ALONE[name] for name in new})
@@ -84,6 +88,15 @@ def start_mpi() -> None:
     if MPI.COMM_WORLD.size > 1 and _group.comm is None:
         _group.comm = MPI.COMM_WORLD.Dup()
         sys.excepthook = _end_all
+    _say_slow_kernel()
+
+
+@functools.cache
+def _say_slow_kernel() -> None:
+    """Once, where a script has loaded numpy before this program could choose."""
+    line = slow_kernel(origin.blas()) if "numpy" in sys.modules else ""
+    if line and rank() == 0:
+        say(f"fiberbend: {line}", sys.stderr)
 
 
 def all_here(seconds: float) -> bool:

@@ -17,8 +17,9 @@ Sign = Literal["above zero", "zero or above", "other than zero", "any"]
 class Spec(BaseModel):
     """A part of a case as a file gives it: frozen, and without room for keys that nobody reads."""
 
+    # built when a case is read: Case builds all parts of it anyway
     model_config = ConfigDict(
-        extra="forbid", frozen=True, strict=True, allow_inf_nan=False, use_attribute_docstrings=True
+        extra="forbid", frozen=True, strict=True, allow_inf_nan=False, defer_build=True
     )
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from fiberbend.schema.descriptions import descriptions
 from fiberbend.schema.paths import dotted, keys, specs_at
 from fiberbend.schema.problems import Problem, found, meant
 from fiberbend.schema.quantities import Quantity, Spec
@@ -70,8 +71,13 @@ def _expected(root: type[Spec], location: tuple[str | int, ...]) -> str:
                 return annotation.expected
         if typing.get_origin(field.annotation) is typing.Literal:
             return " or ".join(map(str, typing.get_args(field.annotation)))
-        if field.description:
-            return re.split(r"[.;:]", field.description)[0].lower()
+        text = next(
+            descriptions(outer).get(name)
+            for name, known in outer.model_fields.items()
+            if known is field
+        )
+        if text:
+            return re.split(r"[.;:]", text)[0].lower()
     return "a value"
 
 

@@ -10,8 +10,9 @@ import pytest
 
 from materials.laws.law import Law, Parameter
 from materials.laws.table import LAWS
-from materials.material import Material, Stretches
+from materials.material import Material
 from materials.named import NAMED, named_material
+from materials.stretches import Stretches
 from tests.materials.rubber import (
     MODULI,
     RUBBERS,
