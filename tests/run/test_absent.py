@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import subprocess
 from typing import Any
 
 import pytest
 
+from bench import absent
 from fem.kinematics.domain import Domain
 from fem.scene import Scene
 from fiberbend.case import convert
@@ -76,3 +78,24 @@ def test_order_of_the_case_does_not_matter(mesh: MeshData) -> None:
     one, other = scene(mesh, list(EFFECTS)), scene(mesh, list(EFFECTS)[::-1])
     assert one.signatures == other.signatures
     assert one.keys == other.keys
+
+
+def test_an_absent_effect_is_not_even_asked() -> None:
+    """Calls from assembly to the last step are those of a program that never had the effects."""
+    case, *settings = absent.CASES["section"]
+    others = absent.absent_effects(case)
+    assert {"GravityEffect", "ContactEffect", "BlockedTipEffect"} <= {*others}
+    with_them = absent.counted(case, [*absent.QUIET, *settings])
+    assert with_them == absent.counted(case, [*absent.QUIET, *settings], others)
+    # it does count: an effect in the scene, which a program without it does not read
+    thread = "{winding: {pattern: double-helix, pitch: 3 mm, fiber: kevlar, as: smeared}}"
+    listed = f"{{pressure: {{to: 5 kPa}}}}, {thread}"
+    output = [*absent.QUIET, "mesh.section=1", "output.at_angles=[]"]
+    free, straight = (
+        absent.counted(case, [*output, f"effects=[{listed}{more}]"])
+        for more in ("", ", {straight: {}}")
+    )
+    assert free["unknowns"] == straight["unknowns"]
+    assert free["calls"] != straight["calls"]
+    with pytest.raises(subprocess.CalledProcessError):
+        absent.counted(case, [*output, f"effects=[{listed}, {{straight: {{}}}}]"], others)
