@@ -58,9 +58,7 @@ class Bulging:
 
     def factor(self, stretch: Floats) -> tuple[Floats, Floats, Floats]:
         """K_b/K0 and its first two derivatives by λ_z, at stretches λ_z (n,)."""
-        a1, a2, part = self.linear, self.quadratic, stretch - 1
-        return (
-            1 + part * (a1 + part * a2),
-            a1 + 2 * a2 * part,
-            np.full_like(part, 2 * a2),
-        )
+        part = stretch - 1
+        slope = self.linear + 2 * self.quadratic * part
+        value = 1 + part * (self.linear + self.quadratic * part)
+        return value, slope, np.full(len(part), 2 * self.quadratic)
