@@ -60,5 +60,5 @@ class Bulging:
         """K_b/K0 and its first two derivatives by λ_z, at stretches λ_z (n,)."""
         part = stretch - 1
         slope = self.linear + 2 * self.quadratic * part
-        value = 1 + part * (self.linear + self.quadratic * part)
+        value: Floats = 1 + part * (self.linear + self.quadratic * part)
         return value, slope, np.full(len(part), 2 * self.quadratic)
