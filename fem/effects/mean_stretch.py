@@ -112,9 +112,10 @@ class MeanStretch:
         slope = along / metric[:, :, None]  # ∂φ_a/∂S, 1/mm
         share = lines.weights * metric
         self._share = share / share.sum(axis=1, keepdims=True)
-        self._uniform = body.carry() is not None
-        parts = body.components
-        if self._uniform:
+        carry, parts = body.carry(), body.components
+        self._turned: dict[str, Floats] = {}
+        """By scalar, ∂²t/∂w∂q = T_z (∂ω/∂q) × φ: where the spin turns to does not change."""
+        if carry is not None:
             value = np.take_along_axis(
                 value.reshape(count, quadrature, -1), positions[:, None, :], axis=2
             )
@@ -122,12 +123,14 @@ class MeanStretch:
                 count, quadrature, 3, -1
             )
             self._rise: Floats = (rise / metric)[:, :, None]
+            for name, (_, turn) in carry.rates.items():
+                self._turned[name] = self._rise[..., None] * (cross_matrix(turn) @ self._value)
         self._slope = np.einsum("nqa,ij->nqiaj", slope, np.eye(3)[:, :parts]).reshape(
             count, quadrature, 3, -1
         )
         rest = np.zeros((*reference.shape[:2], parts))
         # x' in the turning frame: z is not a position there
-        shown = 2 if self._uniform else 3
+        shown = 3 if carry is None else 2
         rest[:, :, :shown] = reference[:, :, :shown]
         self._reference = rest.reshape(count, -1)
         self.value = np.ones(count)
@@ -184,8 +187,7 @@ class MeanStretch:
 
             ∂²λ/∂a∂b = Σ c [∂t/∂a · (I − n nᵀ)/λ · ∂t/∂b + n · ∂²t/∂a∂b].
 
-        t is linear in w and in q; ∂²t/∂w∂q = T_z (∂ω/∂q) × φ alone does not vanish, and only in
-        uniform bending.
+        t is linear in w and in q; ∂²t/∂w∂q alone does not vanish, and only in uniform bending.
         """
         n = self._direction
         across = np.eye(3) - n[..., :, None] * n[..., None, :]
@@ -196,11 +198,9 @@ class MeanStretch:
         block = self._map.reshape(count, -1, width).swapaxes(1, 2) @ side.reshape(count, -1, width)
         mixed: dict[str, Floats] = {}
         scalars: dict[tuple[str, str], float] = {}
-        carry = self._body.carry()
         for name, rate in self._rates.items():
-            assert carry is not None
-            turned = self._rise[..., None] * (cross_matrix(carry.rates[name][1]) @ self._value)
-            mixed[name] = _contract(rate, side) + _contract(shared[:, :, None] * n, turned)
+            turning = _contract(shared[:, :, None] * n, self._turned[name])
+            mixed[name] = _contract(rate, side) + turning
             for other, last in self._rates.items():
                 scalars[name, other] = float(np.sum(rate * (across @ last[..., None])[..., 0]))
         return Second(block, mixed, scalars)

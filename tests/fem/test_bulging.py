@@ -34,7 +34,6 @@ from tests.fem.parts import (
     calibrated,
     law,
     perturb,
-    smeared,
     stub,
 )
 
@@ -120,7 +119,7 @@ def test_energy_of_a_homogeneous_stretch(cell: str) -> None:
 def test_without_a_bulge_it_is_the_smeared_winding() -> None:
     domain, found = stub("hexahedron"), []
     soft = law("neo-hooke", REGIONS[:2], scale=1e-9)
-    segments = smeared(domain).segments
+    segments = calibrated(domain).segments
     for winding in (SmearedWinding(segments, EA), CalibratedWinding(segments, EA, RIGID)):
         scene = Scene(domain, [soft, winding])
         perturb(scene, 0.03, 1)
