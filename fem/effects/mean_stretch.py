@@ -12,37 +12,9 @@ from analytic.path import cross_matrix
 from fem.kinematics.kinematics import Kinematics
 from geometry.mesh.data import facet_positions
 from geometry.mesh.reference import shape_functions
-from geometry.winding.segments import EmbeddedFibers
+from geometry.winding.segments import Lines
 
 Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-
-
-@dataclasses.dataclass(frozen=True)
-class Lines:
-    """Pieces of material lines, each in a facet of one cell; n pieces with q points each.
-
-    Attributes:
-        cell: host cell, (n,).
-        facet: local facet of the host cell, (n,).
-        points: reference coordinates in the host cell, (n, q, d).
-        tangents: derivative of the reference coordinates along the piece, (n, q, d).
-        axial: derivative of z along the piece in mm where the mesh has no z, else 0, (n, q).
-        weights: weights of the points, (n, q).
-    """
-
-    cell: Ints
-    facet: Ints
-    points: Floats
-    tangents: Floats
-    axial: Floats
-    weights: Floats
-
-    @classmethod
-    def of(cls, segments: EmbeddedFibers, index: Ints) -> Lines:
-        """Some of the segments of a winding, by their numbers (n,)."""
-        names = (field.name for field in dataclasses.fields(cls))
-        return cls(**{name: getattr(segments, name)[index] for name in names})
 
 
 @dataclasses.dataclass(frozen=True)

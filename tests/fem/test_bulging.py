@@ -30,11 +30,11 @@ from tests.fem.parts import (
     PITCH,
     SHORT,
     STUB,
-    Floats,
     calibrated,
     law,
     perturb,
     stub,
+    times_tangent,
 )
 
 REGIONS = ("wall", "floor", "sheath")
@@ -68,15 +68,6 @@ def _potential(scene: Scene) -> BulgingPotential:
 
 def _energy(scene: Scene) -> float:
     return scene.energies()["CalibratedWinding"]
-
-
-def _times_tangent(scene: Scene, v: Floats) -> Floats:
-    matrix = scene.assemble_tangent()
-    x, y = matrix.createVecs()
-    x.array_w[:] = v
-    matrix.mult(x, y)
-    result: Floats = y.array_r.copy()
-    return result
 
 
 def _stretched(scene: Scene, stretches: Sequence[float]) -> None:
@@ -124,7 +115,7 @@ def test_without_a_bulge_it_is_the_smeared_winding() -> None:
         scene = Scene(domain, [soft, winding])
         perturb(scene, 0.03, 1)
         v = np.random.default_rng(2).uniform(-1, 1, scene.body.owned)
-        product = _times_tangent(scene, v)
+        product = times_tangent(scene, v)
         found.append((scene.energies()[type(winding).__name__], scene.residual()[0], product))
     (energy, forces, product), (same, alike, equal) = found
     assert same == pytest.approx(energy, rel=1e-14)
@@ -233,14 +224,14 @@ def test_prediction_of_no_change_is_the_tangent(tension_only: bool) -> None:
     scene = Scene(domain, [law("neo-hooke", REGIONS[:2], scale=1e-9), winding])
     w = perturb(scene, 0.03, 3)
     v = np.random.default_rng(4).uniform(-1, 1, len(w))
-    exact = _times_tangent(scene, v)
+    exact = times_tangent(scene, v)
     remembered = scene.memory()
     scene.predict(np.zeros(len(w)))
-    assert np.abs(_times_tangent(scene, v) - exact).max() <= 1e-14 * np.abs(exact).max()
+    assert np.abs(times_tangent(scene, v) - exact).max() <= 1e-14 * np.abs(exact).max()
     scene.predict(v)
-    assert np.abs(_times_tangent(scene, v) - exact).max() > 1e-2 * np.abs(exact).max()
+    assert np.abs(times_tangent(scene, v) - exact).max() > 1e-2 * np.abs(exact).max()
     scene.extrapolate([remembered], np.ones(1))
-    assert np.abs(_times_tangent(scene, v) - exact).max() <= 1e-14 * np.abs(exact).max()
+    assert np.abs(times_tangent(scene, v) - exact).max() <= 1e-14 * np.abs(exact).max()
 
 
 def test_forces_are_predicted_to_first_order() -> None:
