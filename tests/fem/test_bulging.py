@@ -19,6 +19,7 @@ from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
 from fem.scene import Scene
 from geometry.bodies.extrude import hexahedral_slice, section_quadrilaterals
 from geometry.sections.hemicircle import HemicircleActuator
+from geometry.sections.rectangle import RectangleActuator
 from geometry.sections.size import MeshSize
 from geometry.winding.helix import Winding
 from geometry.winding.smear import smear
@@ -267,3 +268,14 @@ def test_forces_are_predicted_to_first_order() -> None:
         assert errors[-1][1] < 0.1 * np.abs(after["across"] - before["across"]).max()
     for coarse, fine in zip(*errors, strict=True):
         assert fine == pytest.approx(coarse / 100, rel=0.2)
+
+
+def test_an_outline_without_arcs_is_refused() -> None:
+    # sharp corners have no length, so that the law has nothing to say about them
+    box = RectangleActuator(width=10, height=6, length=24, wall=2, floor=2, cap=5)
+    mesh = section_quadrilaterals(box, MeshSize(section=1, half=True))
+    segments = smear(mesh, box, Winding("double-helix", PITCH, 0.38))
+    with pytest.raises(ValueError, match="nowhere curved"):
+        CalibratedWinding(segments, EA, BULGING)
+    with pytest.raises(ValueError, match="fiber stiffness"):
+        CalibratedWinding(calibrated(stub("hexahedron")).segments, 0.0, BULGING)
