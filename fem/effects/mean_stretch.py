@@ -34,8 +34,10 @@ class Second:
 
 def _contract(vectors: Floats, maps: Floats) -> Floats:
     """Σ_qi v_qi M_qik over points and components: v (n, q, 3), M (n, q, 3, k), result (n, k)."""
-    count, width = len(maps), maps.shape[3]
-    result: Floats = (vectors.reshape(count, 1, -1) @ maps.reshape(count, -1, width))[:, 0]
+    count, points, components, width = maps.shape
+    # sizes in full: numpy infers none where a rank holds nothing
+    flat = maps.reshape(count, points * components, width)
+    result: Floats = (vectors.reshape(count, 1, points * components) @ flat)[:, 0]
     return result
 
 
@@ -71,10 +73,13 @@ class MeanStretch:
         count, quadrature, dim = lines.points.shape
         value, gradient = shape_functions(kind, lines.points.reshape(-1, dim))
         tangent = lines.tangents.reshape(-1, dim)
-        along = np.einsum("pad,pd->pa", gradient, tangent).reshape(count, quadrature, -1)
+        along = np.einsum("pad,pd->pa", gradient, tangent)
+        along = along.reshape(count, quadrature, along.shape[1])
         along = np.take_along_axis(along, positions[:, None, :], axis=2)
         local = domain.local_cell[lines.cell]
-        self.dofs = body.cell_dofs[local[:, None], positions].reshape(count, -1)
+        parts = body.components
+        width = positions.shape[1] * parts
+        self.dofs = body.cell_dofs[local[:, None], positions].reshape(count, width)
         reference = data.nodes[data.cells[lines.cell[:, None], positions]]
         rise = lines.axial
         if reference.shape[2] == 3:
@@ -84,27 +89,27 @@ class MeanStretch:
         slope = along / metric[:, :, None]  # ∂φ_a/∂S, 1/mm
         share = lines.weights * metric
         self._share = share / share.sum(axis=1, keepdims=True)
-        carry, parts = body.carry(), body.components
+        carry = body.carry()
         self._turned: dict[str, Floats] = {}
         """By scalar, ∂²t/∂w∂q = T_z (∂ω/∂q) × φ: where the spin turns to does not change."""
         if carry is not None:
             value = np.take_along_axis(
-                value.reshape(count, quadrature, -1), positions[:, None, :], axis=2
+                value.reshape(count, quadrature, value.shape[1]), positions[:, None, :], axis=2
             )
             self._value = np.einsum("nqa,ij->nqiaj", value, np.eye(3)[:, :parts]).reshape(
-                count, quadrature, 3, -1
+                count, quadrature, 3, width
             )
             self._rise: Floats = (rise / metric)[:, :, None]
             for name, (_, turn) in carry.rates.items():
                 self._turned[name] = self._rise[..., None] * (cross_matrix(turn) @ self._value)
         self._slope = np.einsum("nqa,ij->nqiaj", slope, np.eye(3)[:, :parts]).reshape(
-            count, quadrature, 3, -1
+            count, quadrature, 3, width
         )
         rest = np.zeros((*reference.shape[:2], parts))
         # x' in the turning frame: z is not a position there
         shown = 3 if carry is None else 2
         rest[:, :, :shown] = reference[:, :, :shown]
-        self._reference = rest.reshape(count, -1)
+        self._reference = rest.reshape(count, width)
         self.value = np.ones(count)
 
     def update(self, w: Floats) -> None:
@@ -166,8 +171,9 @@ class MeanStretch:
         shared = pull[:, None] * self._share
         across *= (shared / self._stretch)[..., None, None]
         side = across @ self._map
-        count, width = self.dofs.shape
-        block = self._map.reshape(count, -1, width).swapaxes(1, 2) @ side.reshape(count, -1, width)
+        count, points, components, width = self._map.shape
+        flat = (count, points * components, width)
+        block = self._map.reshape(flat).swapaxes(1, 2) @ side.reshape(flat)
         mixed: dict[str, Floats] = {}
         scalars: dict[tuple[str, str], float] = {}
         for name, rate in self._rates.items():

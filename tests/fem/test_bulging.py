@@ -11,6 +11,7 @@ import pytest
 
 from fem.effects.bulging_fibers import BulgingPotential
 from fem.effects.effect import Effect
+from fem.effects.embedded_fibers import FiberPotential
 from fem.effects.winding import CalibratedWinding, SmearedWinding
 from fem.kinematics.cell import Cell
 from fem.kinematics.domain import Domain
@@ -279,3 +280,30 @@ def test_an_outline_without_arcs_is_refused() -> None:
         CalibratedWinding(segments, EA, BULGING)
     with pytest.raises(ValueError, match="fiber stiffness"):
         CalibratedWinding(calibrated(stub("hexahedron")).segments, 0.0, BULGING)
+
+
+@pytest.mark.parametrize("kept", ["straight", "none"])
+def test_a_rank_may_hold_no_curved_piece_or_none(kept: str) -> None:
+    domain = stub("hexahedron")
+    winding = calibrated(domain)
+    scene = Scene(domain, [law("neo-hooke", REGIONS[:2], scale=1e-9), winding])
+    whole = winding.segments
+    chosen = np.flatnonzero(whole.curvature == 0 if kept == "straight" else whole.cell < 0)
+    fields = {f.name: getattr(whole, f.name)[chosen] for f in dataclasses.fields(whole)}
+    part = BulgingPotential(scene.body, dataclasses.replace(whole, **fields), EA, BULGING)
+    plain = FiberPotential(scene.body, dataclasses.replace(whole, **fields), EA)
+    perturb(scene, 0.03, 6)
+    found = []
+    for potential in (part, plain):
+        potential.update(scene.body.w.x.array)
+        forces = np.zeros(scene.body.local)
+        potential.add_residual(forces)
+        potential.add_noise(forces)
+        potential.predict(forces, {})
+        scene.matrix.zeroEntries()
+        potential.add_tangent(scene.matrix, scene.free)
+        scene.matrix.assemble()
+        found.append((forces, scene.matrix.norm(), potential.force_range()))
+    assert np.array_equal(found[0][0], found[1][0])
+    assert found[0][1:] == found[1][1:]
+    assert (found[0][1] > 0) == (kept == "straight")
