@@ -6,6 +6,7 @@ import contextlib
 import fcntl
 import functools
 import hashlib
+import io
 import logging
 import os
 import platform
@@ -18,6 +19,7 @@ from typing import Any
 
 import cffi
 import dolfinx
+import dolfinx.jit
 import ffcx
 import numpy as np
 import ufl
@@ -128,6 +130,38 @@ def compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
         raise MachineError(f"no kernel compiled in {options['cache_dir']}: {what}") from error
     finally:
         logging.disable(previous)
+
+
+def library(comm: MPI.Comm, source: Path, declarations: str) -> Any:
+    """A C file of ours as a cffi module with `lib` and `ffi`, kept beside the forms; collective.
+
+    Args:
+        comm: communicator.
+        source: the C file.
+        declarations: of its functions and types, for cffi.
+
+    Raises:
+        MachineError: no C compiler, or it failed.
+    """
+    text = source.read_text()
+    name = f"{source.stem}_{hashlib.sha1((declarations + text).encode()).hexdigest()}"
+
+    @dolfinx.jit.mpi_jit_decorator
+    def load(options: dict[str, Any]) -> Any:
+        folder = Path(options["cache_dir"])
+        found = jit.get_cached_module(name, [], folder, options["timeout"])
+        if found[0] is None:
+            builder = cffi.FFI()
+            flags = options["cffi_extra_compile_args"]
+            builder.set_source(name, text, extra_compile_args=flags)
+            builder.cdef(declarations)
+            with contextlib.redirect_stdout(io.StringIO()):
+                builder.compile(tmpdir=str(folder), verbose=True)
+            (folder / f"{name}.c.cached").touch(exist_ok=False)
+            found = jit._load_objects(folder, name, [])
+        return found[1]
+
+    return compiled(comm, lambda options: load(comm, options))
 
 
 @contextlib.contextmanager

@@ -8,7 +8,6 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
-from petsc4py import PETSc
 
 from analytic.path import cross_matrix
 from fem.kinematics.kinematics import Kinematics
@@ -102,6 +101,7 @@ class FiberPotential:
         along = np.einsum("pad,pd->pa", gradient, tangent).reshape(count, quadrature, -1)
         along = np.take_along_axis(along, positions[:, None, :], axis=2)
         self._dofs = body.cell_dofs[local[:, None], positions].reshape(count, -1)
+        self.block_dofs = self._dofs[self._start]
         cells = domain.data.cells[segments.cell[self.index, None], positions]
         self._reference = domain.data.nodes[cells]
         rise = segments.axial[self.index]
@@ -281,16 +281,12 @@ class FiberPotential:
         self._second = _Second(block, mixed, scalars)
         return self._second
 
-    def add_tangent(self, matrix: PETSc.Mat, free: npt.NDArray[np.bool_]) -> None:
-        """Add ∂²Π/∂w², summed facet by facet, on the free dofs."""
+    def tangent_blocks(self) -> Floats:
+        """∂²Π/∂w² of every facet that holds fiber, (m, k, k)."""
         if not len(self._start):
-            return
-        sums = np.add.reduceat(self._second_derivatives().block, self._start, axis=0)
-        dofs = self._dofs[self._start]
-        keep = free[dofs].astype(float)
-        sums *= keep[:, :, None] * keep[:, None, :]
-        rows = dofs.astype(PETSc.IntType)
-        matrix.setValuesLocalRCV(rows, rows, sums, PETSc.InsertMode.ADD_VALUES)
+            return np.zeros((0, *self.block_dofs.shape[1:] * 2))
+        blocks: Floats = np.add.reduceat(self._second_derivatives().block, self._start, axis=0)
+        return blocks
 
     # --- global scalars ------------------------------------------------------------------------
 
