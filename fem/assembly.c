@@ -130,11 +130,21 @@ static void add_block(const double *block, const blocks *map, int64_t number, co
   }
 }
 
-/* Add dense blocks, count × width × width. */
-void add_blocks(const double *values, const blocks *map, const storage *to) {
-  int64_t size = (int64_t)map->width * map->width;
-  for (int64_t number = 0; number < map->count; number++)
-    add_block(values + number * size, map, number, to);
+/* Add dense blocks, width × width; what belongs to one block of the map is summed first.
+
+   last: for each block of the map, one more than the number of its last values; 1: no room. */
+int add_blocks(const double *values, const int32_t *last, const blocks *map, const storage *to) {
+  int64_t size = (int64_t)map->width * map->width, from = 0;
+  double *sum = malloc((size + 1) * sizeof(double));
+  if (!sum) return 1;
+  for (int32_t number = 0; number < map->count; number++) {
+    memset(sum, 0, size * sizeof(double));
+    for (; from < last[number]; from++)
+      for (int64_t k = 0; k < size; k++) sum[k] += values[from * size + k];
+    add_block(sum, map, number, to);
+  }
+  free(sum);
+  return 0;
 }
 
 /* Add the element matrices of a form; what a cell and its facets give is summed first.

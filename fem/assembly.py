@@ -21,6 +21,8 @@ from fem.matrix import Ties, stored_values, upper_triangle
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 
+NO_ROOM = "no memory for an element matrix"
+
 _SOURCE = Path(__file__).with_suffix(".c")
 _DECLARATIONS = """
 typedef struct { uintptr_t kernel; int32_t count, stride; const int32_t *cell, *facet;
@@ -33,7 +35,7 @@ void pattern(int32_t, int32_t, int32_t, const int32_t *, const int32_t *, const 
              int32_t *, int32_t *, int32_t *);
 int offsets(int32_t, int32_t, int32_t, const int32_t *, const int32_t *, const int32_t *, int32_t,
             const int32_t *, const int32_t *, int32_t *, uint16_t *);
-void add_blocks(const double *, const blocks *, const storage *);
+int add_blocks(const double *, const int32_t *, const blocks *, const storage *);
 int add_cells(int32_t, const integral *, const double *, const double *, const int32_t *, int32_t,
               const blocks *, const storage *);
 """
@@ -72,6 +74,21 @@ class _Slots:
         self.start = np.r_[0, np.cumsum(np.bincount(flat, minlength=size))].astype(np.int32)
 
 
+@dataclasses.dataclass(frozen=True)
+class Blocks:
+    """Where the entries of dense blocks go.
+
+    Attributes:
+        map: for C.
+        kept: arrays that it points into.
+        last: one more than the number of the last values of each block, (m,).
+    """
+
+    map: Any
+    kept: tuple[npt.NDArray[Any], ...]
+    last: Ints
+
+
 class Assembler:
     """Symmetric storage of a tangent, and where the entries of blocks of dofs go in it.
 
@@ -106,7 +123,7 @@ class Assembler:
         self._outer = self._pattern(slots, self._size, self._owned, self._size)
         self._inner, self.matrix = self._create(comm, inner, ghosts)
         self._beyond = np.zeros(len(self._outer.columns))
-        self._cells = self._blocks(slots)
+        self._cells = self._blocks(slots, np.zeros(0, dtype=np.int32))
 
     def _pointer(self, kind: str, array: npt.NDArray[Any]) -> Any:
         ffi = self._code.ffi
@@ -158,8 +175,7 @@ class Assembler:
         kept = (columns[here] - first).astype(np.int32)
         return _Rows(0, self._owned, begin, kept), matrix
 
-    def _blocks(self, slots: _Slots) -> Any:
-        """Where the entries of blocks go, for C; keeps its arrays alive."""
+    def _blocks(self, slots: _Slots, last: Ints) -> Blocks:
         count, width = slots.dofs.shape
         offset = np.zeros((count, width * (width + 1) // 2), dtype=np.uint16)
         place = np.full(self._size, -1, dtype=np.int32)
@@ -177,32 +193,34 @@ class Assembler:
                 self._pointer("uint16_t *", offset),
             )
             if missed:
-                raise ValueError("these dofs are not coupled by any cell")
+                raise ValueError("dofs that no cell couples")
         kept = (slots.dofs, slots.order, offset)
         kinds = ("int32_t *", "int16_t *", "uint16_t *")
         pointers = [self._pointer(kind, array) for kind, array in zip(kinds, kept, strict=True)]
-        return self._code.ffi.new("blocks *", (count, width, *pointers)), kept
+        return Blocks(self._code.ffi.new("blocks *", (count, width, *pointers)), kept, last)
 
-    def blocks(self, dofs: Ints) -> Any:
+    def blocks(self, dofs: Ints) -> Blocks:
         """Where the entries of dense blocks go, for `assemble`.
 
         Args:
-            dofs: local dofs of every block, (m, k); all of a block belong to one cell.
+            dofs: local dofs of every block, (n, k), all of a block in one cell; blocks of the same
+                dofs that follow each other are summed before they are added.
 
         Raises:
             ValueError: dofs that share no cell.
         """
-        return self._blocks(_Slots(self._target[dofs], self._size))
+        new = np.flatnonzero(np.any(dofs[1:] != dofs[:-1], axis=1)) + 1
+        first = np.r_[np.zeros(min(len(dofs), 1), dtype=np.int64), new]
+        last = np.r_[new, len(dofs)][: len(first)].astype(np.int32)
+        return self._blocks(_Slots(self._target[dofs[first]], self._size), last)
 
-    def assemble(
-        self, free: npt.NDArray[np.bool_], others: list[tuple[Any, Floats]]
-    ) -> None:
+    def assemble(self, free: npt.NDArray[np.bool_], others: list[tuple[Blocks, Floats]]) -> None:
         """Set the matrix to the form at the present state and further blocks; collective.
 
         Args:
             free: local dofs that no constraint fixes, (local,); the others, and those that follow,
                 get a unit diagonal.
-            others: blocks as `blocks` returns them, with their values, (m, k, k).
+            others: blocks as `blocks` returns them, with their values, (n, k, k).
         """
         ffi, lib = self._code.ffi, self._code.lib
         self.matrix.zeroEntries()
@@ -221,10 +239,11 @@ class Assembler:
             ),
         )
         self._add_form(storage)
-        for (blocks, _), entries in others:
-            lib.add_blocks(
-                self._pointer("double *", np.ascontiguousarray(entries)), blocks, storage
-            )
+        for blocks, entries in others:
+            entries = np.ascontiguousarray(entries)
+            last = self._ints(blocks.last)
+            if lib.add_blocks(self._pointer("double *", entries), last, blocks.map, storage):
+                raise MemoryError(NO_ROOM)
         fixed = ~free[: self._owned]
         fixed[self._follow] = True
         values[self._inner.begin[:-1][fixed]] = 1.0
@@ -256,10 +275,10 @@ class Assembler:
             self._pointer("double *", self._points),
             self._ints(self._corners),
             self._corners.shape[1],
-            self._cells[0],
+            self._cells.map,
             storage,
         ):
-            raise MemoryError("no memory for an element matrix")
+            raise MemoryError(NO_ROOM)
 
 
 def _row_numbers(rows: _Rows) -> Ints:

@@ -37,8 +37,8 @@ class Discrete(Protocol):
     Attributes:
         index: global number of every piece that this rank holds, (n,); what it remembers of a
             step is one value a piece.
-        block_dofs: local dofs of the fields that couple in the tangent, (m, k), always the same;
-            all of a block belong to one cell.
+        block_dofs: local dofs of the fields that each piece couples, (n, k), always the same; those
+            of a piece belong to one cell.
     """
 
     index: npt.NDArray[np.int64]
@@ -61,7 +61,7 @@ class Discrete(Protocol):
         """Add the least forces that double precision resolves, at rest, to local coefficients."""
 
     def tangent_blocks(self) -> Floats:
-        """∂²Π/∂w² as dense symmetric blocks of the dofs in `block_dofs`, (m, k, k)."""
+        """∂²Π/∂w² of every piece, dense and symmetric, in the dofs `block_dofs`, (n, k, k)."""
 
     def predict(
         self, correction: Floats | None, scalars: Mapping[str, float] | None = None

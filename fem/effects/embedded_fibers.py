@@ -83,8 +83,6 @@ class FiberPotential:
         self.length = segments.length[self.index]
         self.stiffness = stiffness * segments.share[self.index]
         local, facet = local[self.index], segments.facet[self.index]
-        host = host[self.index]
-        self._start = np.flatnonzero(np.r_[True, host[1:] != host[:-1]][: len(host)])
 
         # With φ_a the shape functions of the host cell, ξ its reference coordinates, X_a (mm) the
         # nodes of the host facet and t = dξ/ds along the piece (s its parameter): dX/ds =
@@ -101,7 +99,7 @@ class FiberPotential:
         along = np.einsum("pad,pd->pa", gradient, tangent).reshape(count, quadrature, -1)
         along = np.take_along_axis(along, positions[:, None, :], axis=2)
         self._dofs = body.cell_dofs[local[:, None], positions].reshape(count, -1)
-        self.block_dofs = self._dofs[self._start]
+        self.block_dofs = self._dofs
         cells = domain.data.cells[segments.cell[self.index, None], positions]
         self._reference = domain.data.nodes[cells]
         rise = segments.axial[self.index]
@@ -282,11 +280,8 @@ class FiberPotential:
         return self._second
 
     def tangent_blocks(self) -> Floats:
-        """∂²Π/∂w² of every facet that holds fiber, (m, k, k)."""
-        if not len(self._start):
-            return np.zeros((0, *self.block_dofs.shape[1:] * 2))
-        blocks: Floats = np.add.reduceat(self._second_derivatives().block, self._start, axis=0)
-        return blocks
+        """∂²Π/∂w² of every segment, (n, k, k)."""
+        return self._second_derivatives().block
 
     # --- global scalars ------------------------------------------------------------------------
 
