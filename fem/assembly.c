@@ -93,21 +93,26 @@ int offsets(int32_t rows, int32_t low, int32_t high, const int32_t *start, const
   return 0;
 }
 
+/* An entry of a symmetric block of which only the upper triangle is filled. */
+static inline double entry(const double *block, int32_t width, int32_t i, int32_t j) {
+  return i < j ? block[(int64_t)i * width + j] : block[(int64_t)j * width + i];
+}
+
 /* One row of a block, positions b of [first, last); a dof may stand twice in a block of tied
    ends, and then both of its entries beside the diagonal belong on it. */
 static inline void add_row(const double *restrict block, int32_t width, int32_t a, int32_t first,
                            int32_t last, const int32_t *restrict dof,
                            const int16_t *restrict order, const uint16_t *restrict offset,
                            const uint8_t *free, double *restrict row) {
-  const double *restrict from = block + (int64_t)order[a] * width;
+  int32_t i = order[a];
   if (free) {
     for (int32_t b = first; b < last; b++)
-      if (free[dof[b]]) row[offset[b]] += from[order[b]];
+      if (free[dof[b]]) row[offset[b]] += entry(block, width, i, order[b]);
   } else {
-    for (int32_t b = first; b < last; b++) row[offset[b]] += from[order[b]];
+    for (int32_t b = first; b < last; b++) row[offset[b]] += entry(block, width, i, order[b]);
   }
   for (int32_t b = a + 1; b < last && dof[b] == dof[a]; b++)
-    if (b >= first) row[offset[b]] += block[(int64_t)order[b] * width + order[a]];
+    if (b >= first) row[offset[b]] += entry(block, width, i, order[b]);
 }
 
 static void add_block(const double *block, const blocks *map, int64_t number, const storage *to) {
@@ -130,7 +135,7 @@ static void add_block(const double *block, const blocks *map, int64_t number, co
   }
 }
 
-/* Add dense blocks, width × width; what belongs to one block of the map is summed first.
+/* Add dense symmetric blocks, width × width; what belongs to one block of the map is summed first.
 
    last: for each block of the map, one more than the number of its last values; 1: no room. */
 int add_blocks(const double *values, const int32_t *last, const blocks *map, const storage *to) {

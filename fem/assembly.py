@@ -94,7 +94,8 @@ class Assembler:
 
     Args:
         comm: communicator.
-        form: a compiled bilinear form over cells and boundary facets.
+        form: a compiled symmetric bilinear form over cells and boundary facets; of its element
+            matrices only the upper triangle is read.
         space: the space of both of its arguments.
         ties: what belongs to the following dofs goes to those that they follow, which is TᵀKT with
             the prolongation T.

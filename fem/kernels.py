@@ -240,3 +240,23 @@ def differentiate(form: Any, variable: Any) -> Any:
     ]
     result = ufl.algorithms.apply_derivatives.apply_derivatives(ufl.Form(parts))
     return None if result.empty() else result
+
+
+def upper_tangent(potential: Any, w: Any) -> Any:
+    """∂²Π/∂w² by components of a mixed space: what is on and above the diagonal of blocks only.
+
+    Entries below follow by symmetry: kernels take two thirds of the time.
+
+    Args:
+        potential: Π, a form.
+        w: the unknowns, a function on a mixed space of scalar elements.
+    """
+    space = w.ufl_function_space()
+    rows, columns = (ufl.split(make(space)) for make in (ufl.TestFunction, ufl.TrialFunction))
+    count, zero = len(rows), ufl.constantvalue.Zero()
+    result = ufl.Form([])
+    for i in range(count):
+        row = ufl.as_vector([rows[j] if j == i else zero for j in range(count)])
+        above = ufl.as_vector([columns[j] if j >= i else zero for j in range(count)])
+        result += ufl.derivative(ufl.derivative(potential, w, row), w, above)
+    return result

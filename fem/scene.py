@@ -14,7 +14,7 @@ from petsc4py import PETSc
 from fem import compat
 from fem.assembly import Assembler
 from fem.effects.effect import Constraint, Discrete, Effect, opposite_free
-from fem.kernels import compiling, differentiate
+from fem.kernels import compiling, differentiate, upper_tangent
 from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
 from fem.kinematics.kinematics import Kinematics
@@ -104,10 +104,11 @@ class Scene:
     def _compile(self, potentials: dict[str, Any]) -> None:
         body, mesh = self.body, self.domain.mesh
         whole = sum(potentials.values(), ufl.Form([]))
-        test, trial = ufl.TestFunction(body.space), ufl.TrialFunction(body.space)
-        residual = ufl.derivative(whole, body.w, test)
-        tangent = ufl.derivative(residual, body.w, trial)
-        forms: dict[str, Any] = {"residual": residual, "tangent": tangent}
+        test = ufl.TestFunction(body.space)
+        forms: dict[str, Any] = {
+            "residual": ufl.derivative(whole, body.w, test),
+            "tangent": upper_tangent(whole, body.w),
+        }
         for key, form in potentials.items():
             forms[f"energy {key}"] = form
             if self.effects[key].outside:

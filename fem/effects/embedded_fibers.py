@@ -263,7 +263,7 @@ class FiberPotential:
         side = across @ self._map
         count, width = self._dofs.shape
         block = self._map.reshape(count, -1, width).swapaxes(1, 2) @ side.reshape(count, -1, width)
-        block += stiff[:, None, None] * (self._b[:, :, None] * self._b[:, None, :])
+        block += (stiff[:, None] * self._b)[:, :, None] * self._b[:, None, :]
         mixed: dict[str, Floats] = {}
         scalars: dict[tuple[str, str], float] = {}
         carry = self._body.carry()

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-import numpy as np
-from mpi4py import MPI
-from petsc4py import PETSc
+import functools
 
 import dolfinx.fem as dfem
 import dolfinx.fem.petsc
+import numpy as np
+import ufl
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from fem import compat
 from fem.effects.supports import Symmetry
 from fem.effects.winding import Winding as Discrete
 from fem.kinematics.domain import Domain
@@ -26,7 +30,15 @@ def misfit(scene: Scene, opposite: bool = False) -> float:
     fixed = dfem.dirichletbc(
         dfem.Function(scene.body.space), np.flatnonzero(~free).astype(np.int32)
     )
-    full = dolfinx.fem.petsc.assemble_matrix(scene._forms["tangent"], [fixed])
+    body = scene.body
+    whole = [effect.potential(body) for effect in scene.effects.values()]
+    whole = sum((form for form in whole if form is not None), ufl.Form([]))
+    arguments = (ufl.TestFunction(body.space), ufl.TrialFunction(body.space))
+    tangent = functools.reduce(
+        lambda form, direction: ufl.derivative(form, body.w, direction), arguments, whole
+    )
+    form = compat.compile_form(scene.domain.mesh, ufl.replace(tangent, body.stand_ins))
+    full = dolfinx.fem.petsc.assemble_matrix(form, [fixed])
     full.assemble(PETSc.Mat.AssemblyType.FLUSH)
     for item in scene.discrete.values():
         keep = free[item.block_dofs].astype(float)

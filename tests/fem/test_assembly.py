@@ -62,7 +62,7 @@ def test_a_section(half: bool, twisted: bool) -> None:
 @pytest.mark.parametrize(("half", "layers"), [(True, 1), (False, 1), (False, 2), (False, 3)])
 def test_a_cell_with_ends_that_are_tied_or_not(half: bool, layers: int) -> None:
     # of one layer: nodes of an element follow others of the same element
-    pitch = PITCH / 2 if half else PITCH
+    pitch, size = PITCH / 2 if half else PITCH, MeshSize(section=1, half=half)
     scene = _uniform(
         hexahedral_slice(SHORT, MeshSize(section=1, half=half), pitch, layers), Cell, True
     )
