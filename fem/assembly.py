@@ -195,9 +195,12 @@ class Assembler:
             )
             if missed:
                 raise ValueError("dofs that no cell couples")
+        pointers = (
+            ints[2],
+            self._pointer("int16_t *", slots.order),
+            self._pointer("uint16_t *", offset),
+        )
         kept = (slots.dofs, slots.order, offset)
-        kinds = ("int32_t *", "int16_t *", "uint16_t *")
-        pointers = [self._pointer(kind, array) for kind, array in zip(kinds, kept, strict=True)]
         return Blocks(self._code.ffi.new("blocks *", (count, width, *pointers)), kept, last)
 
     def blocks(self, dofs: Ints) -> Blocks:
@@ -259,16 +262,14 @@ class Assembler:
     def _add_form(self, storage: Any) -> None:
         ffi = self._code.ffi
         constants, packed = compat.coefficients(self._form)
-        kept = [constants]
-        integrals = ffi.new("integral[]", max(len(self._integrals), 1))
-        for item, part, order in zip(integrals, self._integrals, self._rising):
+        kept, rows = [], []
+        for part, order in zip(self._integrals, self._rising, strict=True):
             table = np.ascontiguousarray(packed[part.key][order])
             ints = [np.ascontiguousarray(array[order]) for array in (part.cells, part.facets)]
-            item.kernel, item.count = part.kernel, len(order)
-            item.stride = table.shape[1]
-            item.cell, item.facet = (self._ints(array) for array in ints)
-            item.values = self._pointer("double *", table)
             kept += [table, *ints]
+            pointers = (*map(self._ints, ints), self._pointer("double *", table))
+            rows.append((part.kernel, len(order), table.shape[1], *pointers))
+        integrals = ffi.new("integral[]", rows)
         if self._code.lib.add_cells(
             len(self._integrals),
             integrals,

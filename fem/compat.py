@@ -5,9 +5,8 @@ Local cells and dofs are those that this rank owns, then its ghosts.
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import cffi
 import numpy as np
@@ -146,16 +145,8 @@ def coordinates(mesh: Any) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int3
     return np.ascontiguousarray(mesh.geometry.x), np.ascontiguousarray(rows)
 
 
-@dataclasses.dataclass(frozen=True)
-class Integral:
-    """One integral of a compiled form.
-
-    Attributes:
-        kernel: address of its element matrix's C function.
-        key: of its coefficients in what `coefficients` returns.
-        cells: local cells, (n,).
-        facets: number within its cell of every facet, (n,); zero where there is none.
-    """
+class Integral(NamedTuple):
+    """An integral: kernel's address, key of its coefficients, cells (n,), facets in them (n,)."""
 
     kernel: int
     key: Any

@@ -29,7 +29,7 @@ def upper_triangle(
     matrix = PETSc.Mat().create(comm)
     matrix.setSizes(((owned, PETSc.DETERMINE),) * 2)
     matrix.setType(PETSc.Mat.Type.SBAIJ)
-    first = int(comm.exscan(owned) or 0)
+    first = sum(comm.allgather(owned)[: comm.rank])
     rows = np.repeat(np.arange(owned), np.diff(begin))
     here = columns < first + owned
     counts = [np.bincount(rows[part], minlength=owned) for part in (here, ~here)]

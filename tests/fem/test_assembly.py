@@ -63,9 +63,7 @@ def test_a_section(half: bool, twisted: bool) -> None:
 def test_a_cell_with_ends_that_are_tied_or_not(half: bool, layers: int) -> None:
     # of one layer: nodes of an element follow others of the same element
     pitch, size = PITCH / 2 if half else PITCH, MeshSize(section=1, half=half)
-    scene = _uniform(
-        hexahedral_slice(SHORT, MeshSize(section=1, half=half), pitch, layers), Cell, True
-    )
+    scene = _uniform(hexahedral_slice(SHORT, size, pitch, layers), Cell, True)
     assert bool(len(scene.body.ties[0])) is not half
     assert misfit(scene) < ROUND_OFF
 
