@@ -6,8 +6,9 @@ Local cells and dofs are those that this rank owns, then its ghosts.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
+import cffi
 import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
@@ -30,7 +31,6 @@ with without_pkg_resources():
 
     without_settings_files(dolfinx.jit, ffcx.parameters)
 
-from fem.matrix import Ties, upper_triangle
 from geometry.mesh.data import reference_nodes
 
 
@@ -129,6 +129,62 @@ def cell_field(mesh: Any, values: npt.NDArray[np.float64]) -> Any:
     return function
 
 
+def cell_dofs(space: Any) -> npt.NDArray[np.int32]:
+    """Local dofs of a space for every local cell, (cells, dofs); bridges dofmaps."""
+    return _rows(space.dofmap.list, len(input_cells(space.mesh)))
+
+
+def ghost_numbers(space: Any) -> npt.NDArray[np.int64]:
+    """Global numbers of the dofs that other ranks own, (ghosts,); bridges index maps."""
+    return np.asarray(space.dofmap.index_map.ghosts, dtype=np.int64)
+
+
+def coordinates(mesh: Any) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
+    """Points, (n, 3), and those of every local cell, (cells, nodes); bridges dofmaps."""
+    rows = _rows(mesh.geometry.dofmap, len(input_cells(mesh)))
+    return np.ascontiguousarray(mesh.geometry.x), np.ascontiguousarray(rows)
+
+
+class Integral(NamedTuple):
+    """An integral: kernel's address, key of its coefficients, cells (n,), facets in them (n,)."""
+
+    kernel: int
+    key: Any
+    cells: npt.NDArray[np.int32]
+    facets: npt.NDArray[np.int32]
+
+
+def integrals(form: Any) -> list[Integral]:
+    """Integrals of a form over cells and boundary facets; bridges where FFCx and dolfinx list them.
+
+    Raises:
+        NotImplementedError: an integral or an element of another kind.
+    """
+    kinds = dolfinx.cpp.fem.IntegralType
+    sides = {kinds.cell: 0, kinds.exterior_facet: 1}
+    if (
+        not set(form.integral_types) <= set(sides)
+        or form.needs_facet_permutations
+        or any(space.element.needs_dof_transformations for space in form.function_spaces)
+    ):
+        raise NotImplementedError("only cells, boundary facets and elements that need no turning")
+    found, ufcx = [], form.ufcx_form
+    for kind in form.integral_types:
+        own = ufcx.integrals(sides[kind])
+        for i in range(ufcx.num_integrals(sides[kind])):
+            number = ufcx.integral_ids(sides[kind])[i]
+            rows = np.asarray(form.domains(kind, number), dtype=np.int32)
+            cells, facets = rows.T if rows.ndim == 2 else (rows, np.zeros_like(rows))
+            address = cffi.FFI().cast("uintptr_t", own[i].tabulate_tensor_float64)
+            found.append(Integral(int(address), (kind, number), cells, facets))
+    return found
+
+
+def coefficients(form: Any) -> tuple[npt.NDArray[np.float64], dict[Any, npt.NDArray[np.float64]]]:
+    """Constants of a form now, and by integral its coefficients, (n, c); bridges their packing."""
+    return dolfinx.cpp.fem.pack_constants(form), dolfinx.cpp.fem.pack_coefficients(form)
+
+
 def _jit(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
     """Compile with our options; bridges the defaults, with which elements and maps are compiled."""
 
@@ -176,29 +232,9 @@ def quadrature_points(cell_type: str, degree: int) -> npt.NDArray[np.float64]:
     return quadrature(cell_type, degree)[0]
 
 
-def dirichlet(space: Any, dofs: npt.NDArray[np.int32]) -> Any:
-    """Zero rows and columns of these local dofs at assembly; bridges dirichletbc."""
-    return dfem.dirichletbc(dfem.Function(space), np.unique(dofs).astype(np.int32))
-
-
-def assemble_matrix(matrix: PETSc.Mat, form: Any, constraint: Any) -> None:
-    """Add a form to a zeroed matrix, with a unit diagonal on constrained dofs; bridges its name."""
-    dolfinx.fem.petsc.assemble_matrix(matrix, form, [] if constraint is None else [constraint])
-
-
 def assemble_vector(vector: PETSc.Vec, form: Any) -> None:
     """Add a form to a vector, ghosts included, without communication; bridges its name."""
     dolfinx.fem.petsc.assemble_vector(vector, form)
-
-
-def create_matrix(form: Any, ties: Ties) -> PETSc.Mat:
-    """An empty symmetric matrix for a bilinear form; bridges a type that is not preallocated."""
-    pattern = dolfinx.fem.petsc.create_matrix(form)
-    assemble_matrix(pattern, form, None)
-    pattern.assemble()
-    matrix = upper_triangle(pattern, ties)
-    pattern.destroy()
-    return matrix
 
 
 def create_vector(form: Any) -> PETSc.Vec:

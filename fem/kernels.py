@@ -6,6 +6,7 @@ import contextlib
 import fcntl
 import functools
 import hashlib
+import io
 import logging
 import os
 import platform
@@ -18,6 +19,7 @@ from typing import Any
 
 import cffi
 import dolfinx
+import dolfinx.jit
 import ffcx
 import numpy as np
 import ufl
@@ -130,6 +132,38 @@ def compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
         logging.disable(previous)
 
 
+def library(comm: MPI.Comm, source: Path, declarations: str) -> Any:
+    """A C file of ours as a cffi module with `lib` and `ffi`, kept beside the forms; collective.
+
+    Args:
+        comm: communicator.
+        source: the C file.
+        declarations: of its functions and types, for cffi.
+
+    Raises:
+        MachineError: no C compiler, or it failed.
+    """
+    text = source.read_text()
+    name = f"{source.stem}_{hashlib.sha1((declarations + text).encode()).hexdigest()}"
+
+    @dolfinx.jit.mpi_jit_decorator
+    def load(options: dict[str, Any]) -> Any:
+        folder = Path(options["cache_dir"])
+        found = jit.get_cached_module(name, [], folder, options["timeout"])
+        if found[0] is None:
+            builder = cffi.FFI()
+            flags = options["cffi_extra_compile_args"]
+            builder.set_source(name, text, extra_compile_args=flags)
+            builder.cdef(declarations)
+            with contextlib.redirect_stdout(io.StringIO()):
+                builder.compile(tmpdir=str(folder), verbose=True)
+            (folder / f"{name}.c.cached").touch(exist_ok=False)
+            found = jit._load_objects(folder, name, [])
+        return found[1]
+
+    return compiled(comm, lambda options: load(comm, options))
+
+
 @contextlib.contextmanager
 def _only_sound() -> Iterator[None]:
     """Kernels are loaded as they were compiled, or compiled anew.
@@ -206,3 +240,23 @@ def differentiate(form: Any, variable: Any) -> Any:
     ]
     result = ufl.algorithms.apply_derivatives.apply_derivatives(ufl.Form(parts))
     return None if result.empty() else result
+
+
+def upper_tangent(potential: Any, w: Any) -> Any:
+    """∂²Π/∂w² by components of a mixed space: what is on and above the diagonal of blocks only.
+
+    Entries below follow by symmetry: kernels take two thirds of the time.
+
+    Args:
+        potential: Π, a form.
+        w: the unknowns, a function on a mixed space of scalar elements.
+    """
+    space = w.ufl_function_space()
+    rows, columns = (ufl.split(make(space)) for make in (ufl.TestFunction, ufl.TrialFunction))
+    count, zero = len(rows), ufl.constantvalue.Zero()
+    result = ufl.Form([])
+    for i in range(count):
+        row = ufl.as_vector([rows[j] if j == i else zero for j in range(count)])
+        above = ufl.as_vector([columns[j] if j >= i else zero for j in range(count)])
+        result += ufl.derivative(ufl.derivative(potential, w, row), w, above)
+    return result

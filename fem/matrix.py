@@ -2,48 +2,63 @@
 
 from __future__ import annotations
 
+import ctypes
+
 import numpy as np
 import numpy.typing as npt
+from mpi4py import MPI
 from petsc4py import PETSc
 
 Ties = tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]
 """Local dofs that follow others, (n,), and those that they follow, (n,); on one rank only."""
 
+_petsc = ctypes.CDLL(PETSc.__file__)
 
-def upper_triangle(pattern: PETSc.Mat, ties: Ties) -> PETSc.Mat:
-    """An empty symmetric matrix with the sparsity of another, its upper triangle only.
 
-    Inserting a triangle takes half the time of inserting all, and LDLᵀ needs no more.
+def upper_triangle(
+    comm: MPI.Comm, begin: npt.NDArray[np.int32], columns: npt.NDArray[np.int32]
+) -> PETSc.Mat:
+    """A symmetric matrix of zeros by its upper triangle, all of which is stored.
 
     Args:
-        pattern: an assembled matrix with the full sparsity.
-        ties: what is inserted for the following dofs goes to those that they follow, which is TᵀKT
-            with the prolongation T.
+        comm: communicator.
+        begin: where each row that this rank owns starts, (owned + 1,).
+        columns: global columns of each row, rising, none below the diagonal.
     """
-    starts, columns, _ = pattern.getValuesCSR()
-    first, end = pattern.getOwnershipRange()
-    rows = np.repeat(np.arange(end - first), np.diff(starts))
-    maps = pattern.getLGMap()
-    if len(ties[0]):
-        target = np.arange(end, dtype=PETSc.IntType)
-        target[ties[0]] = target[ties[1]]
-        own = ties[0]
-        pairs = np.column_stack([np.r_[target[rows], own], np.r_[target[columns], own]])
-        rows, columns = np.unique(pairs, axis=0).T
-        tied = PETSc.LGMap().create(target, comm=pattern.getComm())
-        maps = (tied, tied)
-    upper = columns >= rows + first
-    here = upper & (columns < end)
-    counts = [np.bincount(rows[part], minlength=end - first) for part in (here, upper & ~here)]
-    matrix = PETSc.Mat().create(pattern.getComm())
-    matrix.setSizes(pattern.getSizes())
+    owned = len(begin) - 1
+    matrix = PETSc.Mat().create(comm)
+    matrix.setSizes(((owned, PETSc.DETERMINE),) * 2)
     matrix.setType(PETSc.Mat.Type.SBAIJ)
+    first = sum(comm.allgather(owned)[: comm.rank])
+    rows = np.repeat(np.arange(owned), np.diff(begin))
+    here = columns < first + owned
+    counts = [np.bincount(rows[part], minlength=owned) for part in (here, ~here)]
     matrix.setPreallocationNNZ(tuple(count.astype(PETSc.IntType) for count in counts))
-    matrix.setLGMap(*maps)
     matrix.setOption(PETSc.Mat.Option.IGNORE_LOWER_TRIANGULAR, True)
     matrix.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, True)
     matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)
+    matrix.setValuesCSR(
+        begin.astype(PETSc.IntType), columns.astype(PETSc.IntType), np.zeros(len(columns))
+    )
+    matrix.assemble()
     return matrix
+
+
+def stored_values(matrix: PETSc.Mat, count: int) -> npt.NDArray[np.float64]:
+    """Entries of the rows and columns that this rank owns, row by row, (count,), a view.
+
+    Whoever writes them calls `assemble` on the matrix, so that its factor is renewed.
+    """
+    block = matrix.getDiagonalBlock()
+    array = ctypes.POINTER(ctypes.c_double)()
+    handle = ctypes.c_void_p(block.handle)
+    if _petsc.MatSeqSBAIJGetArray(handle, ctypes.byref(array)):
+        raise RuntimeError("PETSc gives no values of its matrix")
+    if not count:
+        return np.zeros(0)
+    values: npt.NDArray[np.float64] = np.ctypeslib.as_array(array, (count,))
+    _petsc.MatSeqSBAIJRestoreArray(handle, ctypes.byref(array))
+    return values
 
 
 def may_free(item: PETSc.Object) -> bool:

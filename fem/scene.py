@@ -12,8 +12,9 @@ import ufl
 from petsc4py import PETSc
 
 from fem import compat
+from fem.assembly import Assembler
 from fem.effects.effect import Constraint, Discrete, Effect, opposite_free
-from fem.kernels import compiling, differentiate
+from fem.kernels import compiling, differentiate, upper_tangent
 from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
 from fem.kinematics.kinematics import Kinematics
@@ -103,10 +104,11 @@ class Scene:
     def _compile(self, potentials: dict[str, Any]) -> None:
         body, mesh = self.body, self.domain.mesh
         whole = sum(potentials.values(), ufl.Form([]))
-        test, trial = ufl.TestFunction(body.space), ufl.TrialFunction(body.space)
-        residual = ufl.derivative(whole, body.w, test)
-        tangent = ufl.derivative(residual, body.w, trial)
-        forms: dict[str, Any] = {"residual": residual, "tangent": tangent}
+        test = ufl.TestFunction(body.space)
+        forms: dict[str, Any] = {
+            "residual": ufl.derivative(whole, body.w, test),
+            "tangent": upper_tangent(whole, body.w),
+        }
         for key, form in potentials.items():
             forms[f"energy {key}"] = form
             if self.effects[key].outside:
@@ -128,7 +130,11 @@ class Scene:
             self._forms = {name: compat.compile_form(mesh, form) for name, form in forms.items()}
         self.signatures = {name: form.signature() for name, form in forms.items()}
         self.kernels = sum(len(form.integrals()) for form in forms.values())
-        self.matrix = compat.create_matrix(self._forms["tangent"], body.ties)
+        self._assembler = Assembler(mesh.comm, self._forms["tangent"], body.space, body.ties)
+        self.matrix = self._assembler.matrix
+        self._couplings = {
+            key: self._assembler.blocks(item.block_dofs) for key, item in self.discrete.items()
+        }
         self._vector = compat.create_vector(self._forms["residual"])
         self._det_f = body.det_f()
         self.volume_scale = 1.0
@@ -155,7 +161,6 @@ class Scene:
             self._fixed["pin"] = dofs
         follow, lead = body.ties
         self.free[follow] = self.free[lead]
-        self._dirichlet = compat.dirichlet(body.space, np.flatnonzero(~self.free))
         self.volumetric = np.zeros(body.owned, dtype=bool)
         if body.pressure_field is not None:
             p = body.dofs(body.pressure_field)
@@ -169,7 +174,6 @@ class Scene:
         self._fixed["prescribed"] = np.union1d(
             self._fixed.get("prescribed", np.zeros(0, dtype=np.int32)), dofs
         ).astype(np.int32)
-        self._dirichlet = compat.dirichlet(self.body.space, np.flatnonzero(~self.free))
 
     # --- state ---------------------------------------------------------------------------------
 
@@ -359,21 +363,15 @@ class Scene:
         Args:
             opposite: for displacements of the symmetry opposite to that of half a body.
         """
-        free, dirichlet = self.free, self._dirichlet
+        free = self.free
         if opposite:
             assert self.free_opposite is not None, "no symmetry halves the body"
             free = self.free_opposite
-            dirichlet = compat.dirichlet(self.body.space, np.flatnonzero(~free))
         self._second.clear()  # fibers may predict other forces now
         self._loads.clear()
-        self.matrix.zeroEntries()
-        compat.assemble_matrix(self.matrix, self._forms["tangent"], dirichlet)
-        self.matrix.assemble(PETSc.Mat.AssemblyType.FLUSH)
-        for discrete in self.discrete.values():
-            discrete.add_tangent(self.matrix, free)
-        for dof in self.body.ties[0]:
-            self.matrix.setValue(dof, dof, 1.0, PETSc.InsertMode.ADD_VALUES)
-        self.matrix.assemble()
+        discrete = self.discrete.items()
+        blocks = [(self._couplings[key], item.tangent_blocks()) for key, item in discrete]
+        self._assembler.assemble(free, blocks)
         return self.matrix
 
     def norm(self, values: Floats) -> float:

@@ -8,7 +8,6 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 import numpy.typing as npt
-from petsc4py import PETSc
 
 from fem.kinematics.kinematics import Kinematics
 
@@ -38,9 +37,12 @@ class Discrete(Protocol):
     Attributes:
         index: global number of every piece that this rank holds, (n,); what it remembers of a
             step is one value a piece.
+        block_dofs: local dofs of the fields that each piece couples, (n, k), always the same; those
+            of a piece belong to one cell.
     """
 
     index: npt.NDArray[np.int64]
+    block_dofs: npt.NDArray[np.int32]
 
     @property
     def undecided(self) -> bool:
@@ -58,8 +60,8 @@ class Discrete(Protocol):
     def add_noise(self, b: Floats) -> None:
         """Add the least forces that double precision resolves, at rest, to local coefficients."""
 
-    def add_tangent(self, matrix: PETSc.Mat, free: npt.NDArray[np.bool_]) -> None:
-        """Add ∂²Π/∂w² on the free local dofs."""
+    def tangent_blocks(self) -> Floats:
+        """∂²Π/∂w² of every piece, dense and symmetric, in the dofs `block_dofs`, (n, k, k)."""
 
     def predict(
         self, correction: Floats | None, scalars: Mapping[str, float] | None = None

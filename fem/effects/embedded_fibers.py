@@ -7,7 +7,6 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
-from petsc4py import PETSc
 
 from fem.effects.mean_stretch import MeanStretch, Second
 from fem.kinematics.kinematics import Kinematics
@@ -59,10 +58,9 @@ class FiberPotential:
         self.tension_only = tension_only
         self.length = segments.length[self.index]
         self.stiffness = stiffness * segments.share[self.index]
-        host = host[self.index]
-        self._start = np.flatnonzero(np.r_[True, host[1:] != host[:-1]][: len(host)])
         self._along = MeanStretch(body, segments.lines(self.index))
         self._dofs = self._along.dofs
+        self.block_dofs = self._dofs
         self._predicted: Floats | None = None
         self._second: Second | None = None
         self._slackens = False
@@ -126,7 +124,7 @@ class FiberPotential:
     def predict(
         self, correction: Floats | None, scalars: Mapping[str, float] | None = None
     ) -> None:
-        """Force EA (e + b·δw + e_q δq) from strain and gradient at the last tangent; None: EA e."""
+        """Force EA (e + b₀·δw + e_q₀ δq), b₀ and e_q₀ those of the last tangent; None: EA e."""
         self._second = None
         self._slackens = False
         if correction is None:
@@ -138,6 +136,38 @@ class FiberPotential:
             # fiber by fiber it would be a set that the answer itself changes: all or none
             pull = np.where(self._at_rest, self.length * self.stiffness * change, 0.0)
             self._slackens = bool(total(self._body.domain.comm, float(pull.sum())) < 0)
+
+    @property
+    def predicted(self) -> Floats:
+        """Axial force that the last correction predicts of every segment, (n,), N."""
+        return self.stiffness * self.strain if self._predicted is None else self._predicted
+
+    @predicted.setter
+    def predicted(self, forces: Floats) -> None:
+        self._second = None
+        self._predicted = forces
+
+    def _unpredicted(self) -> Floats:
+        """ℓ (EA e − N), N the predicted force, (n,), N mm; 0 where slack is no matter of N alone.
+
+        Newton's method for N as an unknown of its own, N = EA (e + b·δw), with the b₀ and the
+        factor of an earlier iterate has the residual Σ ℓ [N b + (EA e − N) b₀]. In Σ ℓ EA e b what
+        a stiff fiber strains too much by turning acts along b, where that factor is soft: such
+        steps diverge with EA. Magisano, Leonetti and Garcea 2017, Advantages of the mixed format in
+        geometrically nonlinear analysis of beams and shells using solid finite elements, Int. J.
+        Numer. Meth. Engng 109, pp. 1237–1262, doi 10.1002/nme.5322.
+        """
+        if self.tension_only or self._predicted is None:
+            return np.zeros(len(self.strain))
+        return self.length * (self.stiffness * self.strain - self._predicted)
+
+    def add_lag(self, b: Floats) -> None:
+        """Add Σ ℓ (EA e − N) (b₀ − b) to local coefficients."""
+        self._along.add_lag(b, self._unpredicted())
+
+    def lag_along(self, name: str) -> float:
+        """This rank's Σ ℓ (EA e − N) (e_q₀ − e_q) of a global scalar; zero where it has none."""
+        return self._along.lag_along(name, self._unpredicted())
 
     def _second_derivatives(self) -> Second:
         """∂²Π of every segment in its own dofs and the scalars, at the present state.
@@ -160,23 +190,17 @@ class FiberPotential:
         self._second = second = self._along.curved(self.length * force)
         stiff, first = self.length * stiffness, self._along.by_dofs
         block = second.block
-        block += stiff[:, None, None] * (first[:, :, None] * first[:, None, :])
+        block += (stiff[:, None] * first)[:, :, None] * first[:, None, :]
         for name, rate in self._along.by_scalar.items():
             second.mixed[name] += (stiff * rate)[:, None] * first
             for other, last in self._along.by_scalar.items():
                 second.scalars[name, other] += float(np.sum(stiff * rate * last))
         return self._second
 
-    def add_tangent(self, matrix: PETSc.Mat, free: npt.NDArray[np.bool_]) -> None:
-        """Add ∂²Π/∂w², summed facet by facet, on the free dofs."""
-        if not len(self._start):
-            return
-        sums = np.add.reduceat(self._second_derivatives().block, self._start, axis=0)
-        dofs = self._dofs[self._start]
-        keep = free[dofs].astype(float)
-        sums *= keep[:, :, None] * keep[:, None, :]
-        rows = dofs.astype(PETSc.IntType)
-        matrix.setValuesLocalRCV(rows, rows, sums, PETSc.InsertMode.ADD_VALUES)
+    def tangent_blocks(self) -> Floats:
+        """∂²Π/∂w² of every segment, (n, k, k)."""
+        self._along.hold()
+        return self._second_derivatives().block
 
     # --- global scalars ------------------------------------------------------------------------
 
