@@ -31,38 +31,49 @@ class InaccurateError(ArithmeticError):
 
 
 class _Rows:
-    """The upper triangle that this rank stores, and its values in a fixed order."""
+    """The upper triangle that this rank stores, row by row.
+
+    Attributes:
+        begin: where each row starts, (owned + 1,).
+        columns: their columns, rising, the diagonal first.
+    """
 
     def __init__(self, matrix: PETSc.Mat) -> None:
         self._matrix = matrix
         first, end = matrix.getOwnershipRange()
-        matrix.setOption(PETSc.Mat.Option.GETROW_UPPERTRIANGULAR, True)
-        columns, starts, self._beyond = [], [0], list[tuple[int, int]]()
-        for row in range(first, end):
-            found = matrix.getRow(row)[0]
-            here = int(np.searchsorted(found, end))
-            if here < len(found):
-                self._beyond.append((row, here))
-            columns.append(found)
-            starts.append(starts[-1] + len(found))
-        self.columns = np.concatenate([np.zeros(0, dtype=np.int32), *columns]).astype(np.int32)
-        self.begin = np.array(starts, dtype=np.int32)
-        inner = np.ones(len(self.columns), dtype=bool)
-        for row, here in self._beyond:
-            inner[starts[row - first] + here : starts[row - first + 1]] = False
-        self._inner = np.flatnonzero(inner)
+        begin, columns = matrix.getDiagonalBlock().getRowIJ()
+        self._inner, self._outer = len(columns), list[tuple[int, int, int]]()
+        if matrix.getComm().size > 1:
+            matrix.setOption(PETSc.Mat.Option.GETROW_UPPERTRIANGULAR, True)
+            starts, within = np.diff(begin), np.split(columns, begin[1:-1])
+            parts = []
+            for row, inner in zip(range(first, end), within, strict=True):
+                whole = matrix.getRow(row)[0]
+                parts += [inner + first, whole[len(inner) :]]
+                if len(whole) > len(inner):
+                    self._outer.append((row, len(inner), len(whole)))
+            columns = np.concatenate([np.zeros(0, dtype=np.int32), *parts])
+            for row, inner, whole in self._outer:
+                starts[row - first] = whole
+            begin = np.r_[0, np.cumsum(starts)]
+        self.begin = np.ascontiguousarray(begin, dtype=np.int32)
+        self.columns = np.ascontiguousarray(columns, dtype=np.int32)
+        self._first = first
 
     def values(self) -> Floats:
-        """Entries now; on one rank a view."""
-        inner = stored_values(self._matrix, len(self._inner))
-        if not self._beyond:
+        """Entries now; a view where no row has columns of another rank."""
+        inner = stored_values(self._matrix, self._inner)
+        if not self._outer:
             return inner
         values = np.empty(len(self.columns))
-        values[self._inner] = inner
-        rest = [self._matrix.getRow(row)[1][here:] for row, here in self._beyond]
-        outer = np.ones(len(values), dtype=bool)
-        outer[self._inner] = False
-        values[outer] = np.concatenate(rest)
+        taken = done = 0
+        for row, here, whole in self._outer:
+            start = int(self.begin[row - self._first])
+            count = start + here - done
+            values[done : start + here] = inner[taken : taken + count]
+            values[start + here : start + whole] = self._matrix.getRow(row)[1][here:]
+            taken, done = taken + count, start + whole
+        values[done:] = inner[taken:]
         return values
 
 
