@@ -29,6 +29,10 @@ SMALL = 10_000
 """Unknowns below which a simple ordering is done sooner than a better one pays."""
 
 
+LAYERED = 10_000
+"""Unknowns from which on a long body is factorised in layers."""
+
+
 class Mumps:
     """A factorisation K = L D Lᵀ (or L U) by MUMPS that is renewed in place.
 
@@ -212,7 +216,7 @@ class Factor:
         self._matrix, self._volumetric = matrix, volumetric
         self._general = Mumps(matrix, symmetric, volumetric, free)
         self._layers: Layers | None = None
-        self._try_layers = symmetric and volumetric is not None and matrix.getSize()[0] >= SMALL
+        self._try_layers = symmetric and volumetric is not None and matrix.getSize()[0] >= LAYERED
         self.left = ""
         self.seconds = {"factor": 0.0, "solve": 0.0}
 

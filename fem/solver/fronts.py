@@ -76,6 +76,10 @@ class Code:
         kind = {"f": "double *", "u": "uint8_t *"}.get(array.dtype.kind, f"{array.dtype}_t *")
         return self.ffi.cast(kind, self.ffi.from_buffer(array, require_writable=False))
 
+    def pointers(self, *arrays: npt.NDArray[Any]) -> list[Any]:
+        """The same of several."""
+        return [self.pointer(array) for array in arrays]
+
 
 def matrix_graph(code: Code, begin: Ints, columns: Ints, negative: npt.NDArray[np.bool_]) -> Graph:
     """Unknowns with the same couplings and sign as one vertex.
@@ -89,7 +93,7 @@ def matrix_graph(code: Code, begin: Ints, columns: Ints, negative: npt.NDArray[n
     size = len(begin) - 1
     key = np.random.default_rng(0).integers(1, 2**62, size)
     total = np.zeros(size, dtype=np.int64)
-    code.lib.sums(size, *map(code.pointer, (begin, columns, key, total)))
+    code.lib.sums(size, *code.pointers(begin, columns, key, total))
     _, first, group, weight = np.unique(
         2 * total + negative, return_index=True, return_inverse=True, return_counts=True
     )
@@ -183,7 +187,7 @@ class Fronts:
         arrays = (self._own_at, self._vertices, child_at, children, graph.begin, graph.neighbours)
         while True:
             mark, found = np.full(len(graph.weight), -1, dtype=np.int32), np.zeros(room, np.int32)
-            pointers = map(self._code.pointer, (*arrays, self._front_of, mark, start, found))
+            pointers = self._code.pointers(*arrays, self._front_of, mark, start, found)
             if not self._code.lib.borders(self.fronts, *pointers, room):
                 break
             room *= 2
@@ -215,11 +219,11 @@ class Fronts:
         at = np.zeros(self.fronts + 2, dtype=np.int64)
         arrays = (begin, columns, self._position, front, needed, high, at, source, target)
         size = len(begin) - 1
-        self._code.lib.entries(self._plan, size, *map(self._code.pointer, arrays))
+        self._code.lib.entries(self._plan, size, *self._code.pointers(*arrays))
         at = self._set("entry_at", at[:-1], "int64")
         target = self._set("target", target[: at[-1]].copy())
         where = np.zeros(size, dtype=np.int32)
-        self._code.lib.locate(self._plan, *map(self._code.pointer, (high, where, target)))
+        self._code.lib.locate(self._plan, *self._code.pointers(high, where, target))
         return source[: at[-1]].copy()
 
     def _reserve(self, mine: npt.NDArray[np.bool_]) -> None:
@@ -275,9 +279,9 @@ class Fronts:
             ZeroDivisionError: the own unknowns of a front are singular.
         """
         negative, pivoted = self._code.ffi.new("int *"), self._code.ffi.new("int *")
-        arrays = (self._panels, self._schurs, self._hot, self._work)
-        arrays = (values, *arrays, self._pivots, self._diagonal, self._beside)
-        pointers = map(self._code.pointer, arrays)
+        scratch = (self._panels, self._schurs, self._hot, self._work)
+        pivots = (self._pivots, self._diagonal, self._beside)
+        pointers = self._code.pointers(values, *scratch, *pivots)
         code, plan = self._code, self._plan
         if code.lib.factorise(code.blas, plan, first, end, *pointers, TINY, negative, pivoted):
             raise ZeroDivisionError("the own unknowns of a front are singular")
@@ -285,22 +289,22 @@ class Fronts:
 
     def forward(self, first: int, end: int, x: Floats) -> None:
         """D⁻¹ L⁻¹ by fronts first to end, in place; (columns, unknowns) in elimination order."""
-        pointer = self._code.pointer
+        code = self._code
         arrays = (self._panels, self._pivots, self._diagonal, self._beside, x)
         self._room(len(x))
-        self._code.lib.forward(
-            *(self._code.blas, self._plan, first, end, *map(pointer, arrays)),
-            *(x.shape[1], len(x), pointer(self._work)),
+        code.lib.forward(
+            *(code.blas, self._plan, first, end, *code.pointers(*arrays)),
+            *(x.shape[1], len(x), code.pointer(self._work)),
         )
 
     def backward(self, first: int, end: int, x: Floats) -> None:
         """L⁻ᵀ by fronts end to first, in place."""
-        pointer = self._code.pointer
+        code = self._code
         self._room(len(x))
-        self._code.lib.backward(
-            *(self._code.blas, self._plan, first, end),
-            *map(pointer, (self._panels, self._pivots, x)),
-            *(x.shape[1], len(x), pointer(self._work)),
+        code.lib.backward(
+            *(code.blas, self._plan, first, end),
+            *code.pointers(self._panels, self._pivots, x),
+            *(x.shape[1], len(x), code.pointer(self._work)),
         )
 
     def _room(self, columns: int) -> None:

@@ -53,8 +53,8 @@ class _Rows:
                 if len(whole) > len(inner):
                     self._outer.append((row, len(inner), len(whole)))
             columns = np.concatenate([np.zeros(0, dtype=np.int32), *parts])
-            for row, inner, whole in self._outer:
-                starts[row - first] = whole
+            for row, _, length in self._outer:
+                starts[row - first] = length
             begin = np.r_[0, np.cumsum(starts)]
         self.begin = np.ascontiguousarray(begin, dtype=np.int32)
         self.columns = np.ascontiguousarray(columns, dtype=np.int32)
@@ -222,7 +222,7 @@ class Layers:
         r, bound = np.zeros((2, *b.shape))
         for column, rest, total in zip(x, r, bound, strict=True):
             arrays = (rows.begin, rows.columns, values, column, rest, total)
-            code.lib.residual(len(rows.begin) - 1, first, *map(code.pointer, arrays))
+            code.lib.residual(len(rows.begin) - 1, first, *code.pointers(*arrays))
         if self._comm.size > 1:
             r, bound = self._comm.allreduce(np.array([r, bound]))
         r, bound = r + b, bound + np.abs(b)
