@@ -29,7 +29,9 @@ typedef struct {
   const int64_t *entry_at;
   const int32_t *source, *target;       /* entries of the matrix, offsets in the front */
 } plan_t;
-enum { NB = 32 };
+enum { NB = 32, KEPT = 64 };
+/* Columns that are factorised, and kept, together. L is kept by such blocks of columns, each with
+   the rows from its first one on. */
 
 void bind(blas_t *z, const uintptr_t *address) { memcpy(z, address, sizeof(blas_t)); }
 
@@ -198,7 +200,7 @@ int factorise(const blas_t *z, const plan_t *p, int from, int to, const double *
   for (int f = from; f < to; f++) {
     const int m = p->size[f], k = p->own[f], k1 = p->positive[f], c = m - k;
     double *S = panels + p->panel[f], *P = hot, *C = schurs + p->schur[f];
-    memset(P, 0, sizeof(double) * m * k);
+    for (int q = 0; q < k; q++) memset(P + q + (int64_t)q * m, 0, sizeof(double) * (m - q));
     for (int64_t i = p->entry_at[f]; i < p->entry_at[f + 1]; i++) P[p->target[i]] += values[p->source[i]];
     add_runs(p, f, P, C, schurs, 0);
     int32_t *pf = perm + p->first[f]; double *df = d + p->first[f], *ef = e + p->first[f];
@@ -215,7 +217,11 @@ int factorise(const blas_t *z, const plan_t *p, int from, int to, const double *
       *turned += 1;
       if (pivoted(z, P, m, done, k, C, &begun, work, pf, df, ef, negative)) return f + 1;
     }
-    for (int q = 0; q < k; q++) memcpy(S + q + (int64_t)q * m, P + q + (int64_t)q * m, sizeof(double) * (m - q));
+    for (int j = 0; j < k; j += KEPT) {
+      const int w = k - j < KEPT ? k - j : KEPT, n = m - j;
+      for (int q = 0; q < w; q++) memcpy(S + q + (int64_t)q * n, P + j + q + (int64_t)(j + q) * m, sizeof(double) * (n - q));
+      S += (int64_t)w * n;
+    }
     if (c) add_runs(p, f, P, C, schurs, 1);
   }
   return 0;
@@ -225,30 +231,39 @@ void forward(const blas_t *z, const plan_t *p, int from, int to, const double *p
 {
   const int inc = 1;
   for (int f = from; f < to; f++) {
-    const int m = p->size[f], k = p->own[f], c = m - k;
-    const double *P = panels + p->panel[f];
+    const int m = p->size[f], k = p->own[f];
+    const double *L = panels + p->panel[f];
     const int32_t *border = p->border + p->border_at[f], *pf = perm + p->first[f];
     const double *df = d + p->first[f], *ef = e + p->first[f];
-    double *y = work, *t = work + (int64_t)k * columns;
-    for (int r = 0; r < columns; r++) { const double *xr = x + r * n + p->first[f]; for (int i = 0; i < k; i++) y[i + r * k] = xr[pf[i]]; }
-    if (columns == 1) {
-      z->trsv("L", "N", "N", &k, P, &m, y, &inc);
-      if (c) z->gemv("N", &c, &k, &one, P + k, &m, y, &inc, &zero, t, &inc);
-    } else {
-      z->trsm("L", "L", "N", "N", &k, &columns, &one, P, &m, y, &k);
-      if (c) z->gemm("N", "N", &c, &columns, &k, &one, P + k, &m, y, &k, &zero, t, &c);
+    for (int r = 0; r < columns; r++) {
+      const double *xr = x + r * n;
+      double *v = work + (int64_t)r * m;
+      for (int i = 0; i < k; i++) v[i] = xr[p->first[f] + pf[i]];
+      for (int i = k; i < m; i++) v[i] = 0;
+    }
+    for (int j = 0; j < k; j += KEPT) {
+      const int w = k - j < KEPT ? k - j : KEPT, h = m - j, rest = h - w;
+      double *v = work + j;
+      if (columns == 1) {
+        z->trsv("L", "N", "N", &w, L, &h, v, &inc);
+        if (rest) z->gemv("N", &rest, &w, &minus, L + w, &h, v, &inc, &one, v + w, &inc);
+      } else {
+        z->trsm("L", "L", "N", "N", &w, &columns, &one, L, &h, v, &m);
+        if (rest) z->gemm("N", "N", &rest, &columns, &w, &minus, L + w, &h, v, &m, &one, v + w, &m);
+      }
+      L += (int64_t)w * h;
     }
     for (int r = 0; r < columns; r++) {
-      double *xr = x + r * n, *yr = y + (int64_t)r * k;
-      for (int i = 0; i < c; i++) xr[border[i]] -= t[i + (int64_t)r * c];
+      double *xr = x + r * n, *v = work + (int64_t)r * m;
+      for (int i = k; i < m; i++) xr[border[i - k]] += v[i];
       for (int i = 0; i < k;) {
-        if (ef[i] == 0) { yr[i] /= df[i]; i++; }
+        if (ef[i] == 0) { v[i] /= df[i]; i++; }
         else {
-          const double a = df[i], b = ef[i], g = df[i+1], det = a * g - b * b, u = yr[i], v = yr[i+1];
-          yr[i] = (g * u - b * v) / det; yr[i+1] = (a * v - b * u) / det; i += 2;
+          const double a = df[i], b = ef[i], g = df[i+1], det = a * g - b * b, u = v[i], t = v[i+1];
+          v[i] = (g * u - b * t) / det; v[i+1] = (a * t - b * u) / det; i += 2;
         }
       }
-      memcpy(xr + p->first[f], yr, sizeof(double) * k);
+      memcpy(xr + p->first[f], v, sizeof(double) * k);
     }
   }
 }
@@ -257,23 +272,32 @@ void backward(const blas_t *z, const plan_t *p, int from, int to, const double *
 {
   const int inc = 1;
   for (int f = to - 1; f >= from; f--) {
-    const int m = p->size[f], k = p->own[f], c = m - k;
-    const double *P = panels + p->panel[f];
+    const int m = p->size[f], k = p->own[f];
     const int32_t *border = p->border + p->border_at[f], *pf = perm + p->first[f];
-    double *y = work, *t = work + (int64_t)k * columns;
     for (int r = 0; r < columns; r++) {
       const double *xr = x + r * n;
-      memcpy(y + (int64_t)r * k, xr + p->first[f], sizeof(double) * k);
-      for (int i = 0; i < c; i++) t[i + (int64_t)r * c] = xr[border[i]];
+      double *v = work + (int64_t)r * m;
+      memcpy(v, xr + p->first[f], sizeof(double) * k);
+      for (int i = k; i < m; i++) v[i] = xr[border[i - k]];
     }
-    if (columns == 1) {
-      if (c) z->gemv("T", &c, &k, &minus, P + k, &m, t, &inc, &one, y, &inc);
-      z->trsv("L", "T", "N", &k, P, &m, y, &inc);
-    } else {
-      if (c) z->gemm("T", "N", &k, &columns, &c, &minus, P + k, &m, t, &c, &one, y, &k);
-      z->trsm("L", "L", "T", "N", &k, &columns, &one, P, &m, y, &k);
+    const double *L = panels + p->panel[f];
+    for (int j = 0; j < k; j += KEPT) L += (int64_t)(k - j < KEPT ? k - j : KEPT) * (m - j);
+    for (int j = (k - 1) / KEPT * KEPT; j >= 0; j -= KEPT) {
+      const int w = k - j < KEPT ? k - j : KEPT, h = m - j, rest = h - w;
+      double *v = work + j;
+      L -= (int64_t)w * h;
+      if (columns == 1) {
+        if (rest) z->gemv("T", &rest, &w, &minus, L + w, &h, v + w, &inc, &one, v, &inc);
+        z->trsv("L", "T", "N", &w, L, &h, v, &inc);
+      } else {
+        if (rest) z->gemm("T", "N", &w, &columns, &rest, &minus, L + w, &h, v + w, &m, &one, v, &m);
+        z->trsm("L", "L", "T", "N", &w, &columns, &one, L, &h, v, &m);
+      }
     }
-    for (int r = 0; r < columns; r++) { double *xr = x + r * n + p->first[f]; for (int i = 0; i < k; i++) xr[pf[i]] = y[i + (int64_t)r * k]; }
+    for (int r = 0; r < columns; r++) {
+      double *xr = x + r * n + p->first[f], *v = work + (int64_t)r * m;
+      for (int i = 0; i < k; i++) xr[pf[i]] = v[i];
+    }
   }
 }
 

@@ -24,8 +24,9 @@ from fem.solver.dissection import Graph, Tree
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
-Longs = npt.NDArray[np.int64]
 
+KEPT = 64
+"""Columns of L that are kept together, with the rows from their first one on; as in fronts.c."""
 TINY = 1e-14
 """A pivot below this part of the greatest before in its block counts as one of another sign."""
 
@@ -197,9 +198,9 @@ class Fronts:
         weight = graph.weight[found].astype(np.int64)
         ends = np.cumsum(weight)
         within = np.arange(int(weight.sum())) - np.repeat(ends - weight, weight)
-        self.border = self._set("border", np.repeat(self._place[found], weight) + within)
+        self._set("border", np.repeat(self._place[found], weight) + within)
         border = np.bincount(front, weights=weight, minlength=self.fronts).astype(np.int64)
-        self.border_at = self._set("border_at", np.r_[0, np.cumsum(border)], "int64")
+        self._set("border_at", np.r_[0, np.cumsum(border)], "int64")
         self.size = self._set("size", self.own + border)
         self._parent, self._children = parent, (child_at, children)
 
@@ -229,7 +230,9 @@ class Fronts:
     def _reserve(self, mine: npt.NDArray[np.bool_]) -> None:
         """Storage: panels of own unknowns, and what fronts leave, which their parents free."""
         own, size = self.own.astype(np.int64), self.size.astype(np.int64)
-        panel = np.where(mine, own * size, 0)
+        whole, rest = np.divmod(own, KEPT)
+        kept = KEPT * (whole * size - KEPT * whole * (whole - 1) // 2)
+        panel = np.where(mine, kept + rest * (size - KEPT * whole), 0)
         self._set("panel", np.r_[0, np.cumsum(panel)][:-1], "int64")
         left = (size - own) ** 2
         slots = np.zeros(self.fronts, dtype=np.int64)

@@ -128,7 +128,7 @@ class Layers:
     def _exchange(self, owner: Ints) -> None:
         """Which of the values on other ranks this one needs."""
         source = self._fronts.source
-        self._sent = self._received = np.zeros(0, dtype=np.int64)
+        self._sent = np.zeros(0, dtype=np.int64)
         if self._comm.size == 1:
             self._fronts.take(source)
             return
