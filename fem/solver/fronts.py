@@ -112,6 +112,11 @@ def matrix_graph(code: Code, begin: Ints, columns: Ints, negative: npt.NDArray[n
     return Graph(starts, others[order], group, weights, negative[first])
 
 
+def _cut(array: Ints, size: int) -> Ints:
+    """The first entries of an array, the rest of its memory freed."""
+    return array if size == len(array) else array[:size].copy()
+
+
 class Fronts:
     """The fronts of a matrix, their storage, and what this rank does of them.
 
@@ -222,10 +227,11 @@ class Fronts:
         size = len(begin) - 1
         self._code.lib.entries(self._plan, size, *self._code.pointers(*arrays))
         at = self._set("entry_at", at[:-1], "int64")
-        target = self._set("target", target[: at[-1]].copy())
+        source, target = (_cut(array, int(at[-1])) for array in (source, target))
+        self._set("target", target)
         where = np.zeros(size, dtype=np.int32)
         self._code.lib.locate(self._plan, *self._code.pointers(high, where, target))
-        return source[: at[-1]].copy()
+        return source
 
     def _reserve(self, mine: npt.NDArray[np.bool_]) -> None:
         """Storage: panels of own unknowns, and what fronts leave, which their parents free."""
