@@ -18,7 +18,7 @@ import numpy.typing as npt
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 
-PART = 100
+PART = 60
 """Unknowns of a part between two planes that is not halved any more."""
 JOINED = 24
 """Unknowns of a cut through such a part that are eliminated together with the plane beside it."""

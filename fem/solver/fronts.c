@@ -29,7 +29,7 @@ typedef struct {
   const int64_t *entry_at;
   const int32_t *source, *target;       /* entries of the matrix, offsets in the front */
 } plan_t;
-enum { NB = 32, KEPT = 64 };
+enum { NB = 24, KEPT = 64 };
 /* Columns that are factorised, and kept, together. L is kept by such blocks of columns, each with
    the rows from its first one on. */
 
