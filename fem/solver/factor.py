@@ -1,7 +1,13 @@
-"""One sparse factorisation by MUMPS, with the inertia that tells stability."""
+"""One sparse factorisation, with the inertia that tells stability.
+
+Long bodies are factorised plane by plane (`layers`), everything else by MUMPS; so is a long body
+whose solutions the layers do not bring to round-off, from then on.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import sys
 import time
 from collections.abc import Sequence
 
@@ -10,6 +16,7 @@ import numpy.typing as npt
 from petsc4py import PETSc
 
 from fem.matrix import may_free
+from fem.solver.layers import InaccurateError, Layers, UnsuitableError
 
 Floats = npt.NDArray[np.float64]
 
@@ -22,8 +29,12 @@ SMALL = 10_000
 """Unknowns below which a simple ordering is done sooner than a better one pays."""
 
 
-class Factor:
-    """A factorisation K = L D Lᵀ (or L U) that is renewed in place.
+LAYERED = 10_000
+"""Unknowns from which on a long body is factorised in layers."""
+
+
+class Mumps:
+    """A factorisation K = L D Lᵀ (or L U) by MUMPS that is renewed in place.
 
     Args:
         matrix: the matrix; its values may change between calls of `renew`.
@@ -31,9 +42,6 @@ class Factor:
         volumetric: owned rows of the multipliers of volume, whose unit is not that of the others;
             without them nothing is balanced.
         free: owned rows of what no constraint fixes.
-
-    Attributes:
-        seconds: wall time spent in factorisations and solves.
     """
 
     def __init__(
@@ -48,7 +56,6 @@ class Factor:
         self._volumetric, self._free = volumetric, free
         self._balance: Floats | None = None
         self._ksp: PETSc.KSP | None = None
-        self.seconds = {"factor": 0.0, "solve": 0.0}
 
     def _balanced(self) -> Floats:
         """Factors of rows and columns that make pressures as stiff as displacements, (owned,).
@@ -113,7 +120,6 @@ class Factor:
             RuntimeError: MUMPS did not take the ordering asked for.
             ZeroDivisionError: the matrix is singular.
         """
-        start = time.perf_counter()
         first = self._ksp is None
         balance = self._balanced()
         unequal = self._volumetric is not None
@@ -130,7 +136,6 @@ class Factor:
             raise RuntimeError(f"MUMPS took ordering {factor.getMumpsInfog(7)} instead of PORD")
         if factor.getMumpsInfog(1) < 0:
             raise ZeroDivisionError(f"MUMPS: INFOG(1) = {factor.getMumpsInfog(1)}")
-        self.seconds["factor"] += time.perf_counter() - start
 
     def _set_up(self, room: int) -> PETSc.Mat:
         """Factorise, with a workspace for it where there is none yet."""
@@ -149,14 +154,12 @@ class Factor:
     def solve(self, b: PETSc.Vec, x: PETSc.Vec) -> None:
         """Solve K x = b with the last factor."""
         assert self._ksp is not None, "renew first"
-        start = time.perf_counter()
         balance = self._balanced()
         b.array_w[:] *= balance
         # not by KSP: it would factorise anew, as the matrix has its own scale again
         self._ksp.getPC().getFactorMatrix().solve(b, x)
         b.array_w[:] /= balance
         x.array_w[:] *= balance
-        self.seconds["solve"] += time.perf_counter() - start
 
     def __del__(self) -> None:
         if self._ksp is not None and may_free(self._ksp):
@@ -171,9 +174,6 @@ class Factor:
     def solve_many(self, columns: Sequence[Floats]) -> list[Floats]:
         """Solve K x = b for owned parts of several right sides in one pass."""
         assert self._ksp is not None, "renew first"
-        start = time.perf_counter()
-        if not columns:
-            return []
         own, size = self._matrix.getSizes()[0], len(columns)
         comm = self._matrix.getComm()
         shape = (own, (PETSc.DECIDE, size))
@@ -188,5 +188,104 @@ class Factor:
         found: Floats = balance[:, None] * x.getDenseArray()
         b.destroy()
         x.destroy()
-        self.seconds["solve"] += time.perf_counter() - start
         return list(found.T)
+
+
+class Factor:
+    """A factorisation K = L D Lᵀ (or L U) that is renewed in place.
+
+    Args:
+        matrix: the matrix; its values may change between calls of `renew`.
+        symmetric: LDLᵀ; False: LU, for loads without a potential.
+        volumetric: owned rows of the multipliers of volume, whose unit is not that of the others;
+            without them nothing is balanced, and MUMPS takes all.
+        free: owned rows of what no constraint fixes.
+
+    Attributes:
+        seconds: wall time spent in factorisations and solves.
+        left: why a long body is left to MUMPS after it was factorised in layers; empty: it is not.
+    """
+
+    def __init__(
+        self,
+        matrix: PETSc.Mat,
+        symmetric: bool = True,
+        volumetric: npt.NDArray[np.bool_] | None = None,
+        free: npt.NDArray[np.bool_] | None = None,
+    ) -> None:
+        self._matrix, self._volumetric = matrix, volumetric
+        self._general = Mumps(matrix, symmetric, volumetric, free)
+        self._layers: Layers | None = None
+        self._try_layers = symmetric and volumetric is not None and matrix.getSize()[0] >= LAYERED
+        self.left = ""
+        self.seconds = {"factor": 0.0, "solve": 0.0}
+
+    def renew(self) -> None:
+        """Factorise the matrix as it is now; collective.
+
+        Raises:
+            RuntimeError: MUMPS did not take the ordering asked for.
+            ZeroDivisionError: the matrix is singular.
+        """
+        start = time.perf_counter()
+        if self._try_layers:
+            self._try_layers = False
+            assert self._volumetric is not None, "only with constraints"
+            with contextlib.suppress(UnsuitableError):
+                self._layers = Layers(self._matrix, self._volumetric)
+        if self._layers is not None:
+            try:
+                self._layers.renew()
+            except ZeroDivisionError as error:
+                self._leave(error)
+        else:
+            self._general.renew()
+        self.seconds["factor"] += time.perf_counter() - start
+
+    def _leave(self, error: ArithmeticError) -> None:
+        """Go over to MUMPS."""
+        self.left, self._layers = str(error), None
+        if self._matrix.getComm().getRank() == 0:
+            print(f"fiberbend: MUMPS goes on: {self.left}", file=sys.stderr, flush=True)
+        self._general.renew()
+
+    @property
+    def negative_pivots(self) -> int:
+        """Number of negative eigenvalues of the factorised matrix (Sylvester's inertia)."""
+        if self._layers is not None:
+            return self._layers.negative_pivots
+        return self._general.negative_pivots
+
+    def solve(self, b: PETSc.Vec, x: PETSc.Vec) -> None:
+        """Solve K x = b with the last factor, with the matrix as it was then."""
+        x.array_w[:] = self.solve_many([b.array_r])[0]
+
+    def solve_many(self, columns: Sequence[Floats]) -> list[Floats]:
+        """Solve K x = b for owned parts of several right sides in one pass."""
+        if not columns:
+            return []
+        start = time.perf_counter()
+        found = self._found(columns)
+        self.seconds["solve"] += time.perf_counter() - start
+        return found
+
+    def _found(self, columns: Sequence[Floats]) -> list[Floats]:
+        if self._layers is not None:
+            try:
+                return list(self._layers.solve(np.array(columns)))
+            except InaccurateError as error:
+                self._leave(error)
+        if len(columns) > 1:
+            return self._general.solve_many(columns)
+        b, x = self._matrix.createVecs()
+        b.array_w[:] = columns[0]
+        self._general.solve(b, x)
+        found = x.array_r.copy()
+        b.destroy()
+        x.destroy()
+        return [found]
+
+    def destroy(self) -> None:
+        """Free the factor."""
+        self._layers = None
+        self._general.destroy()
