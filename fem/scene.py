@@ -232,6 +232,26 @@ class Scene:
             discrete.predict(full, scalars)
 
     @property
+    def predicted(self) -> Floats:
+        """Forces that the last correction has predicted, this rank's, (n,)."""
+        return np.concatenate([[], *(item.predicted for item in self.discrete.values())])
+
+    @predicted.setter
+    def predicted(self, forces: Floats) -> None:
+        for item in self.discrete.values():
+            item.predicted, forces = np.split(forces, [len(item.index)])
+
+    def lag(self) -> Floats:
+        """What a step with the last tangent lacks of the forces, owned part, (owned,), N."""
+        vector = self._sum(None, [item.add_lag for item in self.discrete.values()])[0]
+        return np.where(self.free[: len(vector)], vector, 0.0)
+
+    def lag_along(self, name: str) -> float:
+        """The same of ∂Π/∂q of a global scalar."""
+        mine = sum(item.lag_along(name) for item in self.discrete.values())
+        return float(total(self.domain.comm, mine))
+
+    @property
     def undecided(self) -> bool:
         """Whether the tangent hangs on the motion that is predicted, on any rank."""
         mine = sum(discrete.undecided for discrete in self.discrete.values())
@@ -308,7 +328,8 @@ class Scene:
                 fill(part)
             norm = float(np.linalg.norm(part))
             local.array_w[:] = part
-        compat.assemble_vector(vector, form)
+        if form is not None:
+            compat.assemble_vector(vector, form)
         vector.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
         values = vector.array_r.copy()
         follow, lead = self.body.ties

@@ -66,6 +66,22 @@ class Discrete(Protocol):
     ) -> None:
         """Take Newton's last correction, (local,), for the next tangent to use; None: none yet."""
 
+    @property
+    def predicted(self) -> Floats:
+        """What that correction predicts of every piece's force, (n,), N."""
+
+    @predicted.setter
+    def predicted(self, forces: Floats) -> None: ...
+
+    def add_lag(self, b: Floats) -> None:
+        """Add what a step with the last tangent lacks, to local coefficients, (local,), N.
+
+        Forces that the correction has not predicted act along that tangent's gradients there.
+        """
+
+    def lag_along(self, name: str) -> float:
+        """This rank's part of the same of ∂Π/∂q of a global scalar."""
+
     def conjugate(self, name: str) -> float:
         """This rank's work-conjugate −∂Π/∂q of a global scalar; zero where it does not enter."""
 

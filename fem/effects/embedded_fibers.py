@@ -132,6 +132,8 @@ class FiberPotential:
         self._reference = rest.reshape(count, -1)
         self._predicted: Floats | None = None
         self._second: _Second | None = None
+        self._tangent_b: Floats | None = None
+        self._tangent_e_q: dict[str, Floats] = {}
         self._slackens = False
         """The predicted motion shortens those fibers that are as long as at rest, as a whole."""
         self.strain = np.zeros(count)
@@ -219,21 +221,57 @@ class FiberPotential:
     def predict(
         self, correction: Floats | None, scalars: Mapping[str, float] | None = None
     ) -> None:
-        """Force EA (e + b·δw + e_q δq) from strain and gradient at the last tangent; None: EA e."""
+        """Force EA (e + b₀·δw + e_q₀ δq), b₀ and e_q₀ those of the last tangent; None: EA e."""
         self._second = None
         self._slackens = False
         if correction is None:
             self._predicted = None
             return
-        change = np.einsum("nk,nk->n", self._b, correction[self._dofs])
+        assert self._tangent_b is not None, "a correction needs a tangent"
+        change = np.einsum("nk,nk->n", self._tangent_b, correction[self._dofs])
         for name, value in (scalars or {}).items():
-            if name in self._e_q:
-                change += self._e_q[name] * value
+            if name in self._tangent_e_q:
+                change += self._tangent_e_q[name] * value
         self._predicted = self.stiffness * (self.strain + change)
         if self.tension_only:
             # fiber by fiber it would be a set that the answer itself changes: all or none
             pull = np.where(self._at_rest, self.length * self.stiffness * change, 0.0)
             self._slackens = bool(total(self._body.domain.comm, float(pull.sum())) < 0)
+
+    @property
+    def predicted(self) -> Floats:
+        """Axial force that the last correction predicts of every segment, (n,), N."""
+        return self.stiffness * self.strain if self._predicted is None else self._predicted
+
+    @predicted.setter
+    def predicted(self, forces: Floats) -> None:
+        self._second = None
+        self._predicted = forces
+
+    def _unpredicted(self) -> Floats:
+        """ℓ (EA e − N), N the predicted force, (n,), N mm; 0 where slack is no matter of N alone.
+
+        Newton's method for N as an unknown of its own, N = EA (e + b·δw), with the b₀ and the
+        factor of an earlier iterate has the residual Σ ℓ [N b + (EA e − N) b₀]. In Σ ℓ EA e b what
+        a stiff fiber strains too much by turning acts along b, where that factor is soft: such
+        steps diverge with EA. Magisano, Leonetti and Garcea 2017, Advantages of the mixed format in
+        geometrically nonlinear analysis of beams and shells using solid finite elements, Int. J.
+        Numer. Meth. Engng 109, pp. 1237–1262, doi 10.1002/nme.5322.
+        """
+        if self.tension_only or self._predicted is None:
+            return np.zeros(len(self.strain))
+        return self.length * (self.stiffness * self.strain - self._predicted)
+
+    def add_lag(self, b: Floats) -> None:
+        """Add Σ ℓ (EA e − N) (b₀ − b) to local coefficients."""
+        if self._tangent_b is not None:
+            self._add(b, self._unpredicted()[:, None] * (self._tangent_b - self._b))
+
+    def lag_along(self, name: str) -> float:
+        """This rank's Σ ℓ (EA e − N) (e_q₀ − e_q) of a global scalar; zero where it has none."""
+        if name not in self._e_q or name not in self._tangent_e_q:
+            return 0.0
+        return float(self._unpredicted() @ (self._tangent_e_q[name] - self._e_q[name]))
 
     def _second_derivatives(self) -> _Second:
         """∂²Π of every segment in its own dofs and the scalars, at the present state.
@@ -283,6 +321,7 @@ class FiberPotential:
 
     def add_tangent(self, matrix: PETSc.Mat, free: npt.NDArray[np.bool_]) -> None:
         """Add ∂²Π/∂w², summed facet by facet, on the free dofs."""
+        self._tangent_b, self._tangent_e_q = self._b, self._e_q
         if not len(self._start):
             return
         sums = np.add.reduceat(self._second_derivatives().block, self._start, axis=0)

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from fem.solver.anderson import Anderson
 from fem.solver.bordered import BorderedSystem, SideCondition
 from fem.solver.factor import Factor
 from fem.solver.problem import Problem
@@ -19,6 +20,8 @@ Floats = npt.NDArray[np.float64]
 
 NEAR, NEAR_RATIO, CHORD_RATIO = 1e-3, 0.02, 0.1
 """A factor is used again below this residual, after this reduction, and while it reduces so."""
+LARGE, POOR_RATIO = 20_000, 0.5
+"""Unknowns from which on one factor is to serve a whole solve, while its steps shrink so."""
 
 INVERTED = "an element turned inside out (least det F {:.3g})"
 VALUELESS = "a law has no value at some point: its rubber is beyond its limiting stretch"
@@ -40,12 +43,14 @@ class Settings:
         hybrid: use the predicted fiber force in the geometric stiffness.
         reuse: take the last factor again where it converges fast; a solve costs a twentieth of
             a factorisation.
+        large: unknowns from which on the first factor is to serve the whole solve.
     """
 
     tolerance: float = 1e-8
     iterations: int = 11
     hybrid: bool = True
     reuse: bool = True
+    large: int = LARGE
 
 
 @dataclasses.dataclass(frozen=True)
@@ -59,6 +64,7 @@ class Outcome:
         reason: why not, in words; empty when converged.
         history: residuals of forces, volumes and side conditions of every iterate, relative.
         least_det_f: least det F of the last iterate.
+        spared: of the iterations, those with an old factor in a solve that one is to serve.
     """
 
     converged: bool
@@ -67,6 +73,12 @@ class Outcome:
     reason: str
     history: list[tuple[float, float, float]]
     least_det_f: float
+    spared: int = 0
+
+    @property
+    def effort(self) -> float:
+        """Iterations with a factor each that do as much: two with an old one count as one."""
+        return self.iterations - self.spared / 2
 
 
 class Newton:
@@ -83,6 +95,7 @@ class Newton:
     Attributes:
         seconds: wall time by phase, s.
         owned: number of dofs of the fields that this rank owns.
+        spares: one factor is to serve a whole solve.
     """
 
     def __init__(self, problem: Problem, comm: MPI.Comm, settings: Settings) -> None:
@@ -99,6 +112,7 @@ class Newton:
         self._b = problem.matrix.createVecRight()
         self._x = problem.matrix.createVecRight()
         self.owned = self._b.getLocalSize()
+        self.spares = settings.reuse and problem.matrix.getSize()[0] >= settings.large
         self.schur: Floats = np.zeros((0, 0))
         """Schur complement of the unknown scalars at the last tangent, in the order given."""
 
@@ -194,8 +208,14 @@ class _Solve:
         self.history: list[tuple[float, float, float]] = []
         self.scale = 0.0
         self.least = np.inf
-        self.solves = 0
+        self.solves = self.spared = 0
         self.tangents: list[int] = []
+        self.spares = newton.spares
+        self.fresh = True
+        self.anderson = Anderson(self.comm)
+        self.steps: list[float] = []
+        """Sizes of the steps with the present factor."""
+        self.displacement = newton.problem.free[: self.owned] & ~newton.problem.volumetric
         self.reason = ""
 
     # --- vectors -------------------------------------------------------------------------------
@@ -222,6 +242,7 @@ class _Solve:
         start = time.perf_counter()
         problem = self.problem
         w, scalars = self.split(x)
+        self.at = np.concatenate([w, scalars])
         for name, value in zip(self.unknown, scalars, strict=True):
             problem.set_scalar(name, float(value))
         problem.set(w)
@@ -248,17 +269,35 @@ class _Solve:
 
     def jacobian(self, _snes: PETSc.SNES, _x: PETSc.Vec, _a: PETSc.Mat, _p: PETSc.Mat) -> None:
         """Tangent, its factor, and the bordered system; or the last ones again."""
-        if self.newton.settings.reuse and self.fast():
+        self.fresh = not (self.newton.settings.reuse and self.serves())
+        if not self.fresh:
             return
         start = time.perf_counter()
         problem = self.problem
         self.tangents.append(len(self.history))
-        if len(self.history) > PATIENCE and max(self.history[-1]) > max(self.history[-2]):
+        if self.effort >= PATIENCE and max(self.history[-1]) > max(self.history[-2]):
             # predicted fiber forces can cycle where fibers are very stiff
             problem.predict(None)
         problem.assemble_tangent()
         self.newton.spend("tangent", time.perf_counter() - start)
         self.system = self.newton.factorise(self.unknown, self.conditions)
+        self.anderson.forget()
+        self.steps.clear()
+
+    @property
+    def effort(self) -> float:
+        """Iterations so far, as `Outcome` counts their effort."""
+        return self.solves - self.spared / 2
+
+    def serves(self) -> bool:
+        """Whether the last factor will do for the next step too."""
+        if not self.spares:
+            return self.fast()
+        if len(self.steps) > 1 and self.steps[-1] > POOR_RATIO * self.steps[-2]:
+            # the first one is far from here; where the second is too, all are
+            self.spares = len(self.tangents) < 2
+            return False
+        return bool(self.tangents)
 
     def fast(self) -> bool:
         """Whether the last factor is likely to reduce the residual tenfold once more."""
@@ -273,13 +312,24 @@ class _Solve:
     def apply(self, _pc: PETSc.PC, r: PETSc.Vec, y: PETSc.Vec) -> None:
         """Solve the bordered system with the factor of K."""
         self.solves += 1
+        self.spared += self.spares and not self.fresh
         r_w, r_q = self.split(r)
+        hybrid = self.newton.settings.hybrid
+        if hybrid and not self.fresh:
+            r_w += self.problem.lag()
+            r_q += np.array([condition.lag() for condition in self.conditions])
         a = self.newton.solve_linear(r_w)
         a, q = self.system.eliminate(a, r_q)
-        self.join(y, a, q)
         # SNES takes the step x − y, so the correction is −(a, q)
-        if self.newton.settings.hybrid:
+        if hybrid:
             self.problem.predict(-a, dict(zip(self.unknown, -q, strict=True)))
+        image = np.concatenate([self.at - np.concatenate([a, q]), self.problem.predicted])
+        image, left = self.anderson.next(image, a[self.displacement])
+        self.steps.append(left)
+        if hybrid:
+            self.problem.predicted = image[len(self.at) :]
+        step = self.at - image[: len(self.at)]
+        self.join(y, step[: self.owned], step[self.owned :])
 
     def _not_a_number(self) -> str:
         """Why the residual has no value."""
@@ -296,7 +346,7 @@ class _Solve:
         resolved = max(tolerance, self.problem.force_noise / self.scale)
         if force <= resolved and volume <= tolerance and side <= tolerance:
             return int(reasons.CONVERGED_FNORM_RELATIVE)
-        if iteration >= self.newton.settings.iterations:
+        if self.effort >= self.newton.settings.iterations:
             self.reason = f"no convergence in {iteration} iterations"
             return int(reasons.DIVERGED_MAX_IT)
         if iteration >= 4:
@@ -325,7 +375,7 @@ class _Solve:
         snes.setFunction(self.function, f)
         snes.setJacobian(self.jacobian, shell, shell)
         snes.setConvergenceTest(self.test)
-        snes.setTolerances(max_it=self.newton.settings.iterations + 1)
+        snes.setTolerances(max_it=2 * self.newton.settings.iterations + 1)
         ksp = snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         pc = ksp.getPC()
@@ -356,4 +406,5 @@ class _Solve:
             self.reason,
             self.history,
             float(self.least),
+            self.spared,
         )
