@@ -11,17 +11,12 @@ import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fem.solver.anderson import Anderson
 from fem.solver.bordered import BorderedSystem, SideCondition
 from fem.solver.factor import Factor
 from fem.solver.problem import Problem
+from fem.solver.reuse import LARGE, Reuse
 
 Floats = npt.NDArray[np.float64]
-
-NEAR, NEAR_RATIO, CHORD_RATIO = 1e-3, 0.02, 0.1
-"""A factor is used again below this residual, after this reduction, and while it reduces so."""
-LARGE, POOR_RATIO = 20_000, 0.5
-"""Unknowns from which on one factor is to serve a whole solve, while its steps shrink so."""
 
 INVERTED = "an element turned inside out (least det F {:.3g})"
 VALUELESS = "a law has no value at some point: its rubber is beyond its limiting stretch"
@@ -112,7 +107,7 @@ class Newton:
         self._b = problem.matrix.createVecRight()
         self._x = problem.matrix.createVecRight()
         self.owned = self._b.getLocalSize()
-        self.spares = settings.reuse and problem.matrix.getSize()[0] >= settings.large
+        self.spares = problem.matrix.getSize()[0] >= settings.large
         self.schur: Floats = np.zeros((0, 0))
         """Schur complement of the unknown scalars at the last tangent, in the order given."""
 
@@ -208,14 +203,9 @@ class _Solve:
         self.history: list[tuple[float, float, float]] = []
         self.scale = 0.0
         self.least = np.inf
-        self.solves = self.spared = 0
-        self.tangents: list[int] = []
-        self.spares = newton.spares
-        self.fresh = True
-        self.anderson = Anderson(self.comm)
-        self.steps: list[float] = []
-        """Sizes of the steps with the present factor."""
-        self.displacement = newton.problem.free[: self.owned] & ~newton.problem.volumetric
+        self.reuse = Reuse(self.comm, newton.settings.reuse, newton.spares)
+        self.sizing = newton.problem.free[: self.owned] & ~newton.problem.volumetric
+        """Owned dofs by which the size of a step is taken, (owned,)."""
         self.reason = ""
 
     # --- vectors -------------------------------------------------------------------------------
@@ -269,53 +259,22 @@ class _Solve:
 
     def jacobian(self, _snes: PETSc.SNES, _x: PETSc.Vec, _a: PETSc.Mat, _p: PETSc.Mat) -> None:
         """Tangent, its factor, and the bordered system; or the last ones again."""
-        self.fresh = not (self.newton.settings.reuse and self.serves())
-        if not self.fresh:
+        if not self.reuse.renews(self.history):
             return
         start = time.perf_counter()
         problem = self.problem
-        self.tangents.append(len(self.history))
-        if self.effort >= PATIENCE and max(self.history[-1]) > max(self.history[-2]):
+        if self.reuse.effort >= PATIENCE and max(self.history[-1]) > max(self.history[-2]):
             # predicted fiber forces can cycle where fibers are very stiff
             problem.predict(None)
         problem.assemble_tangent()
         self.newton.spend("tangent", time.perf_counter() - start)
         self.system = self.newton.factorise(self.unknown, self.conditions)
-        self.anderson.forget()
-        self.steps.clear()
-
-    @property
-    def effort(self) -> float:
-        """Iterations so far, as `Outcome` counts their effort."""
-        return self.solves - self.spared / 2
-
-    def serves(self) -> bool:
-        """Whether the last factor will do for the next step too."""
-        if not self.spares:
-            return self.fast()
-        if len(self.steps) > 1 and self.steps[-1] > POOR_RATIO * self.steps[-2]:
-            # the first one is far from here; where the second is too, all are
-            self.spares = len(self.tangents) < 2
-            return False
-        return bool(self.tangents)
-
-    def fast(self) -> bool:
-        """Whether the last factor is likely to reduce the residual tenfold once more."""
-        if not self.tangents or len(self.history) < 2:
-            return False
-        now, before = max(self.history[-1]), max(self.history[-2])
-        if self.tangents[-1] == len(self.history) - 1:
-            # the factor is one iterate old: near the solution its error is that of this step
-            return now < NEAR and now < NEAR_RATIO * before
-        return now < CHORD_RATIO * before
 
     def apply(self, _pc: PETSc.PC, r: PETSc.Vec, y: PETSc.Vec) -> None:
         """Solve the bordered system with the factor of K."""
-        self.solves += 1
-        self.spared += self.spares and not self.fresh
         r_w, r_q = self.split(r)
         hybrid = self.newton.settings.hybrid
-        if hybrid and not self.fresh:
+        if hybrid and not self.reuse.fresh:
             r_w += self.problem.lag()
             r_q += np.array([condition.lag() for condition in self.conditions])
         a = self.newton.solve_linear(r_w)
@@ -324,8 +283,7 @@ class _Solve:
         if hybrid:
             self.problem.predict(-a, dict(zip(self.unknown, -q, strict=True)))
         image = np.concatenate([self.at - np.concatenate([a, q]), self.problem.predicted])
-        image, left = self.anderson.next(image, a[self.displacement])
-        self.steps.append(left)
+        image = self.reuse.next(image, a[self.sizing])
         if hybrid:
             self.problem.predicted = image[len(self.at) :]
         step = self.at - image[: len(self.at)]
@@ -346,7 +304,7 @@ class _Solve:
         resolved = max(tolerance, self.problem.force_noise / self.scale)
         if force <= resolved and volume <= tolerance and side <= tolerance:
             return int(reasons.CONVERGED_FNORM_RELATIVE)
-        if self.effort >= self.newton.settings.iterations:
+        if self.reuse.effort >= self.newton.settings.iterations:
             self.reason = f"no convergence in {iteration} iterations"
             return int(reasons.DIVERGED_MAX_IT)
         if iteration >= 4:
@@ -401,10 +359,10 @@ class _Solve:
                 item.destroy()
         return Outcome(
             converged,
-            self.solves,
-            len(self.tangents),
+            self.reuse.solves,
+            len(self.reuse.tangents),
             self.reason,
             self.history,
             float(self.least),
-            self.spared,
+            self.reuse.spared,
         )
