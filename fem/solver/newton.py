@@ -151,6 +151,12 @@ class Newton:
         bad = int(np.sum(np.linalg.eigvals(block).real < 0)) if len(natural) else 0
         return self.factor.negative_pivots + bad
 
+    def assemble(self, opposite: bool = False) -> None:
+        """Assemble the tangent at the present state; see `Problem.assemble_tangent`."""
+        start = time.perf_counter()
+        self.problem.assemble_tangent(opposite)
+        self.spend("tangent", time.perf_counter() - start)
+
     def factorise(
         self, unknown: Sequence[str], conditions: Sequence[SideCondition]
     ) -> BorderedSystem:
@@ -175,7 +181,7 @@ class Newton:
 
         The tangent at the present state is assembled and factorised for it.
         """
-        self.problem.assemble_tangent()
+        self.assemble()
         system = self.factorise(unknown, conditions)
         a = self.solve_linear(self.problem.load(scalar))
         sides = np.array([condition.slope(scalar) for condition in conditions])
@@ -261,13 +267,10 @@ class _Solve:
         """Tangent, its factor, and the bordered system; or the last ones again."""
         if not self.reuse.renews(self.history):
             return
-        start = time.perf_counter()
-        problem = self.problem
         if self.reuse.effort >= PATIENCE and max(self.history[-1]) > max(self.history[-2]):
             # predicted fiber forces can cycle where fibers are very stiff
-            problem.predict(None)
-        problem.assemble_tangent()
-        self.newton.spend("tangent", time.perf_counter() - start)
+            self.problem.predict(None)
+        self.newton.assemble()
         self.system = self.newton.factorise(self.unknown, self.conditions)
 
     def apply(self, _pc: PETSc.PC, r: PETSc.Vec, y: PETSc.Vec) -> None:
