@@ -72,7 +72,7 @@ def test_a_repeated_step_and_a_new_factor_are_no_trouble() -> None:
         assert found == pytest.approx(step)
         assert left == pytest.approx(np.linalg.norm(step), rel=1e-6)
     anderson.forget()
-    assert anderson.next(2 * step, step)[0] == pytest.approx(2 * step)
+    assert anderson.next(step + step, step)[0] == pytest.approx(2 * step)
 
 
 # --- the mixed steps of fibers -------------------------------------------------------------------
