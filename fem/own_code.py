@@ -56,6 +56,11 @@ class OwnCode:
         return float(total(self.body.domain.comm, mine))
 
     @property
+    def mixed(self) -> bool:
+        """Whether steps with an old tangent lack nothing but `lag`."""
+        return all(item.mixed for item in self.discrete.values())
+
+    @property
     def undecided(self) -> bool:
         """Whether the tangent hangs on the motion that is predicted, on any rank."""
         mine = sum(discrete.undecided for discrete in self.discrete.values())

@@ -38,9 +38,11 @@ class Discrete(Protocol):
     Attributes:
         index: global number of every piece that this rank holds, (n,); what it remembers of a
             step is one value a piece.
+        mixed: `add_lag` has all that a step with an old tangent lacks, so that such steps converge.
     """
 
     index: npt.NDArray[np.int64]
+    mixed: bool
 
     @property
     def undecided(self) -> bool:

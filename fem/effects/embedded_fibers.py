@@ -81,6 +81,7 @@ class FiberPotential:
         self.index = mine[np.argsort(host[mine], kind="stable")]
         """Number within `segments` of every segment held here, (n,)."""
         self.tension_only = tension_only
+        self.mixed = not tension_only
         self.length = segments.length[self.index]
         self.stiffness = stiffness * segments.share[self.index]
         local, facet = local[self.index], segments.facet[self.index]

@@ -107,7 +107,7 @@ class Newton:
         self._b = problem.matrix.createVecRight()
         self._x = problem.matrix.createVecRight()
         self.owned = self._b.getLocalSize()
-        self.spares = problem.matrix.getSize()[0] >= settings.large
+        self.spares = problem.mixed and problem.matrix.getSize()[0] >= settings.large
         self.schur: Floats = np.zeros((0, 0))
         """Schur complement of the unknown scalars at the last tangent, in the order given."""
 

@@ -63,6 +63,10 @@ class Problem(Protocol):
     ) -> None:
         """Take the last correction, owned part, which the next tangent may use; None: none yet."""
 
+    @property
+    def mixed(self) -> bool:
+        """Whether steps with an old tangent lack nothing but `lag`."""
+
     def lag(self) -> Floats:
         """What a step with the last tangent lacks of the forces, owned part, (owned,), N.
 

@@ -14,7 +14,7 @@ from fem.march.increments import next_size
 from fem.march.records import Ramp, Rules
 from fem.scene import Scene
 from fem.solver.anderson import Anderson
-from fem.solver.newton import Outcome, Settings
+from fem.solver.newton import Newton, Outcome, Settings
 from fem.solver.reuse import POOR, Reuse
 from tests.fem.parts import Bender, bender
 from tests.fem.test_uniform import STENCIL, _Bordered, _scene
@@ -217,3 +217,10 @@ def test_a_march_with_one_factor_a_step_is_the_same_march() -> None:
     assert spared.factorisations == spared.steps == usual.steps < usual.factorisations
     (step, _), (other, _) = usual.hits[0], spared.hits[0]
     assert pressures[1][other] == pytest.approx(pressures[0][step], rel=1e-7)
+
+
+def test_fibers_that_may_go_slack_have_a_factor_an_iterate() -> None:
+    body = bender(settings=Settings(large=0))
+    assert body.newton.spares
+    body.scene.discrete["SmearedWinding"].mixed = False
+    assert not Newton(body.scene, MPI.COMM_SELF, Settings(large=0)).spares
