@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -19,13 +19,14 @@ from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
 from fem.kinematics.kinematics import Kinematics
 from fem.matrix import may_free
+from fem.own_code import OwnCode
 from fem.ranks import total
 from fem.round_off import probed, summed_noise
 
 Floats = npt.NDArray[np.float64]
 
 
-class Scene:
+class Scene(OwnCode):
     """A body under a sum of effects, Π(w, q) = Σ_e Π_e(w, q), ready to be solved.
 
     The effects are sorted, so that their order in the list never matters. What no effect asks
@@ -218,40 +219,6 @@ class Scene:
             self._forget()
             self.body.scalars[name].value = value
 
-    # --- what the potentials with own code remember ----------------------------------------------
-
-    def predict(
-        self, correction: Floats | None, scalars: Mapping[str, float] | None = None
-    ) -> None:
-        """Take Newton's last correction, which the next tangent may use; None: none yet.
-
-        Args:
-            correction: of the fields, owned part, (owned,).
-            scalars: of the global scalars, by name.
-        """
-        if not self.discrete:
-            return
-        full = None if correction is None else self.body.with_ghosts(correction)
-        for discrete in self.discrete.values():
-            discrete.predict(full, scalars)
-
-    @property
-    def undecided(self) -> bool:
-        """Whether the tangent hangs on the motion that is predicted, on any rank."""
-        mine = sum(discrete.undecided for discrete in self.discrete.values())
-        return bool(total(self.domain.comm, mine))
-
-    def memory(self) -> dict[str, dict[str, Floats]]:
-        """What a converged step must remember beside the unknowns, by effect; this rank's part."""
-        return {key: discrete.state() for key, discrete in self.discrete.items()}
-
-    def extrapolate(
-        self, memories: Sequence[dict[str, dict[str, Floats]]], weights: Floats
-    ) -> None:
-        """Start a step from a weighted sum of what earlier ones remembered."""
-        for key, discrete in self.discrete.items():
-            discrete.extrapolate([memory[key] for memory in memories], weights)
-
     # --- the potential and its derivatives ---------------------------------------------------
 
     def det_f(self) -> float:
@@ -312,7 +279,8 @@ class Scene:
                 fill(part)
             norm = float(np.linalg.norm(part))
             local.array_w[:] = part
-        compat.assemble_vector(vector, form)
+        if form is not None:
+            compat.assemble_vector(vector, form)
         vector.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
         values = vector.array_r.copy()
         follow, lead = self.body.ties
@@ -377,6 +345,13 @@ class Scene:
     def norm(self, values: Floats) -> float:
         """Euclidean norm over all ranks of owned values."""
         return float(np.sqrt(total(self.domain.comm, float(values @ values))))
+
+    def lag(self) -> Floats:
+        """What a step with the last tangent lacks of the forces, owned part, (owned,), N."""
+        if not self.discrete:
+            return np.zeros(self.body.owned)
+        vector = self._sum(None, [item.add_lag for item in self.discrete.values()])[0]
+        return np.where(self.free[: len(vector)], vector, 0.0)
 
     @property
     def outside(self) -> list[str]:

@@ -37,12 +37,20 @@ class Discrete(Protocol):
     Attributes:
         index: global number of every piece that this rank holds, (n,); what it remembers of a
             step is one value a piece.
+<<<<<<< HEAD
         block_dofs: local dofs of the fields that each piece couples, (n, k), always the same; those
             of a piece belong to one cell.
     """
 
     index: npt.NDArray[np.int64]
     block_dofs: npt.NDArray[np.int32]
+=======
+        mixed: `add_lag` has all that a step with an old tangent lacks, so that such steps converge.
+    """
+
+    index: npt.NDArray[np.int64]
+    mixed: bool
+>>>>>>> newton
 
     @property
     def undecided(self) -> bool:
@@ -67,6 +75,22 @@ class Discrete(Protocol):
         self, correction: Floats | None, scalars: Mapping[str, float] | None = None
     ) -> None:
         """Take Newton's last correction, (local,), for the next tangent to use; None: none yet."""
+
+    @property
+    def predicted(self) -> Floats:
+        """What that correction predicts of every piece's force, (n,), N."""
+
+    @predicted.setter
+    def predicted(self, forces: Floats) -> None: ...
+
+    def add_lag(self, b: Floats) -> None:
+        """Add what a step with the last tangent lacks, to local coefficients, (local,), N.
+
+        Forces that the correction has not predicted act along that tangent's gradients there.
+        """
+
+    def lag_along(self, name: str) -> float:
+        """This rank's part of the same of ∂Π/∂q of a global scalar."""
 
     def conjugate(self, name: str) -> float:
         """This rank's work-conjugate −∂Π/∂q of a global scalar; zero where it does not enter."""

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from mpi4py import MPI
 
 from fem.kinematics.kinematics import Kinematics
+from fem.ranks import total
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -61,10 +61,14 @@ class Frames:
 
     def _station_sums(self, values: Floats) -> Floats:
         """Hat-weighted sums over all ranks of nodal values (n, m), (stations, m)."""
-        sums = np.zeros((len(self.z), values.shape[1]))
-        np.add.at(sums, self._below, (1 - self._above_share)[:, None] * values)
-        np.add.at(sums, self._below + 1, self._above_share[:, None] * values)
-        return self._body.domain.comm.allreduce(sums, MPI.SUM)  # type: ignore[no-any-return]
+        count = len(self.z)
+        above = self._above_share[:, None] * values
+        sums = np.zeros((count, values.shape[1]))
+        for j, (here, there) in enumerate(zip((values - above).T, above.T, strict=True)):
+            sums[:, j] = np.bincount(self._below, here, count)
+            sums[1:, j] += np.bincount(self._below, there, count)[:-1]
+        found: Floats = total(self._body.domain.comm, sums)
+        return found
 
     def _at_nodes(self, rotation: Floats, centre: Floats) -> tuple[Floats, Floats]:
         from scipy.interpolate import CubicSpline

@@ -17,6 +17,9 @@ ROUND_OFF = 1e-9
 """Share of a measure's range by which a body at the range's end may miss it: at rest the fitted
 angle is ±1e-15 rad, and its sign is round-off's."""
 
+KEPT = 8
+"""Shapes that are kept: of three or four states and of where they lead, by two measures."""
+
 
 class Guide:
     """A uniformly bent body between rigid caps, from the states of its section.
@@ -48,6 +51,7 @@ class Guide:
         self._frames, self._length = frames, length
         self._nodes = body.domain.data.nodes[body.owned_nodes]
         self._measures = dict(measures)
+        self._last: dict[tuple[str, float], Shape] = {}
         x, y, z = self._nodes.T
         inside = (z >= 0) & (z <= length)
         values, at = displacement.transpose(1, 2, 0), np.column_stack([np.abs(x), y])
@@ -78,6 +82,16 @@ class Guide:
         Raises:
             KeyError: no such measure.
         """
+        last = self._last.pop((measure, value), None)
+        if last is None:
+            last = self._found(measure, value)
+        # a step asks for its states anew, the oldest excepted
+        self._last[measure, value] = last
+        for key in list(self._last)[:-KEPT]:
+            del self._last[key]
+        return last
+
+    def _found(self, measure: str, value: float) -> Shape:
         from scipy.interpolate import CubicSpline
 
         known = self._measures[measure]

@@ -37,9 +37,9 @@ def next_size(size: float, outcome: Outcome, largest: float, rules: Rules) -> fl
         largest: greatest increment.
         rules: incrementation.
     """
-    if outcome.iterations <= rules.easy:
+    if outcome.effort <= rules.easy:
         return min(size * rules.grow, largest)
-    return size * rules.shrink if outcome.iterations >= rules.slow else size
+    return size * rules.shrink if outcome.effort >= rules.slow else size
 
 
 def first_size(

@@ -246,7 +246,7 @@ class March:
                 position.failures = 0
             self._keep(ramp, [*self.states[1 - self.rules.memory :], new], state, outcome)
             self.report.critical += critical(self.states, ramp.scalar)
-            slow = outcome if outcome.iterations >= self.rules.slow else None
+            slow = outcome if outcome.effort >= self.rules.slow else None
             position.increment = next_size(size, outcome, way.largest, self.rules)
             self._tell(outcome)
 

@@ -13,10 +13,8 @@ from fem.march.turning import search_end
 
 SHARP = 0.01
 """A load at which stability is lost is known within this part of it before its branch is left."""
-NEAR = 0.02
-"""An increment that would end so near before a value that is asked for hits it (rad, an angle)."""
-NEAR_STEP = 0.5
-"""The same as a part of the increment's own change: where nothing turns, nothing is near."""
+STRETCH = 0.2
+"""An increment goes so much further, as a part of its own change, to hit what is asked for."""
 ROUND_OFF = 1e-9
 """Least distance (rad) at which a value counts as not yet hit."""
 REACHED = 1e-12
@@ -49,7 +47,7 @@ class Way:
     def next(self, now: float, size: float) -> float:
         """Where an increment of a size would end; at a stop that is near."""
         target, nearest = now + self.sign * size, self.stop(now)
-        return nearest if self.sign * (target - nearest) > -0.2 * size else target
+        return nearest if self.sign * (target - nearest) > -STRETCH * size else target
 
     def stop(self, now: float) -> float:
         """The next value to be hit exactly, the end if there is none before it."""
@@ -140,9 +138,7 @@ class Requests:
         self._forced = insist is not None
         if insist is not None:
             return insist
-        margin = min(NEAR, NEAR_STEP * abs(expected - here))
-        side = np.sign(expected - here)
-        ahead = self._between(here, expected + side * margin)
+        ahead = self._between(here, expected + STRETCH * (expected - here))
         return next((goal for goal in ahead if goal not in self._beyond), None)
 
     def judge(self, old: State, new: State, kind: str, aim: float, way: Way) -> str:

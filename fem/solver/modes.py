@@ -59,7 +59,7 @@ def softest_mode(
         ZeroDivisionError: the tangent is singular to the last digit.
     """
     newton.problem.predict(None)
-    newton.problem.assemble_tangent()
+    newton.assemble()
     system = newton.factorise(natural, conditions)
     none = np.zeros(len(natural))
 
@@ -77,7 +77,7 @@ def opposite_modes(newton: Newton) -> int:
     Half a body does not know them. The factor of its own tangent is lost.
     """
     newton.problem.predict(None)
-    newton.problem.assemble_tangent(opposite=True)
+    newton.assemble(opposite=True)
     newton.factor.renew()
     return newton.factor.negative_pivots
 

@@ -14,11 +14,9 @@ from petsc4py import PETSc
 from fem.solver.bordered import BorderedSystem, SideCondition
 from fem.solver.factor import Factor
 from fem.solver.problem import Problem
+from fem.solver.reuse import LARGE, Reuse
 
 Floats = npt.NDArray[np.float64]
-
-NEAR, NEAR_RATIO, CHORD_RATIO = 1e-3, 0.02, 0.1
-"""A factor is used again below this residual, after this reduction, and while it reduces so."""
 
 INVERTED = "an element turned inside out (least det F {:.3g})"
 VALUELESS = "a law has no value at some point: its rubber is beyond its limiting stretch"
@@ -40,12 +38,14 @@ class Settings:
         hybrid: use the predicted fiber force in the geometric stiffness.
         reuse: take the last factor again where it converges fast; a solve costs a twentieth of
             a factorisation.
+        large: unknowns from which on the first factor is to serve the whole solve.
     """
 
     tolerance: float = 1e-8
     iterations: int = 11
     hybrid: bool = True
     reuse: bool = True
+    large: int = LARGE
 
 
 @dataclasses.dataclass(frozen=True)
@@ -59,6 +59,7 @@ class Outcome:
         reason: why not, in words; empty when converged.
         history: residuals of forces, volumes and side conditions of every iterate, relative.
         least_det_f: least det F of the last iterate.
+        spared: of the iterations, those with an old factor in a solve that one is to serve.
     """
 
     converged: bool
@@ -67,6 +68,12 @@ class Outcome:
     reason: str
     history: list[tuple[float, float, float]]
     least_det_f: float
+    spared: int = 0
+
+    @property
+    def effort(self) -> float:
+        """Iterations with a factor each that do as much: two with an old one count as one."""
+        return self.iterations - self.spared / 2
 
 
 class Newton:
@@ -83,6 +90,7 @@ class Newton:
     Attributes:
         seconds: wall time by phase, s.
         owned: number of dofs of the fields that this rank owns.
+        spares: one factor is to serve a whole solve.
     """
 
     def __init__(self, problem: Problem, comm: MPI.Comm, settings: Settings) -> None:
@@ -99,6 +107,7 @@ class Newton:
         self._b = problem.matrix.createVecRight()
         self._x = problem.matrix.createVecRight()
         self.owned = self._b.getLocalSize()
+        self.spares = problem.mixed and problem.matrix.getSize()[0] >= settings.large
         self.schur: Floats = np.zeros((0, 0))
         """Schur complement of the unknown scalars at the last tangent, in the order given."""
 
@@ -142,6 +151,12 @@ class Newton:
         bad = int(np.sum(np.linalg.eigvals(block).real < 0)) if len(natural) else 0
         return self.factor.negative_pivots + bad
 
+    def assemble(self, opposite: bool = False) -> None:
+        """Assemble the tangent at the present state; see `Problem.assemble_tangent`."""
+        start = time.perf_counter()
+        self.problem.assemble_tangent(opposite)
+        self.spend("tangent", time.perf_counter() - start)
+
     def factorise(
         self, unknown: Sequence[str], conditions: Sequence[SideCondition]
     ) -> BorderedSystem:
@@ -166,7 +181,7 @@ class Newton:
 
         The tangent at the present state is assembled and factorised for it.
         """
-        self.problem.assemble_tangent()
+        self.assemble()
         system = self.factorise(unknown, conditions)
         a = self.solve_linear(self.problem.load(scalar))
         sides = np.array([condition.slope(scalar) for condition in conditions])
@@ -194,8 +209,9 @@ class _Solve:
         self.history: list[tuple[float, float, float]] = []
         self.scale = 0.0
         self.least = np.inf
-        self.solves = 0
-        self.tangents: list[int] = []
+        self.reuse = Reuse(self.comm, newton.settings.reuse, newton.spares)
+        self.sizing = newton.problem.free[: self.owned] & ~newton.problem.volumetric
+        """Owned dofs by which the size of a step is taken, (owned,)."""
         self.reason = ""
 
     # --- vectors -------------------------------------------------------------------------------
@@ -222,6 +238,7 @@ class _Solve:
         start = time.perf_counter()
         problem = self.problem
         w, scalars = self.split(x)
+        self.at = np.concatenate([w, scalars])
         for name, value in zip(self.unknown, scalars, strict=True):
             problem.set_scalar(name, float(value))
         problem.set(w)
@@ -248,38 +265,32 @@ class _Solve:
 
     def jacobian(self, _snes: PETSc.SNES, _x: PETSc.Vec, _a: PETSc.Mat, _p: PETSc.Mat) -> None:
         """Tangent, its factor, and the bordered system; or the last ones again."""
-        if self.newton.settings.reuse and self.fast():
+        if not self.reuse.renews(self.history):
             return
-        start = time.perf_counter()
-        problem = self.problem
-        self.tangents.append(len(self.history))
-        if len(self.history) > PATIENCE and max(self.history[-1]) > max(self.history[-2]):
+        if self.reuse.effort >= PATIENCE and max(self.history[-1]) > max(self.history[-2]):
             # predicted fiber forces can cycle where fibers are very stiff
-            problem.predict(None)
-        problem.assemble_tangent()
-        self.newton.spend("tangent", time.perf_counter() - start)
+            self.problem.predict(None)
+        self.newton.assemble()
         self.system = self.newton.factorise(self.unknown, self.conditions)
-
-    def fast(self) -> bool:
-        """Whether the last factor is likely to reduce the residual tenfold once more."""
-        if not self.tangents or len(self.history) < 2:
-            return False
-        now, before = max(self.history[-1]), max(self.history[-2])
-        if self.tangents[-1] == len(self.history) - 1:
-            # the factor is one iterate old: near the solution its error is that of this step
-            return now < NEAR and now < NEAR_RATIO * before
-        return now < CHORD_RATIO * before
 
     def apply(self, _pc: PETSc.PC, r: PETSc.Vec, y: PETSc.Vec) -> None:
         """Solve the bordered system with the factor of K."""
-        self.solves += 1
         r_w, r_q = self.split(r)
+        hybrid = self.newton.settings.hybrid
+        if hybrid and not self.reuse.fresh:
+            r_w += self.problem.lag()
+            r_q += np.array([condition.lag() for condition in self.conditions])
         a = self.newton.solve_linear(r_w)
         a, q = self.system.eliminate(a, r_q)
-        self.join(y, a, q)
         # SNES takes the step x − y, so the correction is −(a, q)
-        if self.newton.settings.hybrid:
+        if hybrid:
             self.problem.predict(-a, dict(zip(self.unknown, -q, strict=True)))
+        image = np.concatenate([self.at - np.concatenate([a, q]), self.problem.predicted])
+        image = self.reuse.next(image, a[self.sizing])
+        if hybrid:
+            self.problem.predicted = image[len(self.at) :]
+        step = self.at - image[: len(self.at)]
+        self.join(y, step[: self.owned], step[self.owned :])
 
     def _not_a_number(self) -> str:
         """Why the residual has no value."""
@@ -296,7 +307,7 @@ class _Solve:
         resolved = max(tolerance, self.problem.force_noise / self.scale)
         if force <= resolved and volume <= tolerance and side <= tolerance:
             return int(reasons.CONVERGED_FNORM_RELATIVE)
-        if iteration >= self.newton.settings.iterations:
+        if self.reuse.effort >= self.newton.settings.iterations:
             self.reason = f"no convergence in {iteration} iterations"
             return int(reasons.DIVERGED_MAX_IT)
         if iteration >= 4:
@@ -325,7 +336,7 @@ class _Solve:
         snes.setFunction(self.function, f)
         snes.setJacobian(self.jacobian, shell, shell)
         snes.setConvergenceTest(self.test)
-        snes.setTolerances(max_it=self.newton.settings.iterations + 1)
+        snes.setTolerances(max_it=2 * self.newton.settings.iterations + 1)
         ksp = snes.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         pc = ksp.getPC()
@@ -351,9 +362,10 @@ class _Solve:
                 item.destroy()
         return Outcome(
             converged,
-            self.solves,
-            len(self.tangents),
+            self.reuse.solves,
+            len(self.reuse.tangents),
             self.reason,
             self.history,
             float(self.least),
+            self.reuse.spared,
         )

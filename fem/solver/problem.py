@@ -63,5 +63,22 @@ class Problem(Protocol):
     ) -> None:
         """Take the last correction, owned part, which the next tangent may use; None: none yet."""
 
+    @property
+    def mixed(self) -> bool:
+        """Whether steps with an old tangent lack nothing but `lag`."""
+
+    def lag(self) -> Floats:
+        """What a step with the last tangent lacks of the forces, owned part, (owned,), N.
+
+        Forces that a correction has not predicted act along the fibers of that tangent there.
+        """
+
+    @property
+    def predicted(self) -> Floats:
+        """Forces that the last correction has predicted, this rank's, (n,)."""
+
+    @predicted.setter
+    def predicted(self, forces: Floats) -> None: ...
+
     def raise_force_floor(self, floor: float) -> None:
         """Measure forces by no less than this from now on, N."""

@@ -42,6 +42,10 @@ class GivenConjugate:
         """What is left of the equation, scaled."""
         return (self._scene.conjugate(self._name) - self._target) / self._scale
 
+    def lag(self) -> float:
+        """What a step with the last tangent lacks of that."""
+        return -self._scene.lag_along(self._name) / self._scale
+
     def row(self) -> Floats:
         """Its gradient on the owned dofs."""
         return -self._scene.load(self._name) / self._scale
@@ -74,6 +78,10 @@ class Stationary:
         """What is left of the equation, scaled."""
         return -self._scene.conjugate(self._name) / self._scale
 
+    def lag(self) -> float:
+        """What a step with the last tangent lacks of that."""
+        return self._scene.lag_along(self._name) / self._scale
+
     def row(self) -> Floats:
         """Its gradient on the owned dofs."""
         return self._scene.load(self._name) / self._scale
@@ -97,6 +105,10 @@ class GivenFunctional:
     def value(self) -> float:
         """What is left of the equation, scaled."""
         return self._functional.value() - self._target
+
+    def lag(self) -> float:
+        """Nothing: no fiber force is in it."""
+        return 0.0
 
     def row(self) -> Floats:
         """Its gradient on the owned dofs."""

@@ -14,6 +14,7 @@ from fem.effects.supports import Symmetry
 from fem.kinematics.domain import Domain
 from fem.scene import Scene
 from fem.solver.newton import INVERTED, Newton, Outcome, Settings, _Solve
+from fem.solver.reuse import Reuse
 from tests.exact.solids import box
 from tests.fem.parts import Bender, Floats, bender, law, set_positions
 
@@ -79,6 +80,9 @@ class _Volume:
 
     def row(self) -> Floats:
         return -self._scene.load("pressure") / self._target
+
+    def lag(self) -> float:
+        return 0.0
 
     def slope(self, scalar: str) -> float:
         return 0.0  # V does not depend on P
@@ -176,6 +180,7 @@ def test_when_newton_gives_up(sizes: list[float], iteration: int, reason: str) -
         history=[(1e-9, size, 0.0) if np.isfinite(size) else (size,) * 3 for size in sizes],
         newton=types.SimpleNamespace(settings=Settings()),
         problem=types.SimpleNamespace(force_noise=0.0),
+        reuse=types.SimpleNamespace(effort=iteration),
         scale=1.0,
         reason="",
         _not_a_number=lambda: INVERTED.format(-0.5),
@@ -194,6 +199,7 @@ def test_each_residual_is_below_the_tolerance(row: tuple[float, ...], noise: flo
         history=[row],
         newton=types.SimpleNamespace(settings=Settings()),
         problem=types.SimpleNamespace(force_noise=noise),
+        reuse=types.SimpleNamespace(effort=1),
         scale=2.0,
     )
     found = _Solve.test(solve, None, 1, ())  # type: ignore[arg-type]
@@ -220,5 +226,6 @@ def test_a_factor_is_used_again_where_it_is_fast(
     tangents: list[int], sizes: list[float], again: bool
 ) -> None:
     # the greatest of the three residuals tells
-    solve = types.SimpleNamespace(tangents=tangents, history=[(0.0, s, s / 2) for s in sizes])
-    assert _Solve.fast(solve) == again  # type: ignore[arg-type]
+    reuse = Reuse(MPI.COMM_SELF)
+    reuse.tangents = list(tangents)
+    assert reuse.renews([(0.0, s, s / 2) for s in sizes]) != again

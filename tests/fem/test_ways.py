@@ -36,8 +36,9 @@ def test_the_nearest_angle_in_the_way_of_the_increment_is_due(side: float) -> No
     # on the way back the same ones, and beyond zero
     assert asked.due(side * 0.4, 0.0) == side * 0.3
     assert asked.due(side * 0.05, side * -0.3) == side * -0.2
-    # one that would be just missed is hit, none where the angle stands still
-    assert asked.due(0.0, side * 0.09) == side * 0.1
+    # one that would be missed by a fifth of the step is hit, none where the angle stands still
+    assert asked.due(0.0, side * 0.09) == asked.due(0.0, side * 0.084) == side * 0.1
+    assert asked.due(0.0, side * 0.083) is None
     assert asked.due(side * 0.0999, side * 0.0999) is None
     assert asked.due(0.0, side * 0.05) is None
 

@@ -172,6 +172,10 @@ class VolumeRatio:
         """V/V₀ less its target."""
         return self._scene.conjugate("pressure") / self._rest - self._ratio
 
+    def lag(self) -> float:
+        """No fiber force is in it."""
+        return 0.0
+
     def row(self) -> Floats:
         """Its gradient."""
         return -self._scene.load("pressure") / self._rest

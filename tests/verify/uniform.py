@@ -128,6 +128,9 @@ class _Balance:
     def value(self) -> float:
         return -self._scene.conjugate(self._name)
 
+    def lag(self) -> float:
+        return self._scene.lag_along(self._name)
+
     def row(self) -> Floats:
         return self._scene.load(self._name)
 
