@@ -136,6 +136,11 @@ class BulgingPotential(FiberPotential):
             self._across + self._coupling * strain + self._axial_stiffness * stretch
         )
 
+    def tangent_blocks(self) -> Floats:
+        """∂²Π/∂w² of every segment, (n, k, k)."""
+        self._axial.hold()
+        return super().tangent_blocks()
+
     def _second_derivatives(self) -> Second:
         """∂²Π of every segment in its own dofs and the scalars, at the present state."""
         if self._second is not None:

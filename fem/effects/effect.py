@@ -37,20 +37,14 @@ class Discrete(Protocol):
     Attributes:
         index: global number of every piece that this rank holds, (n,); what it remembers of a
             step is one value a piece.
-<<<<<<< HEAD
         block_dofs: local dofs of the fields that each piece couples, (n, k), always the same; those
             of a piece belong to one cell.
-    """
-
-    index: npt.NDArray[np.int64]
-    block_dofs: npt.NDArray[np.int32]
-=======
         mixed: `add_lag` has all that a step with an old tangent lacks, so that such steps converge.
     """
 
     index: npt.NDArray[np.int64]
+    block_dofs: npt.NDArray[np.int32]
     mixed: bool
->>>>>>> newton
 
     @property
     def undecided(self) -> bool:

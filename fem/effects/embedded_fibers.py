@@ -56,6 +56,7 @@ class FiberPotential:
         self.index = mine[np.argsort(host[mine], kind="stable")]
         """Number within `segments` of every segment held here, (n,)."""
         self.tension_only = tension_only
+        self.mixed = not tension_only
         self.length = segments.length[self.index]
         self.stiffness = stiffness * segments.share[self.index]
         self._along = MeanStretch(body, segments.lines(self.index))

@@ -111,6 +111,7 @@ class MeanStretch:
         rest[:, :, :shown] = reference[:, :, :shown]
         self._reference = rest.reshape(count, width)
         self.value = np.ones(count)
+        self._held: tuple[Floats, dict[str, Floats]] | None = None
 
     def update(self, w: Floats) -> None:
         """Stretch and its first derivatives at local coefficients w and the present scalars."""
@@ -149,13 +150,35 @@ class MeanStretch:
         found: Floats = np.sum(self._share * error, axis=1)
         return found
 
+    def hold(self) -> None:
+        """Keep the present first derivatives as those of the last tangent."""
+        self._held = (self.by_dofs, self.by_scalar)
+
     def change(self, correction: Floats, scalars: Mapping[str, float] | None) -> Floats:
-        """Change of λ, to first order, with a correction of local dofs and one of scalars, (n,)."""
-        change: Floats = np.einsum("nk,nk->n", self.by_dofs, correction[self.dofs])
+        """Change of λ by the last tangent's derivatives, to first order, (n,).
+
+        Args:
+            correction: of local dofs.
+            scalars: of global scalars, by name.
+        """
+        assert self._held is not None, "a correction needs a tangent"
+        by_dofs, by_scalar = self._held
+        change: Floats = np.einsum("nk,nk->n", by_dofs, correction[self.dofs])
         for name, value in (scalars or {}).items():
-            if name in self.by_scalar:
-                change += self.by_scalar[name] * value
+            if name in by_scalar:
+                change += by_scalar[name] * value
         return change
+
+    def add_lag(self, b: Floats, forces: Floats) -> None:
+        """Add Σ f (∂λ₀/∂w − ∂λ/∂w) to local coefficients: λ₀ is that of the last tangent."""
+        if self._held is not None:
+            self.add(b, forces[:, None] * (self._held[0] - self.by_dofs))
+
+    def lag_along(self, name: str, forces: Floats) -> float:
+        """Σ f (∂λ₀/∂q − ∂λ/∂q) of a global scalar; zero where it has none."""
+        if self._held is None or name not in self.by_scalar:
+            return 0.0
+        return float(forces @ (self._held[1][name] - self.by_scalar[name]))
 
     def curved(self, pull: Floats) -> Second:
         """Σ p ∂²λ with a weight p for every piece, N mm, (n,): what is geometric in a tangent.
