@@ -21,7 +21,7 @@ from fiberbend.effects.effect import (
     Turns,
 )
 from fiberbend.schema.problems import Problem, found, meant
-from fiberbend.schema.quantities import Length, LengthOrZero, Modulus, Spec
+from fiberbend.schema.quantities import Length, LengthOrZero, Modulus, PenaltyStiffness, Spec
 from fiberbend.schema.units import show
 from geometry.winding.patterns import PATTERNS, least_pitch, turn_spacing
 
@@ -30,11 +30,13 @@ if TYPE_CHECKING:
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
     from geometry.winding.helix import Winding
+    from materials.bulging import Bulging
     from materials.fiber import Fiber
 else:
     PatternName = Literal[tuple(PATTERNS)]
 
 DEFAULT_LINES = 5
+DISCRETE, CALIBRATED, SMEARED = "discrete", "calibrated", "smeared"
 _POINTS_A_TURN = 24
 _ROUNDING = 1e-9
 _STIFF = 1e3
@@ -105,6 +107,33 @@ class FiberSpec(Spec):
                 yield Problem(f"{path}.{key}", "no effect on a named fiber, expected no value")
 
 
+class BulgingSpec(Spec):
+    """How stiff rubber is against bulging between the turns, K0 [1 + a1 (λ_z − 1) + a2 (λ_z − 1)²].
+
+    λ_z is the stretch along the axis at a point of the winding.
+    """
+
+    stiffness: PenaltyStiffness
+    """K0: pressure per depth of the bulge, at rest."""
+    linear: float = 0.0
+    """a1: how it grows with the stretch along the axis."""
+    quadratic: float = 0.0
+    """a2: how it grows with the square of that."""
+
+    @classmethod
+    def of(cls, bulging: Bulging) -> BulgingSpec:
+        """From three numbers."""
+        return cls.model_construct(
+            stiffness=bulging.stiffness, linear=bulging.linear, quadratic=bulging.quadratic
+        )
+
+    def bulging(self) -> Bulging:
+        """As the finite-element code takes it."""
+        from materials.bulging import Bulging
+
+        return Bulging(self.stiffness, self.linear, self.quadratic)
+
+
 class WindingEffect(Effect):
     """Inextensible thread around wall and floor (and layer), between the caps."""
 
@@ -116,14 +145,21 @@ class WindingEffect(Effect):
     """Length along the axis of one turn."""
     fiber: FiberSpec
     """A named fiber or its modulus and diameter."""
-    representation: Literal["discrete", "smeared"] | None = Field(default=None, alias="as")
-    """Every turn by itself, or the same thread spread over its surface. By default every turn
-    where the model has turns, and spread in the models section and analytic."""
+    representation: Literal["discrete", "calibrated", "smeared"] | None = Field(
+        default=None, alias="as"
+    )
+    """Every turn by itself (discrete); the same thread spread over its surface, with rubber that
+    bulges between the turns as in the cell of this section, which is solved before (calibrated); or
+    spread alone (smeared). By default every turn where the model has turns, and smeared in the
+    models section and analytic."""
+    bulging: BulgingSpec | None = None
+    """How stiff that rubber is, where it is known: no cell is solved; calibrated only."""
     width: LengthOrZero | None = None
-    """Width of the ribbon that stands for the thread, its diameter by default; discrete only.
-    "0 mm" makes it a line, under which the pressure drifts with the mesh."""
+    """Width of the ribbon that stands for the thread, its diameter by default; discrete, or in the
+    cell of a calibrated winding. "0 mm" makes it a line, under which the pressure drifts with the
+    mesh."""
     lines: int | None = Field(default=None, ge=1)
-    """Parallel curves across the ribbon, 5 by default; discrete only."""
+    """Parallel curves across the ribbon, 5 by default; likewise."""
     tension_only: bool = False
     """The thread goes slack instead of carrying compression."""
 
@@ -134,10 +170,13 @@ class WindingEffect(Effect):
     def needs(self) -> dict[str, str]:
         """Turns where every one is to lie by itself, twist where the pattern has a hand."""
         needed = {WOUND: "it has no thread around the body"}
-        if self.representation == "discrete":
+        if self.representation == DISCRETE:
             needed[TURNS] = (
-                "only cell and body have turns (as: smeared, or leave `as` to the model)"
+                "only cell and body have turns (as: calibrated, as: smeared, or leave `as` to the "
+                "model)"
             )
+        if self.representation == CALIBRATED:
+            needed[THREAD] = "in closed forms no rubber bulges between turns (leave out `as`)"
         if self._twists:
             needed[TWIST] = "the closed form has no twist"
         return needed
@@ -173,7 +212,8 @@ class WindingEffect(Effect):
 
     def in_turns(self) -> dict[str, Any]:
         """Every turn by itself."""
-        return {} if self.turns().discrete else {"as": "discrete"}
+        turns = self.turns()
+        return {} if turns.discrete or turns.bulges else {"as": DISCRETE}
 
     def mirror_breaker(self) -> str:
         """A pattern with a hand."""
@@ -186,12 +226,17 @@ class WindingEffect(Effect):
 
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
         """Ribbon and thread, and whether there is room for them."""
-        if self.representation == "smeared":
-            for key in ("width", "lines"):
-                if getattr(self, key) is not None:
-                    text = "no effect on a smeared winding, expected no value"
-                    yield Problem(f"{path}.{key}", text)
-        elif self.width == 0 and (self.lines or 1) > 1:
+        idle = {}
+        if self.bulging is not None:
+            idle = dict.fromkeys(("width", "lines"), "where bulging is given and no cell solved")
+        if self.representation == SMEARED:
+            idle = dict.fromkeys(("width", "lines", "bulging"), "on a smeared winding")
+        elif self.representation == DISCRETE:
+            idle = {"bulging": "where every turn lies by itself"}
+        for key, where in idle.items():
+            if getattr(self, key) is not None:
+                yield Problem(f"{path}.{key}", f"no effect {where}, expected no value")
+        if self.representation != SMEARED and self.width == 0 and (self.lines or 1) > 1:
             yield Problem(f"{path}.lines", f"{self.lines}, expected 1 line where the width is zero")
         wrong = list(self.fiber.problems(f"{path}.fiber"))
         yield from wrong
@@ -236,9 +281,11 @@ class WindingEffect(Effect):
         if kind is None:
             ribbon = self.width is not None or self.lines is not None
             spread = offers is not None and TURNS not in offers and not ribbon
-            kind = "smeared" if spread else "discrete"
+            kind = SMEARED if spread else DISCRETE
+            if self.bulging is not None:
+                kind = CALIBRATED
         update: dict[str, Any] = {"fiber": fiber, "representation": kind}
-        if kind == "discrete":
+        if kind == DISCRETE or (kind == CALIBRATED and self.bulging is None):
             width = fiber.thread().diameter if self.width is None else self.width
             update["width"] = width
             update["lines"] = self.lines or (DEFAULT_LINES if width else 1)
@@ -246,7 +293,7 @@ class WindingEffect(Effect):
 
     def turns(self) -> Turns:
         """Pitch, pattern and thread."""
-        discrete = self.representation != "smeared"
+        discrete = self.representation in (DISCRETE, None)
         thread = self.fiber.thread()
         lines = (self.lines or DEFAULT_LINES) if discrete else 1
         return Turns(
@@ -256,6 +303,7 @@ class WindingEffect(Effect):
             thread.stiffness,
             thread.modulus,
             lines * len(PATTERNS[self.pattern].helices),
+            bulges=self.representation == CALIBRATED,
         )
 
     def fixes_circumference(self) -> bool:
@@ -279,8 +327,29 @@ class WindingEffect(Effect):
         return not self._twists
 
     def beside(self) -> WindingEffect:
-        """The same thread, spread."""
-        return self.model_copy(update={"representation": "smeared", "width": None, "lines": None})
+        """The same thread, spread; calibrated as it is."""
+        if self.representation == CALIBRATED:
+            return self
+        return self.model_copy(update={"representation": SMEARED, "width": None, "lines": None})
+
+    def uncalibrated(self) -> bool:
+        """Where it is to be calibrated and nobody has given the numbers."""
+        return self.representation == CALIBRATED and self.bulging is None
+
+    def in_cell(self) -> WindingEffect:
+        """Every turn by itself."""
+        return self.model_copy(update={"representation": DISCRETE, "bulging": None})
+
+    def with_bulging(self, bulging: Bulging) -> WindingEffect:
+        """Spread, with rubber that bulges; what the cell alone needs is gone."""
+        return self.model_copy(
+            update={
+                "representation": CALIBRATED,
+                "bulging": BulgingSpec.of(bulging),
+                "width": None,
+                "lines": None,
+            }
+        )
 
     def uncertainties(self, straight: bool) -> Iterator[str]:
         """None: the model's own errors were measured with it."""
@@ -304,15 +373,20 @@ class WindingEffect(Effect):
 
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
         """The thread on the faces of the mesh."""
-        from fem.effects.winding import SmearedWinding, Winding
+        from fem.effects.winding import CalibratedWinding, SmearedWinding, Winding
         from geometry.winding.embed import embed
         from geometry.winding.smear import smear
 
-        smeared = self.representation == "smeared"
-        fibers = (smear if smeared else embed)(mesh, site.actuator, self.helix())
-        kind = SmearedWinding if smeared else Winding
-        term = kind(fibers, self.fiber.thread().stiffness, self.tension_only)
-        return Built((term,), (), fibers, smeared)
+        spread = not self.turns().discrete
+        fibers = (smear if spread else embed)(mesh, site.actuator, self.helix())
+        stiffness, slack = self.fiber.thread().stiffness, self.tension_only
+        if self.representation == CALIBRATED:
+            if self.bulging is None:
+                raise ValueError("a winding that is to be calibrated is built after its cell")
+            bulging = self.bulging.bulging()
+            return Built((CalibratedWinding(fibers, stiffness, bulging, slack),), (), fibers, True)
+        kind = SmearedWinding if spread else Winding
+        return Built((kind(fibers, stiffness, slack),), (), fibers, spread)
 
 
 def _rounded_up(length: float) -> float:

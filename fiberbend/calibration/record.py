@@ -1,0 +1,115 @@
+"""What a calibration has found, and how it is said and kept."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from materials.bulging import Bulging
+
+DOUBTFUL = 0.5
+"""Percent left between calibrated section and cell that a user is told of."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Calibration:
+    """Three numbers with which a section gives what its cell gives, and how well.
+
+    Attributes:
+        stiffness: K0, MPa/mm.
+        linear: a1.
+        quadratic: a2.
+        left_percent: greatest difference between section and cell over all states, of pressures
+            for an angle, and of moments or stretches of an actuator kept straight.
+        states: number of states of the cell.
+        strain: greatest k H of these states: curvature times height of the winding.
+        pressure: greatest pressure of these states, MPa.
+        growth: greatest chamber area of these states over that at rest.
+        whole: the cell came to the end of what was asked of it.
+        seconds: that cell and fit have taken.
+    """
+
+    stiffness: float
+    linear: float
+    quadratic: float
+    left_percent: float
+    states: int
+    strain: float
+    pressure: float
+    growth: float
+    whole: bool
+    seconds: float
+
+    def __post_init__(self) -> None:
+        for field in dataclasses.fields(self):
+            value = getattr(self, field.name)
+            kind = {"int": int, "bool": bool}.get(str(field.type), float)
+            if type(value) is not kind or not math.isfinite(value):
+                raise ValueError(f"{field.name} = {value!r}, expected a finite {kind.__name__}")
+
+    def bulging(self) -> Bulging:
+        """The three numbers as the finite-element code takes them."""
+        return Bulging(self.stiffness, self.linear, self.quadratic)
+
+    def numbers(self) -> str:
+        """The three numbers in words."""
+        return (
+            f"K0 {self.stiffness:.3g} MPa/mm, a1 {self.linear:.3g}, a2 {self.quadratic:.3g}, "
+            f"left {self.left_percent:.2f} %"
+        )
+
+    def entries(self) -> dict[str, Any]:
+        """As a mapping of plain values."""
+        return dataclasses.asdict(self)
+
+    @classmethod
+    def read(cls, entries: Mapping[str, Any]) -> Calibration:
+        """From such a mapping.
+
+        Raises:
+            ValueError: it is none.
+        """
+        try:
+            return cls(**entries)
+        except TypeError as error:
+            raise ValueError(str(error)) from None
+
+
+@dataclasses.dataclass(frozen=True)
+class Calibrated:
+    """A calibration of a case, and where it comes from.
+
+    Attributes:
+        found: what was found.
+        digest: of all that enters.
+        kept: it was found before and kept.
+        remarks: what casts doubt on it, a line each.
+    """
+
+    found: Calibration
+    digest: str
+    kept: bool
+    remarks: tuple[str, ...] = ()
+
+    def line(self) -> str:
+        """One line for the user."""
+        how = "before" if self.kept else f"in {self.found.seconds:.1f} s"
+        return f"winding: calibrated by the cell {how} ({self.found.numbers()})"
+
+    def entry(self) -> dict[str, Any]:
+        """The entry 'calibration' of run.json."""
+        found = self.found
+        return {
+            "stiffness_MPa_per_mm": found.stiffness,
+            "linear": found.linear,
+            "quadratic": found.quadratic,
+            "left_percent": found.left_percent,
+            "states": found.states,
+            "up_to_kPa": 1e3 * found.pressure,
+            "digest": self.digest,
+            "kept": self.kept,
+            "seconds": 0.0 if self.kept else found.seconds,
+            "text": self.line(),
+        }
