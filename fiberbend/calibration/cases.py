@@ -13,8 +13,9 @@ from fiberbend.effects.straight import straight_of
 
 PARTS = (0.125, 0.25, 0.5, 0.75, 1.0)
 """Of the greatest curvature: states that are bent."""
-PRESSED = (1 / 3, 2 / 3, 1.0)
-"""Of the pressure there: states that are kept straight, where pressure comes without curvature."""
+PRESSED = (0.3, 0.6)
+"""Of the pressure there: states that are kept straight, where pressure comes without curvature.
+Further on, turns 6 mm apart let the rubber between them wrinkle."""
 _TURN = 0.25
 """Greatest step of the cell, of the way."""
 
@@ -37,28 +38,30 @@ def bent_cell(case: Case, reach: Reach, sign: float = 1.0) -> Case:
     length = _length(case, reach)
     end = sign * reach.strain / height(case) * length
     angles = tuple(part * end for part in PARTS)
-    return _small(case, "cell", length, (inflate(angle=end),), Output(at_angles=angles), _TURN * end)
+    return _small(
+        case, "cell", length, (inflate(angle=end),), _asked(at_angles=angles), _TURN * end
+    )
 
 
 def straight_cell(case: Case, reach: Reach, pressure: float) -> Case:
-    """The same kept straight up to a pressure, MPa."""
+    """The same kept straight at parts of a pressure, MPa."""
     return _straight(case, "cell", reach, pressure)
 
 
 def bent_section(case: Case, reach: Reach, angles: tuple[float, ...]) -> Case:
     """The section at angles of its cell, rad, in their order; its winding has its numbers."""
-    output = Output(at_angles=angles)
+    output = _asked(at_angles=angles)
     return _small(case, "section", _length(case, reach), (inflate(angle=angles[-1]),), output)
 
 
 def straight_section(case: Case, reach: Reach, pressure: float) -> Case:
-    """The same kept straight up to a pressure, MPa."""
+    """The same kept straight at parts of a pressure, MPa."""
     return _straight(case, "section", reach, pressure)
 
 
 def _straight(case: Case, model: str, reach: Reach, pressure: float) -> Case:
-    effects = (inflate(to=pressure), straight_of(()))
-    output = Output(at_pressures=tuple(part * pressure for part in PRESSED))
+    effects = (inflate(to=PRESSED[-1] * pressure), straight_of(()))
+    output = _asked(at_pressures=tuple(part * pressure for part in PRESSED))
     return _small(case, model, _length(case, reach), effects, output)
 
 
@@ -82,14 +85,20 @@ def _small(
     kept = (effect.in_cell() if cell else effect.beside() for effect in case.effects)
     wound = tuple(e for e in kept if e is not None and e.turns() is not None)
     axial = turns_of(case).pitch / (2 * LAYERS)
-    mesh = Mesh(section=CELL, axial=axial) if cell else Mesh(section=SECTION)
+    mesh = {"section": CELL, "axial": axial} if cell else {"section": SECTION}
+    solver = {"tolerance": TOLERANCE, "max_turn": None if turn is None else abs(turn)}
     return case.model_copy(
         update={
             "model": model,
             "actuator": case.actuator.model_copy(update={"length": length}),
             "effects": (*loads, *wound),
-            "mesh": mesh,
-            "solver": Solver(tolerance=TOLERANCE, max_turn=None if turn is None else abs(turn)),
+            "mesh": Mesh().model_copy(update=mesh),
+            "solver": Solver().model_copy(update=solver),
             "output": output,
         }
     )
+
+
+def _asked(**values: tuple[float, ...]) -> Output:
+    """Values at which a march stops."""
+    return Output().model_copy(update=values)

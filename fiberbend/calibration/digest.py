@@ -54,6 +54,7 @@ def content(case: Case, reach: Reach) -> dict[str, Any]:
             if effect.turns() is not None
         ],
         "reach": dataclasses.asdict(reach),
+        "straight": case.straight,
         "mesh": [CELL, LAYERS, SECTION, TOLERANCE],
         "code": _code(),
     }

@@ -21,8 +21,9 @@ class Calibration:
         stiffness: K0, MPa/mm.
         linear: a1.
         quadratic: a2.
-        left_percent: greatest difference between section and cell over all states, of pressures
-            for an angle, and of moments or stretches of an actuator kept straight.
+        bent_percent: greatest difference between section and cell in the pressure for an angle.
+        straight_percent: the same in the moment that keeps them straight; 0 where that is not
+            looked at.
         states: number of states of the cell.
         strain: greatest k H of these states: curvature times height of the winding.
         pressure: greatest pressure of these states, MPa.
@@ -34,7 +35,8 @@ class Calibration:
     stiffness: float
     linear: float
     quadratic: float
-    left_percent: float
+    bent_percent: float
+    straight_percent: float
     states: int
     strain: float
     pressure: float
@@ -53,13 +55,6 @@ class Calibration:
         """The three numbers as the finite-element code takes them."""
         return Bulging(self.stiffness, self.linear, self.quadratic)
 
-    def numbers(self) -> str:
-        """The three numbers in words."""
-        return (
-            f"K0 {self.stiffness:.3g} MPa/mm, a1 {self.linear:.3g}, a2 {self.quadratic:.3g}, "
-            f"left {self.left_percent:.2f} %"
-        )
-
     def entries(self) -> dict[str, Any]:
         """As a mapping of plain values."""
         return dataclasses.asdict(self)
@@ -77,6 +72,20 @@ class Calibration:
             raise ValueError(str(error)) from None
 
 
+def named(numbers: Bulging) -> dict[str, float]:
+    """Three numbers as run.json names them."""
+    return {
+        "stiffness_MPa_per_mm": numbers.stiffness,
+        "linear": numbers.linear,
+        "quadratic": numbers.quadratic,
+    }
+
+
+def words(numbers: Bulging) -> str:
+    """Three numbers with their names and units."""
+    return f"K0 {numbers.stiffness:.3g} MPa/mm, a1 {numbers.linear:.3g}, a2 {numbers.quadratic:.3g}"
+
+
 @dataclasses.dataclass(frozen=True)
 class Calibrated:
     """A calibration of a case, and where it comes from.
@@ -84,28 +93,35 @@ class Calibrated:
     Attributes:
         found: what was found.
         digest: of all that enters.
+        straight: it is for an actuator kept straight.
         kept: it was found before and kept.
         remarks: what casts doubt on it, a line each.
     """
 
     found: Calibration
     digest: str
+    straight: bool
     kept: bool
     remarks: tuple[str, ...] = ()
+
+    @property
+    def left_percent(self) -> float:
+        """Greatest difference between section and cell in what the case asks for."""
+        return self.found.straight_percent if self.straight else self.found.bent_percent
 
     def line(self) -> str:
         """One line for the user."""
         how = "before" if self.kept else f"in {self.found.seconds:.1f} s"
-        return f"winding: calibrated by the cell {how} ({self.found.numbers()})"
+        return f"winding: calibrated by the cell {how} ({words(self.found.bulging())}; left {self.left_percent:.2f} %)"
 
     def entry(self) -> dict[str, Any]:
         """The entry 'calibration' of run.json."""
         found = self.found
         return {
-            "stiffness_MPa_per_mm": found.stiffness,
-            "linear": found.linear,
-            "quadratic": found.quadratic,
-            "left_percent": found.left_percent,
+            **named(found.bulging()),
+            "left_percent": self.left_percent,
+            "bent_percent": found.bent_percent,
+            "straight_percent": found.straight_percent,
             "states": found.states,
             "up_to_kPa": 1e3 * found.pressure,
             "digest": self.digest,

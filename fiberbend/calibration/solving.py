@@ -22,6 +22,8 @@ from fiberbend.models.parts import build
 
 PRESSURE = "pressure"
 _SAME = 1e-9
+_FIRST, _GROW = math.radians(45), 3.0
+"""Steps of uniform bending without contact: the first, and how fast they grow."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -57,11 +59,9 @@ class Small:
         self.scene = Scene(Domain(mesh, MPI.COMM_SELF), parts.effects, model.kinematics(case))
         self._ramps = parts.ramps(self.scene.body.symmetry_factor)
         self._control: Functional = model.observables(case, self.scene).control
-        self._newton = Newton(
-            self.scene, MPI.COMM_SELF, Settings(tolerance=case.solver.tolerance)
-        )
+        self._newton = Newton(self.scene, MPI.COMM_SELF, Settings(tolerance=case.solver.tolerance))
         turn = model.largest_turn(case)
-        rules = Rules(turn=turn, first_turn=min(turn, model.first_turn), memory=model.memory)
+        rules = Rules(turn=turn, first_turn=min(turn, _FIRST), memory=model.memory, grow=_GROW)
         self._march = March(self.scene, self._newton, rules, control=self._control)
 
     def march(self) -> tuple[list[State], Report]:

@@ -290,6 +290,10 @@ class Effect(Spec):
         """Whether it waits for numbers that the cell of its section gives."""
         return False
 
+    def bulges(self) -> Bulging | None:
+        """How stiff rubber is that bulges between its turns; None where that is not given."""
+        return None
+
     def in_cell(self) -> Effect | None:
         """What stands for it in the cell by which a winding is calibrated; None: left out."""
         return None

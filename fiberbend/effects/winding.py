@@ -336,6 +336,10 @@ class WindingEffect(Effect):
         """Where it is to be calibrated and nobody has given the numbers."""
         return self.representation == CALIBRATED and self.bulging is None
 
+    def bulges(self) -> Bulging | None:
+        """As the case or a calibration gives it."""
+        return None if self.bulging is None else self.bulging.bulging()
+
     def in_cell(self) -> WindingEffect:
         """Every turn by itself."""
         return self.model_copy(update={"representation": DISCRETE, "bulging": None})
@@ -383,8 +387,8 @@ class WindingEffect(Effect):
         if self.representation == CALIBRATED:
             if self.bulging is None:
                 raise ValueError("a winding that is to be calibrated is built after its cell")
-            bulging = self.bulging.bulging()
-            return Built((CalibratedWinding(fibers, stiffness, bulging, slack),), (), fibers, True)
+            term = CalibratedWinding(fibers, stiffness, self.bulging.bulging(), slack)
+            return Built((term,), (), fibers, True)
         kind = SmearedWinding if spread else Winding
         return Built((kind(fibers, stiffness, slack),), (), fibers, spread)
 
