@@ -40,7 +40,7 @@ def known(case: Case, store: Store | None = None) -> Calibrated | None:
         store: where to look; the user's own by default.
     """
     store = store or Store()
-    for reach, mark, last in _classes(case):
+    for _reach, mark, last in _classes(case):
         found = store.find(mark)
         if found is None:
             return None

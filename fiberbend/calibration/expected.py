@@ -36,8 +36,8 @@ def expected(case: Case) -> Iterator[str]:
         yield from kept.remarks
         return
     yield (
-        f"to be calibrated by the cell of this section before the run, about {seconds(case):.0f} s, "
-        f"and kept; within {CALIBRATED} % of the cell (docs/evidence/calibration.md)"
+        f"to be calibrated by the cell of this section before the run, about {seconds(case):.0f} "
+        f"s, and kept; within {CALIBRATED} % of the cell (docs/evidence/calibration.md)"
     )
 
 

@@ -45,11 +45,9 @@ class Calibration:
     seconds: float
 
     def __post_init__(self) -> None:
-        for field in dataclasses.fields(self):
-            value = getattr(self, field.name)
-            kind = {"int": int, "bool": bool}.get(str(field.type), float)
-            if type(value) is not kind or not math.isfinite(value):
-                raise ValueError(f"{field.name} = {value!r}, expected a finite {kind.__name__}")
+        for name, value in vars(self).items():
+            if not isinstance(value, int | float) or not math.isfinite(value):
+                raise ValueError(f"{name} = {value!r}, expected a finite number")
 
     def bulging(self) -> Bulging:
         """The three numbers as the finite-element code takes them."""
@@ -112,7 +110,8 @@ class Calibrated:
     def line(self) -> str:
         """One line for the user."""
         how = "before" if self.kept else f"in {self.found.seconds:.1f} s"
-        return f"winding: calibrated by the cell {how} ({words(self.found.bulging())}; left {self.left_percent:.2f} %)"
+        numbers = words(self.found.bulging())
+        return f"winding: calibrated by the cell {how} ({numbers}; left {self.left_percent:.2f} %)"
 
     def entry(self) -> dict[str, Any]:
         """The entry 'calibration' of run.json."""

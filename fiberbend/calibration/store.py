@@ -36,13 +36,16 @@ class Store:
 
     def __init__(self, path: Path | None = None) -> None:
         self.remarks: list[str] = []
+        self._path: Path | None = None
         try:
-            self._path = folders.cache_root().path / FOLDER if path is None else path
-            if why := folders.refusal(self._path):
-                raise folders.MachineError(f"{self._path} is not used for calibrations: {why}")
+            wanted = folders.cache_root().path / FOLDER if path is None else path
         except folders.MachineError as error:
-            self._path = None
             self.remarks.append(str(error))
+            return
+        if why := folders.refusal(wanted):
+            self.remarks.append(f"{wanted} is not used for calibrations: {why}")
+        else:
+            self._path = wanted
 
     def find(self, digest: str) -> Calibration | None:
         """The calibration of a digest, or None where there is none that is whole."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal, Self
 
-from pydantic import Field, model_serializer, model_validator
+from pydantic import Field
 
 from fiberbend.effects.effect import (
     THREAD,
@@ -20,8 +20,9 @@ from fiberbend.effects.effect import (
     Site,
     Turns,
 )
-from fiberbend.schema.problems import Problem, found, meant
-from fiberbend.schema.quantities import Length, LengthOrZero, Modulus, PenaltyStiffness, Spec
+from fiberbend.effects.thread import BulgingSpec, FiberSpec
+from fiberbend.schema.problems import Problem
+from fiberbend.schema.quantities import Length, LengthOrZero
 from fiberbend.schema.units import show
 from geometry.winding.patterns import PATTERNS, least_pitch, turn_spacing
 
@@ -31,107 +32,19 @@ if TYPE_CHECKING:
     from geometry.mesh.data import Floats, MeshData
     from geometry.winding.helix import Winding
     from materials.bulging import Bulging
-    from materials.fiber import Fiber
 else:
     PatternName = Literal[tuple(PATTERNS)]
 
+Kind = Literal["discrete", "calibrated", "smeared"]
+
 DEFAULT_LINES = 5
-DISCRETE, CALIBRATED, SMEARED = "discrete", "calibrated", "smeared"
+DISCRETE: Kind = "discrete"
+CALIBRATED: Kind = "calibrated"
+SMEARED: Kind = "smeared"
 _POINTS_A_TURN = 24
 _ROUNDING = 1e-9
 _STIFF = 1e3
 """Modulus in MPa from which a thread hardly stretches."""
-
-
-class FiberSpec(Spec):
-    """The thread of a winding: a name, or modulus and diameter."""
-
-    name: str | None = None
-    """A named fiber; written alone, `fiber: kevlar`."""
-    modulus: Modulus | None = None
-    """Young's modulus of the thread."""
-    diameter: Length | None = None
-    """Diameter of the thread."""
-    radius_factor: float | None = Field(default=None, gt=0, le=1)
-    """Part of the radius that carries; 0.5 where the paper halves it, 1 by default."""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_name(cls, data: Any) -> Any:
-        return {"name": data} if isinstance(data, str) else data
-
-    @model_serializer(mode="wrap")
-    def _to_name(self, write: Any) -> Any:
-        return self.name if self.name is not None else write(self)
-
-    @classmethod
-    def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict[str, Any]:
-        """A name alone is allowed too."""
-        return {"anyOf": [{"type": "string"}, handler.resolve_ref_schema(handler(schema))]}
-
-    def thread(self) -> Fiber:
-        """The thread as the geometry takes it; a described one carries with all of its radius.
-
-        Raises:
-            ValueError: an unknown name, or one without modulus and diameter.
-        """
-        from materials.fiber import FIBERS, Fiber
-
-        if self.name is not None:
-            if self.name not in FIBERS:
-                known = ", ".join(FIBERS)
-                raise ValueError(f"fiber {self.name!r} is unknown: expected one of {known}")
-            return FIBERS[self.name]
-        if self.modulus is None or self.diameter is None:
-            raise ValueError("a fiber without a name needs modulus and diameter")
-        factor = 1.0 if self.radius_factor is None else self.radius_factor
-        return Fiber(self.modulus, self.diameter, factor, source="the case")
-
-    def problems(self, path: str) -> Iterator[Problem]:
-        """What is missing, unknown or without effect."""
-        own = ("modulus", "diameter", "radius_factor")
-        if self.name is None:
-            for key in own[:2]:
-                if getattr(self, key) is None:
-                    text = f"missing, expected the {key} of an unnamed fiber"
-                    yield Problem(f"{path}.{key}", text)
-            return
-        from materials.fiber import FIBERS
-
-        if self.name not in FIBERS:
-            names = ", ".join(FIBERS)
-            wanted = f"expected {names}, or modulus and diameter{meant(self.name, FIBERS)}"
-            yield Problem(path, f"{found(self.name)}, {wanted}")
-        for key in own:
-            if getattr(self, key) is not None:
-                yield Problem(f"{path}.{key}", "no effect on a named fiber, expected no value")
-
-
-class BulgingSpec(Spec):
-    """How stiff rubber is against bulging between the turns, K0 [1 + a1 (λ_z − 1) + a2 (λ_z − 1)²].
-
-    λ_z is the stretch along the axis at a point of the winding.
-    """
-
-    stiffness: PenaltyStiffness
-    """K0: pressure per depth of the bulge, at rest."""
-    linear: float = 0.0
-    """a1: how it grows with the stretch along the axis."""
-    quadratic: float = 0.0
-    """a2: how it grows with the square of that."""
-
-    @classmethod
-    def of(cls, bulging: Bulging) -> BulgingSpec:
-        """From three numbers."""
-        return cls.model_construct(
-            stiffness=bulging.stiffness, linear=bulging.linear, quadratic=bulging.quadratic
-        )
-
-    def bulging(self) -> Bulging:
-        """As the finite-element code takes it."""
-        from materials.bulging import Bulging
-
-        return Bulging(self.stiffness, self.linear, self.quadratic)
 
 
 class WindingEffect(Effect):
@@ -145,9 +58,7 @@ class WindingEffect(Effect):
     """Length along the axis of one turn."""
     fiber: FiberSpec
     """A named fiber or its modulus and diameter."""
-    representation: Literal["discrete", "calibrated", "smeared"] | None = Field(
-        default=None, alias="as"
-    )
+    representation: Kind | None = Field(default=None, alias="as")
     """Every turn by itself (discrete); the same thread spread over its surface, with rubber that
     bulges between the turns as in the cell of this section, which is solved before (calibrated); or
     spread alone (smeared). By default every turn where the model has turns, and smeared in the
@@ -381,16 +292,18 @@ class WindingEffect(Effect):
         from geometry.winding.embed import embed
         from geometry.winding.smear import smear
 
-        spread = not self.turns().discrete
-        fibers = (smear if spread else embed)(mesh, site.actuator, self.helix())
+        actuator, helix = site.actuator, self.helix()
         stiffness, slack = self.fiber.thread().stiffness, self.tension_only
-        if self.representation == CALIBRATED:
-            if self.bulging is None:
-                raise ValueError("a winding that is to be calibrated is built after its cell")
-            term = CalibratedWinding(fibers, stiffness, self.bulging.bulging(), slack)
-            return Built((term,), (), fibers, True)
-        kind = SmearedWinding if spread else Winding
-        return Built((kind(fibers, stiffness, slack),), (), fibers, spread)
+        if self.turns().discrete:
+            turns = embed(mesh, actuator, helix)
+            return Built((Winding(turns, stiffness, slack),), (), turns)
+        spread = smear(mesh, actuator, helix)
+        if self.representation == SMEARED:
+            return Built((SmearedWinding(spread, stiffness, slack),), (), spread, True)
+        if self.bulging is None:
+            raise ValueError("a winding that is to be calibrated is built after its cell")
+        term = CalibratedWinding(spread, stiffness, self.bulging.bulging(), slack)
+        return Built((term,), (), spread, True)
 
 
 def _rounded_up(length: float) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +27,7 @@ class Own:
         lines: of its log.
     """
 
-    entries: Mapping[str, Any] = dataclasses.field(default_factory=dict)
+    entries: dict[str, Any] = dataclasses.field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     lines: tuple[str, ...] = ()
 
@@ -55,6 +54,7 @@ def calibrated(case: Case, comm: Any, progress: Progress, resumed: Path | None) 
     progress.phase("calibration")
     before, found = on_rank_0(comm, lambda: _numbers(case, progress, resumed))
     if found is None:
+        assert before is not None
         return with_bulging(case, before), _given(before)
     line = found.line()
     progress.detail(line)
