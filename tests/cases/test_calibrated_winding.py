@@ -22,6 +22,8 @@ from fiberbend.schema.problems import CaseError
 from materials.bulging import Bulging
 from tests.run.conftest import small
 
+SPREAD: dict[str, Any] = {"as": "smeared"}
+KNOWN: dict[str, Any] = {"as": None, "bulging": {"stiffness": "0.7 MPa/mm", "quadratic": 6.0}}
 FOUND = Calibration(
     stiffness=0.6,
     linear=1.2,
@@ -37,7 +39,7 @@ FOUND = Calibration(
 )
 
 
-def wound(model: str = "section", load: dict[str, str] | None = None, **winding: Any) -> Case:
+def wound(model: str = "section", load: dict[str, str] | None = None, /, **winding: Any) -> Case:
     """The small case with settings of its winding, calibrated by default."""
     made = {"pattern": "double-helix", "pitch": "3 mm", "fiber": "kevlar", "as": "calibrated"}
     effects = [{"pressure": load or {"to": "60 kPa"}}, {"winding": made | winding}]
@@ -80,7 +82,7 @@ def test_a_thread_without_curved_parts_is_refused() -> None:
 
 
 def test_numbers_alone_mean_calibrated_and_need_no_cell() -> None:
-    case = wound(**{"as": None, "bulging": {"stiffness": "0.7 MPa/mm", "quadratic": 6.0}})
+    case = wound(**KNOWN)
     winding = case.effects[1]
     assert not waits(case)
     assert winding.bulges() == Bulging(0.7, 0.0, 6.0)
@@ -107,7 +109,7 @@ def test_the_section_beside_has_the_same_numbers(model: str) -> None:
 
 
 def test_a_smeared_winding_can_be_made_to_wait() -> None:
-    case = as_calibrated(wound(**{"as": "smeared"}))
+    case = as_calibrated(wound("section", None, **SPREAD))
     assert waits(case)
     assert case == wound()
 
@@ -158,7 +160,7 @@ def changed(change: dict[str, Any]) -> Case:
 def test_a_class_holds_the_angles_of_the_case() -> None:
     length, height = 24.0, 12.0
     for degrees in (10.0, 50.0, 60.0, 100.0):
-        case = wound(load={"angle": f"{degrees} deg"})
+        case = wound("section", {"angle": f"{degrees} deg"})
         strain = math.radians(degrees) / length * height
         found = reach.first(case)
         assert strain <= 1.02 * found.strain
@@ -166,10 +168,10 @@ def test_a_class_holds_the_angles_of_the_case() -> None:
 
 
 def test_what_lies_beyond_the_states_is_said() -> None:
-    assert reach.short_of(wound(load={"to": "190 kPa"}), FOUND) == ""
-    assert reach.short_of(wound(load={"to": "250 kPa"}), FOUND) == "beyond 200 kPa"
-    assert "bent further" in reach.short_of(wound(load={"angle": "100 deg"}), FOUND)
-    assert "beyond" in reach.short_of(wound(load={"volume": "9 mL"}), FOUND)
+    assert reach.short_of(wound("section", {"to": "190 kPa"}), FOUND) == ""
+    assert reach.short_of(wound("section", {"to": "250 kPa"}), FOUND) == "beyond 200 kPa"
+    assert "bent further" in reach.short_of(wound("section", {"angle": "100 deg"}), FOUND)
+    assert "beyond" in reach.short_of(wound("section", {"volume": "9 mL"}), FOUND)
 
 
 # --- what is kept -----------------------------------------------------------------------------
@@ -185,7 +187,8 @@ def keep(store: Store, case: Case) -> Path:
     with store.alone(mark(case)):
         store.keep(mark(case), FOUND, content(case, reach.first(case)))
     assert not store.remarks
-    (file,) = store._path.glob("*.json") if store._path else ()
+    assert store._path is not None
+    (file,) = store._path.glob("*.json")
     return file
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -46,14 +45,14 @@ def wound(model: str = "section", **changes: Any) -> dict[str, Any]:
 
 
 @pytest.fixture
-def coarse(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Store]:
+def coarse(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Store:
     """A cell of two layers with two states bent and one straight, and a cache of its own."""
     monkeypatch.setattr(cases, "LAYERS", 2)
     monkeypatch.setattr(cases, "PARTS", (0.25, 0.5))
     monkeypatch.setattr(cases, "PRESSED", (0.5,))
     store = tmp_path / FOLDER
     monkeypatch.setattr(calibrating, "Store", lambda: Store(store))
-    yield Store(store)
+    return Store(store)
 
 
 def test_the_section_gives_what_its_cell_gives() -> None:
