@@ -83,6 +83,7 @@ def answer(case: Case, rows: Sequence[col.Row], run: Mapping[str, Any]) -> Answe
         *_critical(run),
         *_strain(run),
         *_errors(case, model),
+        *_calibrated(run),
         *_measured(run),
     ]
     return Answer(
@@ -316,6 +317,13 @@ def _errors(case: Case, model: ModelKind) -> Iterator[Entry]:
     """How far the model's answer is expected to be off, with the source."""
     for index, line in enumerate(errors(case, model)):
         yield Entry("" if index else "expected error", line)
+
+
+def _calibrated(run: Mapping[str, Any]) -> Iterator[Entry]:
+    """By what numbers the rubber between the turns of a winding bulges, and how good they are."""
+    text = (run.get("calibration") or {}).get("text")
+    if text:
+        yield Entry("", text)
 
 
 def _measured(run: Mapping[str, Any]) -> Iterator[Entry]:
