@@ -57,8 +57,9 @@ def extrapolate(
     Returns:
         With three meshes and more, f₀ of the finest three, uncertain by all that is extrapolated;
         with four and more by as much as f₀ of the three before differs, from a quarter of what is
-        extrapolated to all of it. Where values do not fall into one direction, or do not settle,
-        the last of them, uncertain by their spread.
+        extrapolated to all of it. Where they turn round the last of them, uncertain by the last
+        step, or by their spread where steps do not become smaller; where they settle slower than
+        with the least of `ORDERS` the last of them, uncertain by what that order would add.
 
     Raises:
         ValueError: sizes that do not fall, or other numbers of sizes and values.
@@ -131,18 +132,22 @@ def _of_two(sizes: Sequence[float], values: Sequence[float], order: float | None
 
 
 def _of_three(sizes: Sequence[float], values: Sequence[float]) -> Limit:
+    coarse, fine = values[0] - values[1], values[1] - values[2]
     spread = max(values) - min(values)
+    settling = abs(fine) < abs(coarse)
     p = observed_order(sizes, values)
     if p is None:
-        return Limit(values[-1], spread, remark="not monotone")
+        # steps that turn round and become smaller have the limit between them
+        return Limit(values[-1], abs(fine) if settling else spread, remark="not monotone")
     if p < ORDERS[0]:
-        return Limit(values[-1], ASSUMED_FACTOR * spread, remark="does not settle")
+        slow = abs(_beyond(sizes[1:], values[1:], ORDERS[0]))
+        uncertain = slow if settling else max(slow, ASSUMED_FACTOR * spread)
+        return Limit(values[-1], uncertain, remark="does not settle")
     used = min(p, ORDERS[1])
     beyond = _beyond(sizes[1:], values[1:], used)
     if used < p:
         # faster than the elements can be: the last step tells as much as the rule
-        uncertain, remark = abs(values[1] - values[2]), f"order above {used:g}"
-        return Limit(values[-1] + beyond, uncertain, remark=remark)
+        return Limit(values[-1] + beyond, abs(fine), remark=f"order above {used:g}")
     return Limit(values[-1] + beyond, abs(beyond), p)
 
 
