@@ -1,7 +1,7 @@
 """What each effect adds in unknowns and seconds: runs/prices.json, a part of docs/accuracy.md.
 
-Every scene is the baseline's body at one mesh and one load, with an effect and without it, each in a
-process of its own, in turns; of each the least processor time counts. Run it on an idle machine:
+Every scene is the baseline's body at one mesh and one load, with an effect and without it, each in
+a process of its own, in turns; of each the least processor time counts. On an idle machine:
 `make accuracy`, or `python bench/prices.py --rounds 1 --axial "16 mm"` for a quick look.
 """
 
@@ -28,7 +28,7 @@ BASE = (
     *("output={}", "effects.0.pressure.to=50 kPa", "effects.1.winding.as=smeared"),
     *("model=body", *BARE),
 )
-"""50 kPa bend the baseline to a right angle; the winding is spread, so that long elements will do."""
+"""50 kPa bend the baseline to a right angle; a winding that is spread takes long elements."""
 
 
 @dataclasses.dataclass(frozen=True)

@@ -8,22 +8,24 @@ from typing import Any
 
 from fiberbend.drawing.axes import RED, Room, fit, legend, new_axes
 from fiberbend.drawing.page import any_sign, own_style, save
-from fiberbend.drawing.style import DEFAULT, Style
+from fiberbend.drawing.style import Style
 from fiberbend.ladder.advice import pareto
 from fiberbend.ladder.errors import Judged, Judgement
 from fiberbend.ladder.rungs import Family
-from fiberbend.ladder.words import percent, short, title
+from fiberbend.ladder.words import percent, short, short_mesh, title
 from fiberbend.states.snapshot import Target
 
 _COLORS = ("#1f5a99", "#2e7d32", "#a8641a", "#7b4fa3", "#b8860b", "#0b7a75", "#8c2d5a", "#5a6b2f")
 _MARKS = ("o", "s", "^", "D", "v", "P", "X", "h")
 _FLOOR = 1e-3
 """Percent: the least error that the axis shows; what is less is drawn there."""
+PAGE = Style(height=210.0)
+"""Higher than other pictures: a legend of many families stands below the axes."""
 _ROOM = 1.6
 """Factor of time and error that the axes leave free around the points."""
 
 
-def draw(judgement: Judgement, heading: str, target: Target, style: Style = DEFAULT) -> None:
+def draw(judgement: Judgement, heading: str, target: Target, style: Style = PAGE) -> None:
     """Draw every rung with an error; hollow where its mesh error is not known.
 
     Args:
@@ -37,7 +39,11 @@ def draw(judgement: Judgement, heading: str, target: Target, style: Style = DEFA
         return
     with own_style(), any_sign():
         page, axes = new_axes(
-            style, heading, None, "time of the whole process (s)", "error, mesh and model (%)"
+            style,
+            heading,
+            None,
+            "time of the whole process (s); beside the points mesh.section / mesh.axial",
+            "error, mesh and model (%)",
         )
         axes.set_xscale("log")
         axes.set_yscale("log")
@@ -55,17 +61,13 @@ def draw(judgement: Judgement, heading: str, target: Target, style: Style = DEFA
         names = {each.record.name for each in best}
         for each in shown:
             if each.record.name not in names:
-                free.write(_mesh(each), *_place(each), size=8)
+                # the legend has its family
+                free.write(short_mesh(each.rung) or each.rung.family.model, *_place(each), size=8)
         save(page, target, style)
 
 
 def _place(judged: Judged) -> tuple[float, float]:
     return judged.record.wall_s, max(judged.worst(), _FLOOR)
-
-
-def _mesh(judged: Judged) -> str:
-    """The mesh of a rung alone: the legend has its family."""
-    return short(judged.rung).removeprefix(judged.rung.family.model).strip() or "–"
 
 
 def _limits(axes: Any, shown: Sequence[Judged], judgement: Judgement) -> None:

@@ -38,11 +38,17 @@ def short(rung: Rung) -> str:
     parts = [family.model, family.winding, _SHORT.get(family.element, family.element)]
     if family.half is False:
         parts.append("whole")
+    return " ".join(filter(None, [*parts, short_mesh(rung)]))
+
+
+def short_mesh(rung: Rung) -> str:
+    """The mesh of a rung on a picture: mesh.section / mesh.axial."""
+    parts = []
     if SECTION in rung.mesh:
         parts.append(str(rung.case.mesh.section))
     if AXIAL in rung.mesh:
         parts.append(show(rung.case.mesh.axial, "length"))
-    return " ".join(filter(None, parts))
+    return " / ".join(parts)
 
 
 def settings(rung: Rung) -> str:

@@ -27,21 +27,10 @@ def record(rung: Rung, values: Mapping[str, float], wall_s: float | None = None)
     """What a rung might have given."""
     wall = rung.seconds if wall_s is None else wall_s
     mesh = {name: float(size) for name, size in rung.mesh.items()}
+    times = (wall, wall, wall / 2, wall / 2)
     return Record(
         *(rung.name, dataclasses.asdict(rung.family), mesh, rung.unknowns, dict(values)),
-        *(
-            "converged",
-            "",
-            wall,
-            wall,
-            wall / 2,
-            wall / 2,
-            10,
-            40,
-            rung.memory_mb,
-            key_of(rung),
-            {},
-        ),
+        *("converged", "", *times, 10, 40, rung.memory_mb, key_of(rung), {}),
     )
 
 

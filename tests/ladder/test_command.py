@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from fiberbend.cli import main
+from fiberbend.ladder.asked import asked
 from fiberbend.ladder.command import Options, duration, run_ladder
 from fiberbend.ladder.record import FAILED, LATE, Record, Store
 from fiberbend.ladder.rungs import Rung, ladder
@@ -35,9 +36,8 @@ class Solver:
         self._act, self._at = act, at
 
     def __call__(self, rung: Rung, most_s: float | None, verbose: bool) -> Record:
+        """Its record, or what is to happen."""
         self.names.append(rung.name)
-        from fiberbend.ladder.asked import asked
-
         found = record(rung, {each.name: truth(rung, each) for each in asked(rung.case)})
         if not self._at or self._at not in rung.name:
             return found

@@ -8,7 +8,6 @@ from typing import Any
 
 import pytest
 
-from fiberbend.drawing.style import DEFAULT
 from fiberbend.ladder import picture
 from fiberbend.ladder.advice import pareto
 from fiberbend.ladder.words import short
@@ -21,7 +20,7 @@ def page() -> Any:
     pages: list[Any] = []
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(picture, "save", lambda page, target, style: pages.append(page))
-        picture.draw(judged(), "A ladder", io.BytesIO(), DEFAULT)
+        picture.draw(judged(), "A ladder", io.BytesIO())
     return pages[0]
 
 
