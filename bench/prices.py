@@ -2,7 +2,7 @@
 
 Every scene is the baseline's body at one mesh and one load, with an effect and without it, each in
 a process of its own, in turns; of each the least processor time counts. On an idle machine:
-`make accuracy`, or `python bench/prices.py --rounds 1 --axial "16 mm"` for a quick look.
+`make accuracy`, or `python -m bench.prices --rounds 1 --axial "16 mm"` for a quick look.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ def measure(axial: str, rounds: int) -> dict[str, Any]:
                 flush=True,
             )
     return {
-        "command": f'python bench/prices.py --rounds {rounds} --axial "{axial}"',
+        "command": f'python -m bench.prices --rounds {rounds} --axial "{axial}"',
         "axial": axial,
         "rounds": rounds,
         "machine": origin.machine(),

@@ -28,8 +28,10 @@ from fiberbend.schema.units import show
 BARE = (
     *("output.pictures=false", "output.fields=false", "output.report=false"),
     *("output.animation=false", "compare=[]"),
+    # an accuracy that is asked for would choose model and mesh itself
+    *(["accuracy=null"] if "accuracy" in Case.model_fields else []),
 )
-"""What every rung is solved with: times without drawing."""
+"""What every rung is solved with: times without drawing, and the mesh that it names."""
 _LAYERS = (0.5, 1.0, 2.0)
 """Elements along the axis, over those that a model needs to resolve a turn."""
 _SPREAD = 0.8
