@@ -26,11 +26,23 @@ def of_case(path: Path = CASE) -> Ladder:
 def record(rung: Rung, values: Mapping[str, float], wall_s: float | None = None) -> Record:
     """What a rung might have given."""
     wall = rung.seconds if wall_s is None else wall_s
-    mesh = {name: float(size) for name, size in rung.mesh.items()}
-    times = (wall, wall, wall / 2, wall / 2)
     return Record(
-        *(rung.name, dataclasses.asdict(rung.family), mesh, rung.unknowns, dict(values)),
-        *("converged", "", *times, 10, 40, rung.memory_mb, key_of(rung), {}),
+        name=rung.name,
+        family=dataclasses.asdict(rung.family),
+        mesh={name: float(size) for name, size in rung.mesh.items()},
+        unknowns=rung.unknowns,
+        values=dict(values),
+        status="converged",
+        reason="",
+        wall_s=wall,
+        cpu_s=wall,
+        solve_wall_s=wall / 2,
+        solve_cpu_s=wall / 2,
+        load_steps=10,
+        iterations=40,
+        peak_memory_MB=rung.memory_mb,
+        key=key_of(rung),
+        provenance={},
     )
 
 
