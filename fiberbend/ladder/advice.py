@@ -44,7 +44,9 @@ def advice(judgement: Judgement, goals: Sequence[float] = GOALS) -> str:
     parts = []
     for goal in goals:
         # a reference that is uncertain lends its uncertainty to every error
-        fit = next((each for each in best if each.worst() + known <= goal), None)
+        able = [each for each in judgement.rungs if not each.flaw]
+        fits = [each for each in able if each.worst() + known <= goal]
+        fit = min(fits, key=lambda each: each.record.wall_s, default=None)
         if fit is not None:
             parts.append(f"for {number(goal)} % take {take(fit)}")
             continue

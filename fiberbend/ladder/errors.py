@@ -12,13 +12,15 @@ import math
 import statistics
 from collections.abc import Iterator, Mapping, Sequence
 
-from fiberbend.case.names import MODELS
 from fiberbend.ladder.asked import Asked
 from fiberbend.ladder.record import Record
 from fiberbend.ladder.richardson import Limit, extrapolate, observed_order
 from fiberbend.ladder.rungs import Family, Rung
+from fiberbend.models.choice import MODELS
 
 _FEW = 3
+ORDER = tuple(MODELS)
+"""Models from the cheapest to the dearest."""
 Solved = tuple[Rung, Record]
 
 
@@ -267,6 +269,9 @@ def _reference(
     rank = {}
     for family, found in limits.items():
         sizes = [each.limit for each in found.values()]
+        if MODELS[family.model].elements() is None:
+            # a closed form knows itself to all digits, and nothing else
+            continue
         if not all(limit.value and math.isfinite(limit.uncertainty) for limit in sizes):
             continue
         discrete = any(
@@ -275,5 +280,5 @@ def _reference(
             if rung.family.discretisation == family
         )
         sharp = max(limit.uncertainty / abs(limit.value) for limit in sizes)
-        rank[family] = (MODELS.index(family.model), discrete, len(found), -sharp)
+        rank[family] = (ORDER.index(family.model), discrete, len(found), -sharp)
     return max(rank, key=lambda family: rank[family], default=None)

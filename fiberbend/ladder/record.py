@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import json
 import math
 from pathlib import Path
@@ -92,13 +93,19 @@ def _values(data: dict[str, Any]) -> list[Any]:
     return list(values.values())
 
 
+@functools.cache
+def _commit() -> str:
+    """The commit with which this process began, whatever is checked out meanwhile."""
+    return origin.commit(Path(__file__).resolve().parents[2]) or ""
+
+
 def key_of(rung: Rung) -> dict[str, str]:
     """What a record of a rung holds for: case, the program's version and commit, machine."""
     machine = origin.machine()
     return {
         "case": rung.digest,
         "version": __version__,
-        "commit": origin.commit(Path(__file__).resolve().parents[2]) or "",
+        "commit": _commit(),
         "machine": f"{machine['processor']}, {machine['usable_cores']} cores",
     }
 

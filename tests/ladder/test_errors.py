@@ -104,6 +104,13 @@ def test_nothing_to_compare() -> None:
     assert advice(judgement).startswith("No advice")
 
 
+def test_a_closed_form_is_no_reference() -> None:
+    alone = [pair for pair in solved() if pair[0].family.model == "analytic"]
+    assert judge(asked(of_case().rungs[0].case), alone).reference is None
+    body = [pair for pair in solved() if pair[0].family.model == "body"][:1]
+    assert judge(asked(of_case().rungs[0].case), [*alone, *body]).reference is None
+
+
 def test_front() -> None:
     points = [(1.0, 5.0), (2.0, 5.0), (2.0, 1.0), (3.0, 2.0), (9.0, 0.1), (0.5, 30.0)]
     assert front(points) == [5, 0, 2, 4]
@@ -136,6 +143,16 @@ def test_advice_names_rung_time_and_what_to_type() -> None:
     case = read_case(ROOT / "cases" / "free_bending.yaml", [word.strip("'") for word in typed])
     assert case.model == "cell"
     assert case.mesh.axial == pytest.approx(0.75)
+
+
+def test_advice_takes_the_quickest_that_is_sure_though_it_lies_in_the_band() -> None:
+    judgement = judged()
+    known = judgement.known_to()
+    goal = 1.02 * (known + min(each.worst() for each in judgement.rungs))
+    assert known < goal
+    text = advice(judgement, goals=(goal,))
+    assert text.startswith("For ")
+    assert " take " in text
 
 
 def test_advice_does_not_promise_what_the_reference_does_not_know() -> None:
