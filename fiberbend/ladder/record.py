@@ -37,8 +37,9 @@ class Record:
         values: what the case asks for, by the names of its columns; what was not reached is absent.
         status: 'converged', 'stopped' or 'failed'; 'late' before it is kept.
         reason: why not converged.
-        wall_s: of the whole process, s.
-        cpu_s: processor time of the whole process and of those it started, s.
+        wall_s: of the whole process, s, with what is done once and was kept before.
+        cpu_s: processor time of the whole process and of those it started, s; likewise.
+        once_s: part of both that is done once for many runs and kept: the calibration of a winding.
         solve_wall_s: of the load steps alone, s.
         solve_cpu_s: processor time of the load steps alone, s.
         load_steps: how many.
@@ -57,6 +58,7 @@ class Record:
     reason: str
     wall_s: float
     cpu_s: float
+    once_s: float
     solve_wall_s: float
     solve_cpu_s: float
     load_steps: int
@@ -80,7 +82,13 @@ class Record:
         names = {field.name for field in dataclasses.fields(cls)}
         if not isinstance(data, dict) or data.keys() != names:
             raise ValueError("no record of a rung")
-        numbers = [data["wall_s"], data["cpu_s"], data["peak_memory_MB"], *_values(data)]
+        numbers = [
+            data["wall_s"],
+            data["cpu_s"],
+            data["once_s"],
+            data["peak_memory_MB"],
+            *_values(data),
+        ]
         if not all(isinstance(value, int | float) and math.isfinite(value) for value in numbers):
             raise ValueError("a number that is none")
         return cls(**data)

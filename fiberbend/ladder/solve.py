@@ -74,6 +74,7 @@ def _once(rung: Rung, most_s: float | None, verbose: bool) -> tuple[Record, bool
             said = errors.read().decode(errors="replace").strip().splitlines()
         found, own = _json(run / RUN_FILE), _json(notes)
         rows = read_history(run / HISTORY_FILE) if (run / HISTORY_FILE).exists() else []
+    once, kept = _once_s(found)
     status, reason = _status(found, ended, said, most_s)
     values = {
         each.name: value
@@ -88,8 +89,9 @@ def _once(rung: Rung, most_s: float | None, verbose: bool) -> tuple[Record, bool
         values=values if status not in (FAILED, LATE) else {},
         status=status,
         reason=reason,
-        wall_s=round(ended.wall_s, 3),
-        cpu_s=round(ended.usage.ru_utime + ended.usage.ru_stime, 3),
+        wall_s=round(ended.wall_s + kept, 3),
+        cpu_s=round(ended.usage.ru_utime + ended.usage.ru_stime + kept, 3),
+        once_s=round(once, 3),
         solve_wall_s=round((found.get("wall_s") or {}).get("solve", 0.0), 3),
         solve_cpu_s=round(own.get("cpu_s", {}).get("solve", 0.0), 3),
         load_steps=int(found.get("load_steps") or 0),
@@ -110,6 +112,18 @@ def _mesh(rung: Rung) -> dict[str, float]:
     if AXIAL in rung.mesh:
         found["axial_mm"] = rung.case.mesh.axial
     return found
+
+
+def _once_s(run: dict[str, Any]) -> tuple[float, float]:
+    """Seconds of what a run needs once and keeps, and those of it that an earlier run has spent.
+
+    The entry `calibration` of run.json says what a calibration took (`took_seconds`), and what of
+    it this run has spent (`seconds`).
+    """
+    entry = run.get("calibration") or {}
+    spent = float(entry.get("seconds") or 0.0)
+    took = float(entry.get("took_seconds") or spent)
+    return took, took - spent
 
 
 def _status(

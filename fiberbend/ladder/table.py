@@ -15,7 +15,7 @@ from fiberbend.ladder.record import Record
 from fiberbend.ladder.rungs import Missing, Rung
 from fiberbend.ladder.words import mesh_words, percent, settings, title
 
-_COUNTS = ("wall_s", "cpu_s", "solve_wall_s", "solve_cpu_s", "unknowns", "load_steps")
+_COUNTS = ("wall_s", "cpu_s", "once_s", "solve_wall_s", "solve_cpu_s", "unknowns", "load_steps")
 _MORE = ("iterations", "peak_memory_MB")
 
 
@@ -69,7 +69,7 @@ def as_markdown(
     """Advice, rungs by time, limits of the families, and what is not there, for a reader."""
     lines = [f"# {heading}", "", advice(judgement), "", *_reference(judgement), ""]
     lines += [*rung_table(judgement), "", *limit_table(judgement), ""]
-    lines += _absent(solved, missing)
+    lines += [*_once(solved), *_absent(solved, missing)]
     return "\n".join(lines).rstrip() + "\n"
 
 
@@ -111,6 +111,17 @@ def _reference(judgement: Judgement) -> list[str]:
         f"{percent(judgement.known_to())}; the greatest over all that the case asks for, mesh and "
         "model added without regard to their signs. In bold: no other is quicker and more exact."
     ]
+
+
+def _once(solved: Sequence[tuple[Rung, Record]]) -> Iterator[str]:
+    """What of the times is spent once for many runs."""
+    longest = max((record.once_s for _, record in solved), default=0.0)
+    if longest > 0:
+        yield (
+            f"Times include {longest:.1f} s at most of a calibration by the cell, which is done once "
+            "for a section and kept: `once_s` in the table."
+        )
+        yield ""
 
 
 def _limit(found: FamilyLimit | None) -> str:

@@ -36,6 +36,7 @@ def record(rung: Rung, values: Mapping[str, float], wall_s: float | None = None)
         reason="",
         wall_s=wall,
         cpu_s=wall,
+        once_s=0.0,
         solve_wall_s=wall / 2,
         solve_cpu_s=wall / 2,
         load_steps=10,

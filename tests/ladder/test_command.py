@@ -19,7 +19,7 @@ from fiberbend.ladder.asked import asked
 from fiberbend.ladder.command import Options, duration, run_ladder
 from fiberbend.ladder.record import FAILED, LATE, Record, Store
 from fiberbend.ladder.rungs import Rung, ladder
-from fiberbend.ladder.solve import solve
+from fiberbend.ladder.solve import _once_s, solve
 from fiberbend.schema.problems import CaseError
 from tests.conftest import ROOT
 from tests.ladder.parts import CASE, record, truth
@@ -342,6 +342,13 @@ def test_a_signal_ends_it_in_order(tmp_path: Path) -> None:
     assert first.wait(60) == 128 + signal.SIGINT
     assert "interrupted; the same command goes on where it was\n" in said
     assert list((out / "rungs").glob("*.json"))
+
+
+def test_what_is_done_once_counts_in_every_rung() -> None:
+    assert _once_s({}) == (0.0, 0.0)
+    assert _once_s({"calibration": {"seconds": 4.0, "took_seconds": 4.0}}) == (4.0, 0.0)
+    assert _once_s({"calibration": {"seconds": 0.0, "took_seconds": 4.0}}) == (4.0, 4.0)
+    assert _once_s({"calibration": {"stiffness_MPa_per_mm": 0.7}}) == (0.0, 0.0)
 
 
 def test_a_rung_that_takes_too_long_is_stopped() -> None:
