@@ -118,7 +118,7 @@ def _once(solved: Sequence[tuple[Rung, Record]]) -> Iterator[str]:
     longest = max((record.once_s for _, record in solved), default=0.0)
     if longest > 0:
         yield (
-            f"Times include {longest:.1f} s at most of a calibration by the cell, which is done once "
+            f"Times include up to {longest:.1f} s of a calibration by the cell, which is done once "
             "for a section and kept: `once_s` in the table."
         )
         yield ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import functools
 import json
 import os
 import signal
@@ -18,7 +19,7 @@ from fiberbend.cli import main
 from fiberbend.ladder.asked import asked
 from fiberbend.ladder.command import Options, duration, run_ladder
 from fiberbend.ladder.record import FAILED, LATE, Record, Store
-from fiberbend.ladder.rungs import Rung, ladder
+from fiberbend.ladder.rungs import Ladder, Rung, ladder
 from fiberbend.ladder.solve import _once_s, solve
 from fiberbend.schema.problems import CaseError
 from tests.conftest import ROOT
@@ -46,14 +47,31 @@ class Solver:
         return dataclasses.replace(found, status=self._act, reason="det F at element 7", values={})
 
 
-def run(out: Path, solver: Solver, options: Options = ONLY) -> tuple[int, list[str]]:
+def run(
+    out: Path,
+    solver: Solver,
+    options: Options = ONLY,
+    settings: tuple[str, ...] = (),
+    draws: bool = False,
+) -> tuple[int, list[str]]:
+    """The command with a solver of a few lines; the rungs of a case are made up once."""
     said: list[str] = []
-    code = run_ladder(CASE, out, (), options, said.append, solver)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("fiberbend.ladder.command.ladder", rungs_of)
+        if not draws:
+            patch.setattr("fiberbend.ladder.picture.draw", lambda *_: None)
+        code = run_ladder(CASE, out, settings, options, said.append, solver)
     return code, said
 
 
+@functools.cache
+def rungs_of(path: Path, settings: tuple[str, ...]) -> Ladder:
+    """The ladder of a case."""
+    return ladder(path, settings)
+
+
 def test_a_ladder_leaves_table_picture_and_advice(tmp_path: Path) -> None:
-    code, said = run(tmp_path / "out", Solver())
+    code, said = run(tmp_path / "out", Solver(), draws=True)
     assert code == 0
     assert said[0].startswith("5 rungs, 0 solved before, about ")
     assert any(line.startswith("[ 3/5] section-spread-s2") and "to go" in line for line in said)
@@ -92,11 +110,12 @@ def test_another_case_or_program_is_another_rung(
 ) -> None:
     run(tmp_path, Solver())
     other = Solver()
-    run_ladder(CASE, tmp_path, ["actuator.wall=3 mm"], ONLY, lambda _: None, other)
+    thick = ("actuator.wall=3 mm",)
+    run(tmp_path, other, settings=thick)
     assert len(other.names) == 5
     monkeypatch.setattr("fiberbend.ladder.record.__version__", "9.9")
     newer = Solver()
-    run_ladder(CASE, tmp_path, ["actuator.wall=3 mm"], ONLY, lambda _: None, newer)
+    run(tmp_path, newer, settings=thick)
     assert len(newer.names) == 5
 
 
