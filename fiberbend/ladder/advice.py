@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from fiberbend.ladder.errors import Judged, Judgement
+from fiberbend.ladder.rungs import Family
 from fiberbend.ladder.words import mesh_words, number, percent, seconds, settings, title
 
 GOALS = (1.0, 0.1)
@@ -62,7 +63,22 @@ def advice(judgement: Judgement, goals: Sequence[float] = GOALS) -> str:
             else f"for {number(goal)} % {why}, and the best has {percent(near.worst())}"
         )
     text = "; ".join(parts)
-    return f"{text[0].upper()}{text[1:]}."
+    return f"{text[0].upper()}{text[1:]}.{_reservation(judgement)}"
+
+
+def _reservation(judgement: Judgement) -> str:
+    """Where a part of the ladder is solved: what the errors do not know of."""
+    own, wanted = judgement.reference, judgement.finest
+    if own is None or wanted is None or _kind(own) == _kind(wanted):
+        return ""
+    return (
+        f" This is against the limit of {title(own)}: {title(wanted)}, the finest of this case, "
+        "has none yet, and what it would change is not in these errors."
+    )
+
+
+def _kind(family: Family) -> tuple[str, str]:
+    return family.model, family.winding
 
 
 def take(judged: Judged) -> str:

@@ -252,7 +252,7 @@ def _write(
 
     case = work.whole.rungs[0].case
     answered = [(rung, record) for rung, record in solved if record.values]
-    judgement = judge(asked(case), answered)
+    judgement = judge(asked(case), answered, work.whole.rungs)
     heading = case.title or path.stem
     folder = work.store.folder
     folder.write_text("accuracy.csv", as_csv(judgement, solved))

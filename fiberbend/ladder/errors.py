@@ -11,7 +11,9 @@ import dataclasses
 import math
 import statistics
 from collections.abc import Iterator, Mapping, Sequence
+from typing import get_args
 
+from fiberbend.case.case import Mesh
 from fiberbend.ladder.asked import Asked
 from fiberbend.ladder.record import Record
 from fiberbend.ladder.richardson import Limit, extrapolate, observed_order
@@ -90,12 +92,14 @@ class Judgement:
         reference: the family whose limits are the reference; None where nothing is comparable.
         limits: by family, half or whole, and quantity.
         rungs: every rung with an answer, as solved.
+        finest: the family that would be the whole ladder's reference; None where not looked at.
     """
 
     asked: tuple[Asked, ...]
     reference: Family | None
     limits: dict[Family, dict[str, FamilyLimit]]
     rungs: tuple[Judged, ...]
+    finest: Family | None = None
 
     def known_to(self) -> float:
         """Percent within which the reference itself is known, over all quantities."""
@@ -106,12 +110,15 @@ class Judgement:
         )
 
 
-def judge(asked: Sequence[Asked], solved: Sequence[Solved]) -> Judgement:
+def judge(
+    asked: Sequence[Asked], solved: Sequence[Solved], every: Sequence[Rung] = ()
+) -> Judgement:
     """Compare rungs with each other.
 
     Args:
         asked: the quantities; one of which the reference has no limit, or zero, is left out.
         solved: the rungs that have an answer.
+        every: all rungs of the case, solved or not; for `finest`.
     """
     limits = _limits(asked, solved)
     reference = _reference(limits, solved)
@@ -125,7 +132,28 @@ def judge(asked: Sequence[Asked], solved: Sequence[Solved]) -> Judgement:
         elif not all(math.isfinite(error.mesh) for error in found.values()):
             flaw = "mesh error not known"
         judged.append(Judged(rung, record, found, flaw))
-    return Judgement(tuple(asked), reference, limits, tuple(judged))
+    return Judgement(tuple(asked), reference, limits, tuple(judged), finest(every))
+
+
+def finest(rungs: Sequence[Rung]) -> Family | None:
+    """Of the dearest model that of every turn by itself; of several the first."""
+    known = [rung for rung in rungs if rung.mesh]
+    best = max(
+        known, key=lambda rung: (ORDER.index(rung.family.model), _discrete(rung)), default=None
+    )
+    if best is None:
+        return None
+    same = (rung.family for rung in known if rung.family.model == best.family.model)
+    shapes = get_args(Mesh.model_fields["element"].annotation)
+    first = min(
+        (family for family in same if family.winding == best.family.winding),
+        key=lambda family: shapes.index(family.element) if family.element else 0,
+    )
+    return first.discretisation
+
+
+def _discrete(rung: Rung) -> bool:
+    return rung.case.turns is not None and rung.case.turns.discrete
 
 
 def _errors(
@@ -274,11 +302,8 @@ def _reference(
             continue
         if not all(limit.value and math.isfinite(limit.uncertainty) for limit in sizes):
             continue
-        discrete = any(
-            rung.case.turns is not None and rung.case.turns.discrete
-            for rung, _ in solved
-            if rung.family.discretisation == family
-        )
+        own = (rung for rung, _ in solved if rung.family.discretisation == family)
+        discrete = any(map(_discrete, own))
         sharp = max(limit.uncertainty / abs(limit.value) for limit in sizes)
         rank[family] = (ORDER.index(family.model), discrete, len(found), -sharp)
     return max(rank, key=lambda family: rank[family], default=None)

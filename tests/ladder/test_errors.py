@@ -104,6 +104,17 @@ def test_nothing_to_compare() -> None:
     assert advice(judgement).startswith("No advice")
 
 
+def test_a_part_of_a_ladder_says_what_it_does_not_know() -> None:
+    every = of_case().rungs
+    quantities = asked(every[0].case)
+    few = [pair for pair in solved() if pair[0].family.model == "section"]
+    text = advice(judge(quantities, few, every))
+    assert text.count("against the limit of section, spread winding: body, every turn") == 1
+    whole = judge(quantities, solved(), every)
+    assert whole.finest == whole.reference == Family("body", "turns", "hexahedron")
+    assert "has none yet" not in advice(whole)
+
+
 def test_a_closed_form_is_no_reference() -> None:
     alone = [pair for pair in solved() if pair[0].family.model == "analytic"]
     assert judge(asked(of_case().rungs[0].case), alone).reference is None
