@@ -15,8 +15,11 @@ from fiberbend.ladder.rungs import Family
 from fiberbend.ladder.words import percent, short, short_mesh, title
 from fiberbend.states.snapshot import Target
 
-_COLORS = ("#1f5a99", "#2e7d32", "#a8641a", "#7b4fa3", "#b8860b", "#0b7a75", "#8c2d5a", "#5a6b2f")
-_MARKS = ("o", "s", "^", "D", "v", "P", "X", "h")
+_COLORS = (
+    *("#1f5a99", "#2e7d32", "#a8641a", "#7b4fa3", "#b8860b", "#0b7a75"),
+    *("#8c2d5a", "#5a6b2f", "#444444", "#3f8fc0", "#c26a8a", "#6b4226"),
+)
+_MARKS = ("o", "s", "^", "D", "v", "P", "X", "h", "<", ">", "p", "*")
 _FLOOR = 1e-3
 """Percent: the least error that the axis shows; what is less is drawn there."""
 PAGE = Style(height=210.0)
