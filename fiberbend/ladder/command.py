@@ -15,6 +15,7 @@ from fiberbend.ladder.asked import asked
 from fiberbend.ladder.errors import Judgement, Solved, judge
 from fiberbend.ladder.record import FAILED, LATE, Record, Store
 from fiberbend.ladder.rungs import Ladder, Missing, Rung, ladder
+from fiberbend.ladder.table import waiting
 from fiberbend.ladder.words import seconds, title
 from fiberbend.plan.memory import room, shortage
 from fiberbend.process.signals import stop_of
@@ -137,16 +138,13 @@ def _run(path: Path, work: _Work) -> int:
     solved = [(rung, record) for rung, record in found if record is not None]
     known = {rung.name for rung, _ in solved}
     absent = [each for each in missing if each.name not in known]
+    absent += _left_out(work, known | {each.name for each in absent})
     if not solved:
         work.say("no rung is solved" + ("" if stop else f": {_why(absent)}"))
         return stop.code if stop else launch.FAILED
     judgement = _write(path, work, solved, absent, pictures=stop is None)
-    waited = [record for _, record in solved if record.waited]
-    if waited:
-        work.say(
-            f"warning: {len(waited)} of {len(solved)} rungs waited for the processor: their times "
-            "are those of a busy machine (another --out, or a removed one, measures them again)"
-        )
+    if text := waiting(solved):
+        work.say(f"warning: {text}")
     failed = [record for _, record in solved if record.status == FAILED]
     for record in failed:
         work.say(f"failed: {record.name}: {record.reason}")
@@ -154,6 +152,18 @@ def _run(path: Path, work: _Work) -> int:
         work.say("interrupted; the same command goes on where it was")
         return stop.code
     return launch.FAILED if failed or judgement.reference is None else 0
+
+
+def _left_out(work: _Work, known: set[str]) -> list[Missing]:
+    """What --only, or a signal before its turn, has left out, by family."""
+    families: dict[str, int] = {}
+    for rung in work.whole.rungs:
+        if rung.name not in known:
+            families[rung.family.key] = families.get(rung.family.key, 0) + 1
+    return [
+        Missing(name, f"{count} {'rungs' if count > 1 else 'rung'} not solved yet")
+        for name, count in families.items()
+    ]
 
 
 def _why(absent: Sequence[Missing]) -> str:

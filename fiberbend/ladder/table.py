@@ -68,9 +68,22 @@ def as_markdown(
 ) -> str:
     """Advice, rungs by time, limits of the families, and what is not there, for a reader."""
     lines = [f"# {heading}", "", advice(judgement), "", *_reference(judgement), ""]
+    if text := waiting(solved):
+        lines += [f"**{text[0].upper()}{text[1:]}.**", ""]
     lines += [*rung_table(judgement), "", *limit_table(judgement), ""]
     lines += [*_once(solved), *_absent(solved, missing)]
     return "\n".join(lines).rstrip() + "\n"
+
+
+def waiting(solved: Sequence[tuple[Rung, Record]]) -> str:
+    """What has to be said of times that a busy machine has made longer; empty where nothing."""
+    count = sum(record.waited for _, record in solved)
+    if not count:
+        return ""
+    return (
+        f"{count} of {len(solved)} rungs waited for the processor: their times are those of a busy "
+        "machine (with another --out they are measured again)"
+    )
 
 
 def rung_table(judgement: Judgement) -> list[str]:

@@ -213,6 +213,28 @@ def test_a_dry_run_writes_nothing(tmp_path: Path) -> None:
     assert any("body-turns-hexahedron-half-s1-a1.5mm" in line for line in said)
 
 
+def test_what_is_not_solved_yet_is_named(tmp_path: Path) -> None:
+    run(tmp_path, Solver())
+    text = (tmp_path / "accuracy.md").read_text()
+    assert "- cell-turns: 6 rungs not solved yet" in text
+    assert "- body-turns-hexahedron-full: 1 rung not solved yet" in text
+    assert "- section-spread:" not in text
+
+
+def test_times_of_a_busy_machine_are_said(tmp_path: Path) -> None:
+    class Busy(Solver):
+        def __call__(self, rung: Rung, most_s: float | None, verbose: bool) -> Record:
+            found = super().__call__(rung, most_s, verbose)
+            wall = 10 * found.wall_s if rung.name.endswith("s3") else found.wall_s
+            return dataclasses.replace(found, wall_s=wall)
+
+    _, said = run(tmp_path, Busy())
+    assert any(line.startswith("warning: 1 of 5 rungs waited for the processor") for line in said)
+    assert "**1 of 5 rungs waited" in (tmp_path / "accuracy.md").read_text()
+    _, said = run(tmp_path / "idle", Solver())
+    assert not any("waited" in line for line in said)
+
+
 def test_quiet_gives_the_advice_alone(tmp_path: Path) -> None:
     _, said = run(tmp_path, Solver(), dataclasses.replace(ONLY, quiet=True))
     assert len(said) == 1
