@@ -229,7 +229,8 @@ def _solve(work: _Work) -> list[Missing]:
             left.append(rung)
     total, before = len(work.part.rungs), len(work.part.rungs) - len(left)
     expected = sum(rung.seconds for rung in left)
-    work.tell(f"{total} rungs, {before} solved before, about {seconds(expected)} to go")
+    to_come = f", about {seconds(expected)} to go" if left else ""
+    work.tell(f"{total} rungs, {before} solved before{to_come}")
     missing, ratios = [], []
     for number, rung in enumerate(left):
         short = None if options.force else shortage([rung.memory_mb], room(), "the rung")

@@ -122,11 +122,14 @@ def _points(axes: Any, shown: Sequence[Judged], style: Style) -> None:
 def _front(axes: Any, best: Sequence[Judged], style: Style) -> None:
     if not best:
         return
+    corners = [_place(best[0])]
+    for time, error in map(_place, best[1:]):
+        # along the way of steps itself, which texts keep clear of
+        corners += [(time, corners[-1][1]), (time, error)]
     axes.plot(
-        *zip(*map(_place, best), strict=True),
+        *zip(*corners, strict=True),
         color=RED,
         linewidth=1.4 * style.scale,
-        drawstyle="steps-post",
         label="no rung is quicker and more exact",
         zorder=2,
     )
