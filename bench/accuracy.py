@@ -168,7 +168,12 @@ def main() -> None:
     lines = [HEAD]
     for shown in LADDERS:
         lines += part(shown)
-    lines += price_list(json.loads(prices.TARGET.read_text(encoding="utf-8")))
+    if prices.TARGET.exists():
+        lines += price_list(json.loads(prices.TARGET.read_text(encoding="utf-8")))
+    else:
+        print(
+            f"without the price list: no {prices.TARGET.relative_to(ROOT)}, python -m bench.prices"
+        )
     lines.append(OWN)
     PAGE.write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
     print(f"written: {PAGE.relative_to(ROOT)}")
