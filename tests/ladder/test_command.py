@@ -308,7 +308,7 @@ def test_a_real_ladder_end_to_end(tmp_path: Path) -> None:
         env=environment(),
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=900,
     )
     assert done.returncode == 0, done.stderr
     assert "section-spread-s4" in done.stdout
@@ -360,7 +360,7 @@ def test_killed_it_goes_on_and_leaves_no_process(tmp_path: Path) -> None:
     kept = {path.name: path.stat().st_mtime_ns for path in (out / "rungs").glob("*.json")}
     assert len(kept) == 2
     done = subprocess.run(
-        command(out), cwd=tmp_path, env=environment(), capture_output=True, text=True, timeout=300
+        command(out), cwd=tmp_path, env=environment(), capture_output=True, text=True, timeout=900
     )
     assert done.returncode == 0, done.stderr
     assert "5 rungs, 2 solved before" in done.stdout
