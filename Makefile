@@ -10,8 +10,8 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
 .DEFAULT_GOAL := help
-.PHONY: browser notebook help setup tools demo sweep test verify hard survive speed calibration tables check format docs pictures schema \
-    clean
+.PHONY: browser notebook help setup tools demo sweep test verify hard survive speed calibration \
+    tables check format docs pictures schema accuracy clean
 
 help: ## list the commands
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -56,6 +56,13 @@ tables: setup ## make the accuracy tables in docs/ again; half an hour
 
 calibration: setup ## calibrated windings beside every turn by itself; an hour on an idle machine
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/calibration.py
+
+accuracy: setup ## what accuracy costs in time: two ladders, prices; an idle machine, an hour; resumable
+	@for name in free_bending blocked_tip; do $(BIN)/fiberbend accuracy cases/$$name.yaml --dry-run | tail -1; done
+	OPENBLAS_NUM_THREADS=1 $(BIN)/fiberbend accuracy cases/free_bending.yaml $(LADDER)
+	OPENBLAS_NUM_THREADS=1 $(BIN)/fiberbend accuracy cases/blocked_tip.yaml $(LADDER)
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m bench.prices
+	$(BIN)/python -m bench.accuracy
 
 speed: setup ## measure what an answer costs in each model; four minutes on an idle machine
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/speed.py

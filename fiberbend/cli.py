@@ -13,6 +13,7 @@ from typing import Annotated, Any, Literal, NoReturn
 
 from cyclopts import App, CycloptsError, Parameter, UnusedCliTokensError
 
+from fiberbend.commands.examples import EXAMPLES
 from fiberbend.process import beside, signals, streams
 from fiberbend.reader.arguments import CaseFile, Changes
 from fiberbend.running import launch
@@ -21,7 +22,7 @@ from fiberbend.version import __version__
 from machine.folders import MachineError
 
 WRONG_INPUT = 1
-COMPUTING = ("run", "sweep", "control")
+COMPUTING = ("run", "sweep", "control", "accuracy")
 """Commands whose results are in a folder, whatever becomes of the lines that they print."""
 
 app = App(
@@ -38,66 +39,48 @@ app.command(
     "fiberbend.control.arguments:control",
     name="control",
     help="Bend under feedback control: step response and sine.",
-    help_epilogue="""Examples:
-  fiberbend control cases/free_bending.yaml
-  fiberbend control cases/free_bending.yaml --supply "180 kPa" --noise "0.5 kPa"
-  fiberbend control cases/section.yaml --steps "30 deg" "90 deg"
-""",
+    help_epilogue=EXAMPLES["control"],
 )
 app.command(
     "fiberbend.commands.plot:plot",
     name="plot",
     help="Draw a figure for a paper: curves of runs, sweeps and measured points.",
-    help_epilogue="""Examples:
-  fiberbend plot runs/section
-  fiberbend plot runs/section --format svg --width 85mm --font-size 7
-  fiberbend plot runs/section runs/thick --label "wall 2 mm" --label "wall 3 mm" --out walls.pdf
-  fiberbend plot runs/section --measured angles.csv --open
-  fiberbend plot runs/radius_length_wall --x wall_mm --y pressure_360deg_kPa
-""",
+    help_epilogue=EXAMPLES["plot"],
 )
 
 app.command(
     "fiberbend.commands.init:init",
     name="init",
     help="Write a commented case file of your own actuator, by options or by questions.",
-    help_epilogue="""Examples:
-  fiberbend init finger.yaml
-  fiberbend init finger.yaml --radius 6.35mm --length 80mm --wall 2mm dragon-skin-30
-  fiberbend init finger.yaml --section rectangle --width 20mm --height 10mm --pressure "80 kPa"
-""",
+    help_epilogue=EXAMPLES["init"],
 )
 
 app.command(
     "fiberbend.commands.show:show",
     name="show",
     help="Draw the actuator of a case at rest, with its dimensions; nothing is solved.",
-    help_epilogue="""Examples:
-  fiberbend show cases/free_bending.yaml --open
-  fiberbend show cases/grasp.yaml --set actuator.radius="10 mm" --out grasp.png
-""",
+    help_epilogue=EXAMPLES["show"],
 )
 
 app.command(
     "fiberbend.commands.mesh:mesh",
     name="mesh",
     help="Write the mesh of a case with its regions, surfaces and fibers.",
-    help_epilogue="""Examples:
-  fiberbend mesh cases/free_bending.yaml --out body.msh
-  fiberbend mesh cases/cell.yaml --out cell.vtu
-  fiberbend mesh cases/section.yaml --out section.inp --overwrite
-""",
+    help_epilogue=EXAMPLES["mesh"],
+)
+
+app.command(
+    "fiberbend.commands.accuracy:accuracy",
+    name="accuracy",
+    help="Show what accuracy costs in time: a case by every model and mesh.",
+    help_epilogue=EXAMPLES["accuracy"],
 )
 
 app.command(
     "fiberbend.commands.report:report",
     name="report",
     help="Write report.html of a run or a sweep again.",
-    help_epilogue="""Examples:
-  fiberbend report runs/section --open
-  fiberbend report runs/section --out section.html
-  fiberbend report runs/radius_length_wall
-""",
+    help_epilogue=EXAMPLES["report"],
 )
 
 

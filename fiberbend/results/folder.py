@@ -62,6 +62,10 @@ LOG = "run.log"
 CHECKPOINT = "checkpoint.npz"
 CHECKPOINT_BEFORE = "checkpoint.before.npz"
 """The one before the last, for when that cannot be read."""
+LADDER = "accuracy.json"
+"""By this file a folder is that of a ladder of accuracy; what it has found."""
+RUNGS = "rungs"
+"""Folder of a ladder with a file of each rung."""
 BLOCKED = "blocked"
 """Folder within that of a sweep's point with the same body kept straight."""
 
@@ -77,7 +81,14 @@ _OF_A_RUN = (
 )
 _OF_A_SWEEP = (TABLE, ABOUT_SWEEP, TRENDS, "maps/*.png", REPORT)
 _OF_CONTROL = ("control.json", "control.csv", "control.png", "filter.csv", "angle_filter.h")
-FILES = (*_OF_A_RUN, *(f"{BLOCKED}/{name}" for name in _OF_A_RUN), *_OF_A_SWEEP, *_OF_CONTROL)
+_OF_A_LADDER = (LADDER, f"{RUNGS}/*.json", *(f"accuracy.{end}" for end in ("csv", "md", "png")))
+FILES = (
+    *_OF_A_RUN,
+    *(f"{BLOCKED}/{name}" for name in _OF_A_RUN),
+    *_OF_A_SWEEP,
+    *_OF_CONTROL,
+    *_OF_A_LADDER,
+)
 """What is written: no other name can be, and `overwrite` removes nothing else."""
 
 _HELD = "{}, expected its end, or another folder by --out"

@@ -1,0 +1,40 @@
+"""Examples of the commands that are loaded when they are called, as their help shows them."""
+
+EXAMPLES = {
+    "control": """Examples:
+  fiberbend control cases/free_bending.yaml
+  fiberbend control cases/free_bending.yaml --supply "180 kPa" --noise "0.5 kPa"
+  fiberbend control cases/section.yaml --steps "30 deg" "90 deg"
+""",
+    "plot": """Examples:
+  fiberbend plot runs/section
+  fiberbend plot runs/section --format svg --width 85mm --font-size 7
+  fiberbend plot runs/section runs/thick --label "wall 2 mm" --label "wall 3 mm" --out walls.pdf
+  fiberbend plot runs/section --measured angles.csv --open
+  fiberbend plot runs/radius_length_wall --x wall_mm --y pressure_360deg_kPa
+""",
+    "init": """Examples:
+  fiberbend init finger.yaml
+  fiberbend init finger.yaml --radius 6.35mm --length 80mm --wall 2mm dragon-skin-30
+  fiberbend init finger.yaml --section rectangle --width 20mm --height 10mm --pressure "80 kPa"
+""",
+    "show": """Examples:
+  fiberbend show cases/free_bending.yaml --open
+  fiberbend show cases/grasp.yaml --set actuator.radius="10 mm" --out grasp.png
+""",
+    "mesh": """Examples:
+  fiberbend mesh cases/free_bending.yaml --out body.msh
+  fiberbend mesh cases/cell.yaml --out cell.vtu
+  fiberbend mesh cases/section.yaml --out section.inp --overwrite
+""",
+    "accuracy": """Examples:
+  fiberbend accuracy cases/free_bending.yaml --dry-run
+  fiberbend accuracy cases/free_bending.yaml --within 30s
+  fiberbend accuracy cases/section.yaml --only section --only cell
+""",
+    "report": """Examples:
+  fiberbend report runs/section --open
+  fiberbend report runs/section --out section.html
+  fiberbend report runs/radius_length_wall
+""",
+}

@@ -1,0 +1,309 @@
+"""How far every rung is off: by its mesh, and by its model.
+
+A family's limit is what its values tend to as the mesh is refined, direction by direction. The
+**mesh error** of a rung is its distance from the limit of its own family, the **modelling error**
+the distance of that limit from the limit of the finest family, which is the reference.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import statistics
+from collections.abc import Iterator, Mapping, Sequence
+from typing import get_args
+
+from fiberbend.case.case import Mesh
+from fiberbend.ladder.asked import Asked
+from fiberbend.ladder.record import Record
+from fiberbend.ladder.richardson import Limit, extrapolate, observed_order
+from fiberbend.ladder.rungs import Family, Rung
+from fiberbend.models.choice import MODELS
+
+_FEW = 3
+ORDER = tuple(MODELS)
+"""Models from the cheapest to the dearest."""
+Solved = tuple[Rung, Record]
+
+
+@dataclasses.dataclass(frozen=True)
+class FamilyLimit:
+    """The limit of a quantity in a family.
+
+    Attributes:
+        limit: of all directions together; its remark names those that are special.
+        orders: observed, by direction.
+    """
+
+    limit: Limit
+    orders: dict[str, float]
+
+
+@dataclasses.dataclass(frozen=True)
+class RungError:
+    """How far a quantity of a rung is off, in percent of the reference; signed.
+
+    Attributes:
+        total: the value against the reference.
+        mesh: the value against its family's limit; not a number where that is not known.
+        model: that limit against the reference.
+    """
+
+    total: float
+    mesh: float
+    model: float
+
+    @property
+    def size(self) -> float:
+        """|mesh| + |model|: no credit for errors that cancel. |total| where they are not known."""
+        both = abs(self.mesh) + abs(self.model)
+        return both if math.isfinite(both) else abs(self.total)
+
+
+@dataclasses.dataclass(frozen=True)
+class Judged:
+    """A rung with its errors.
+
+    Attributes:
+        rung: the rung.
+        record: what it gave.
+        errors: by the names of the quantities.
+        flaw: why it cannot be chosen: it misses a quantity, or its family has no limit; empty where
+            it can.
+    """
+
+    rung: Rung
+    record: Record
+    errors: dict[str, RungError]
+    flaw: str = ""
+
+    def worst(self, part: str = "size") -> float:
+        """The greatest size of a part of the errors over the quantities, %."""
+        sizes = [abs(getattr(error, part)) for error in self.errors.values()]
+        return max(sizes, default=math.nan)
+
+
+@dataclasses.dataclass(frozen=True)
+class Judgement:
+    """All rungs beside the reference.
+
+    Attributes:
+        asked: the quantities.
+        reference: the family whose limits are the reference; None where nothing is comparable.
+        limits: by family, half or whole, and quantity.
+        rungs: every rung with an answer, as solved.
+        finest: the family that would be the whole ladder's reference; None where not looked at.
+    """
+
+    asked: tuple[Asked, ...]
+    reference: Family | None
+    limits: dict[Family, dict[str, FamilyLimit]]
+    rungs: tuple[Judged, ...]
+    finest: Family | None = None
+
+    def known_to(self) -> float:
+        """Percent within which the reference itself is known, over all quantities."""
+        found = self.limits[self.reference].values() if self.reference else ()
+        return max(
+            (100 * each.limit.uncertainty / abs(each.limit.value) for each in found),
+            default=math.inf,
+        )
+
+
+def judge(
+    asked: Sequence[Asked], solved: Sequence[Solved], every: Sequence[Rung] = ()
+) -> Judgement:
+    """Compare rungs with each other.
+
+    Args:
+        asked: the quantities; one of which the reference has no limit, or zero, is left out.
+        solved: the rungs that have an answer.
+        every: all rungs of the case, solved or not; for `finest`.
+    """
+    limits = _limits(asked, solved)
+    reference = _reference(limits, solved)
+    judged = []
+    for rung, record in solved:
+        own = limits.get(rung.family.discretisation, {})
+        found = dict(_errors(record, own, limits[reference])) if reference else {}
+        flaw = ""
+        if reference is None or found.keys() != limits[reference].keys():
+            flaw = "not all that is asked for"
+        elif not all(math.isfinite(error.mesh) for error in found.values()):
+            flaw = "mesh error not known"
+        judged.append(Judged(rung, record, found, flaw))
+    return Judgement(tuple(asked), reference, limits, tuple(judged), finest(every))
+
+
+def finest(rungs: Sequence[Rung]) -> Family | None:
+    """Of the dearest model that of every turn by itself; of several the first."""
+    known = [rung for rung in rungs if rung.mesh]
+    best = max(
+        known, key=lambda rung: (ORDER.index(rung.family.model), _discrete(rung)), default=None
+    )
+    if best is None:
+        return None
+    same = (rung.family for rung in known if rung.family.model == best.family.model)
+    shapes = get_args(Mesh.model_fields["element"].annotation)
+    first = min(
+        (family for family in same if family.winding == best.family.winding),
+        key=lambda family: shapes.index(family.element) if family.element else 0,
+    )
+    return first.discretisation
+
+
+def _discrete(rung: Rung) -> bool:
+    return rung.case.turns is not None and rung.case.turns.discrete
+
+
+def _errors(
+    record: Record, own: Mapping[str, FamilyLimit], reference: Mapping[str, FamilyLimit]
+) -> Iterator[tuple[str, RungError]]:
+    for name, wanted in reference.items():
+        goal, value = wanted.limit.value, record.values.get(name)
+        if value is None:
+            continue
+        limit = own[name].limit if name in own else Limit(math.nan, math.inf)
+        known = math.isfinite(limit.uncertainty)
+        mesh = (value - limit.value) / goal if known else math.nan
+        model = (limit.value - goal) / goal if known else math.nan
+        yield name, RungError(100 * (value - goal) / goal, 100 * mesh, 100 * model)
+
+
+def _limits(
+    asked: Sequence[Asked], solved: Sequence[Solved]
+) -> dict[Family, dict[str, FamilyLimit]]:
+    """Limits of all families; where two meshes tell no order, that of other families is used."""
+    families = dict.fromkeys(rung.family.discretisation for rung, _ in solved)
+    orders: dict[str, list[float]] = {}
+    for family in families:
+        for each in asked:
+            for direction, line in _lines(_points(family, each, solved)).items():
+                if len(line) >= _FEW:
+                    sizes, values = zip(*line[-_FEW:], strict=True)
+                    order = observed_order(sizes, values)
+                    if order is not None and 0 < order < math.inf:
+                        orders.setdefault(direction, []).append(order)
+    known = {direction: statistics.median(found) for direction, found in orders.items()}
+    limits: dict[Family, dict[str, FamilyLimit]] = {}
+    for family in families:
+        for each in asked:
+            points = _points(family, each, solved)
+            if points:
+                limits.setdefault(family, {})[each.name] = family_limit(points, known)
+    return limits
+
+
+Point = tuple[Mapping[str, float], float]
+"""Sizes of the elements by direction, and a value."""
+
+
+def _points(family: Family, asked: Asked, solved: Sequence[Solved]) -> list[Point]:
+    """A quantity on the meshes of a family; of half and whole one, for they agree."""
+    found: dict[tuple[float, ...], Point] = {}
+    for rung, record in solved:
+        if rung.family.discretisation == family and asked.name in record.values:
+            point = (rung.mesh, record.values[asked.name])
+            found.setdefault(tuple(rung.mesh.values()), point)
+    return list(found.values())
+
+
+def _lines(points: Sequence[Point]) -> dict[str, list[tuple[float, float]]]:
+    """Size and value along each direction through one mesh, from coarse to fine.
+
+    That mesh, the base, is the one through which the longest lines go; of several the coarsest.
+    """
+    directions = list(dict.fromkeys(name for mesh, _ in points for name in mesh))
+
+    def line(base: Mapping[str, float], along: str) -> list[tuple[float, float]]:
+        others = [name for name in directions if name != along]
+        found = [
+            (mesh[along], value)
+            for mesh, value in points
+            if all(mesh[name] == base[name] for name in others)
+        ]
+        return sorted(found, reverse=True)
+
+    def reach(base: Mapping[str, float]) -> tuple[int, float]:
+        return sum(len(line(base, name)) for name in directions), math.prod(base.values())
+
+    base = max((mesh for mesh, _ in points), key=reach, default={})
+    return {name: line(base, name) for name in directions}
+
+
+def family_limit(points: Sequence[Point], orders: Mapping[str, float] | None = None) -> FamilyLimit:
+    """The limit of values on meshes that are refined in several directions.
+
+    The directions add up: f = f₀ + Σ C_d h_dᵖ. A mesh that is fine in several of them shows whether
+    they do; by as much as they do not the limit is uncertain, and from there the rest is taken.
+
+    Args:
+        points: sizes by direction, and values.
+        orders: known of other families, by direction.
+    """
+    lines = _lines(points)
+    if not lines:
+        return FamilyLimit(Limit(points[0][1], 0.0), {})
+    limits, found = {}, {}
+    for name, line in lines.items():
+        sizes, values = zip(*line, strict=True)
+        limits[name] = extrapolate(sizes, values, (orders or {}).get(name))
+        order = limits[name].order
+        if order is not None:
+            found[name] = order
+    uncertain = sum(limit.uncertainty for limit in limits.values())
+    remark = "; ".join(f"{name}: {limit.remark}" for name, limit in limits.items() if limit.remark)
+    if not math.isfinite(uncertain):
+        finest = min(points, key=lambda point: math.prod(point[0].values()))
+        return FamilyLimit(Limit(finest[1], math.inf, remark=remark), found)
+    base = _base(points, lines)
+    value = base + sum(limit.value - base for limit in limits.values())
+    corner = _corner(points, lines)
+    if corner is not None:
+        mesh, at_corner = corner
+        here = {name: dict(line)[mesh[name]] for name, line in lines.items()}
+        together = base + sum(there - base for there in here.values())
+        value = at_corner + sum(limits[name].value - here[name] for name in lines)
+        uncertain += abs(at_corner - together)
+    return FamilyLimit(Limit(value, uncertain, remark=remark), found)
+
+
+def _base(points: Sequence[Point], lines: Mapping[str, Sequence[tuple[float, float]]]) -> float:
+    """The value on the mesh that all lines go through."""
+    return next(
+        value
+        for mesh, value in points
+        if all((mesh[name], value) in line for name, line in lines.items())
+    )
+
+
+def _corner(
+    points: Sequence[Point], lines: Mapping[str, Sequence[tuple[float, float]]]
+) -> Point | None:
+    """The finest mesh that is refined in every direction by sizes that each line has."""
+
+    def refined(mesh: Mapping[str, float]) -> bool:
+        known = ((mesh[name], dict(line)) for name, line in lines.items())
+        return all(size in line and size < max(line) for size, line in known)
+
+    found = [point for point in points if len(lines) > 1 and refined(point[0])]
+    return min(found, key=lambda point: math.prod(point[0].values()), default=None)
+
+
+def _reference(
+    limits: Mapping[Family, Mapping[str, FamilyLimit]], solved: Sequence[Solved]
+) -> Family | None:
+    """The finest family: of the dearest model, every turn by itself, most known, sharpest limit."""
+    rank = {}
+    for family, found in limits.items():
+        sizes = [each.limit for each in found.values()]
+        if MODELS[family.model].elements() is None:
+            # a closed form knows itself to all digits, and nothing else
+            continue
+        if not all(limit.value and math.isfinite(limit.uncertainty) for limit in sizes):
+            continue
+        own = (rung for rung, _ in solved if rung.family.discretisation == family)
+        discrete = any(map(_discrete, own))
+        sharp = max(limit.uncertainty / abs(limit.value) for limit in sizes)
+        rank[family] = (ORDER.index(family.model), discrete, len(found), -sharp)
+    return max(rank, key=lambda family: rank[family], default=None)

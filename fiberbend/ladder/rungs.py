@@ -1,0 +1,340 @@
+"""Which rungs a case has: every model that supports it, with several meshes of each kind.
+
+Models and effects are asked: what a model refuses is left out with its reason, and a winding has as
+many representations as its key `as` takes.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import hashlib
+import json
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, Literal, get_args, get_origin
+
+from fiberbend.case import convert
+from fiberbend.case.case import Case, Mesh
+from fiberbend.models.choice import MODELS
+from fiberbend.models.model import MeshedModel, ModelKind
+from fiberbend.plan.estimate import cost_of
+from fiberbend.plan.memory import needed_mb
+from fiberbend.reader.reader import as_case
+from fiberbend.schema.problems import CaseError
+from fiberbend.schema.units import show
+
+BARE = (
+    *("output.pictures=false", "output.fields=false", "output.report=false"),
+    *("output.animation=false", "compare=[]"),
+    # an accuracy that is asked for would choose model and mesh itself
+    *(["accuracy=null"] if "accuracy" in Case.model_fields else []),
+)
+"""What every rung is solved with: times without drawing, and the mesh that it names."""
+_LAYERS = (0.5, 1.0, 2.0)
+"""Elements along the axis, over those that a model needs to resolve a turn."""
+_SPREAD = 0.8
+"""Length of the longest elements over the half width of the section, without turns."""
+_STEPS = 12
+"""Load steps of a run whose steps cannot be predicted."""
+_WORDS = {"smeared": "spread", "discrete": "turns"}
+"""Words of the family for what a case calls otherwise."""
+SECTION, AXIAL = "section", "axial"
+"""The two directions in which a mesh is refined; keys of `mesh`."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Family:
+    """Rungs that differ in their mesh only.
+
+    Attributes:
+        model: name of the model.
+        winding: 'turns', 'spread' or what else `as` says; empty without a winding.
+        element: shape of the elements; empty where the model has one only, or none.
+        half: half of what is modelled stands for all; None where the model leaves no choice.
+    """
+
+    model: str
+    winding: str = ""
+    element: str = ""
+    half: bool | None = None
+
+    @property
+    def key(self) -> str:
+        """Its name in file names and options, such as `body-turns-hexahedron-half`."""
+        part = {None: "", True: "half", False: "full"}[self.half]
+        return "-".join(filter(None, (self.model, self.winding, self.element, part)))
+
+    @property
+    def discretisation(self) -> Family:
+        """What half and whole have in common: their answers agree to round-off."""
+        return dataclasses.replace(self, half=None)
+
+
+@dataclasses.dataclass(frozen=True)
+class Rung:
+    """A case with a model and a mesh.
+
+    Attributes:
+        family: what it shares with other meshes.
+        settings: changes that make it, as `--set` takes them.
+        case: the changed case, nothing drawn.
+        mesh: size of the elements by direction, 1/elements through a thickness and mm; empty
+            without elements.
+        left_out: what the model leaves out of the case, a sentence each.
+        unknowns: displacements and pressures.
+        seconds: expected of its whole process.
+        memory_mb: expected greatest memory.
+    """
+
+    family: Family
+    settings: tuple[str, ...]
+    case: Case
+    mesh: dict[str, float]
+    left_out: tuple[str, ...] = ()
+    unknowns: int = 0
+    seconds: float = 0.0
+    memory_mb: float = 0.0
+
+    @property
+    def name(self) -> str:
+        """Of its file: family and mesh."""
+        parts = [self.family.key]
+        if SECTION in self.mesh:
+            parts.append(f"s{self.case.mesh.section}")
+        if AXIAL in self.mesh:
+            parts.append(f"a{self.case.mesh.axial:.4g}mm")
+        return "-".join(parts)
+
+    @functools.cached_property
+    def digest(self) -> str:
+        """Of its resolved case."""
+        text = json.dumps(self.case.resolved(), sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+@dataclasses.dataclass(frozen=True)
+class Missing:
+    """A family or rung that the ladder does not have.
+
+    Attributes:
+        name: which.
+        reason: why.
+    """
+
+    name: str
+    reason: str
+
+
+@dataclasses.dataclass(frozen=True)
+class Ladder:
+    """All that a case is solved by.
+
+    Attributes:
+        rungs: the cheapest first.
+        missing: what the case has no rungs of, and why.
+    """
+
+    rungs: tuple[Rung, ...]
+    missing: tuple[Missing, ...]
+
+
+def ladder(source: Path | dict[str, Any], settings: Sequence[str] = ()) -> Ladder:
+    """The rungs of a case.
+
+    Args:
+        source: the case file, or a case as a mapping.
+        settings: changes to it.
+
+    Raises:
+        CaseError: the case itself is wrong.
+    """
+    base = as_case(source, settings)
+    rungs: list[Rung] = []
+    missing: list[Missing] = []
+    for family, changes in _families(base):
+        try:
+            found = list(_rungs(source, settings, family, changes, rungs))
+        except _LeftOutError as why:
+            missing.append(Missing(family.key, str(why)))
+        else:
+            rungs += found
+    # half a body first: of two rungs that cost alike the one that others are compared with
+    rungs.sort(key=lambda rung: (rung.seconds, rung.family.half is False))
+    return Ladder(tuple(rungs), tuple(missing))
+
+
+class _LeftOutError(Exception):
+    """Why a case has no rungs of a family."""
+
+
+def _families(base: Case) -> Iterator[tuple[Family, list[str]]]:
+    """Every combination of model, winding, elements and halves, with its changes to the case."""
+    path, words = representations(base)
+    for name, model in MODELS.items():
+        elements = model.elements()
+        shapes: tuple[str, ...] = ("",)
+        if elements is not None and elements.takes_mesh_as_given:
+            shapes = get_args(Mesh.model_fields["element"].annotation)
+        for shape in shapes:
+            for word in words:
+                changes = [f"model={name}"]
+                if word:
+                    changes.append(f"{path}={word}")
+                if shape:
+                    changes.append(f"mesh.element={shape}")
+                yield Family(name, _WORDS.get(word, word), shape), changes
+
+
+def representations(case: Case) -> tuple[str, tuple[str, ...]]:
+    """Path of the key that says how a winding is represented, and what it takes.
+
+    Returns:
+        The path, and one empty word for a case without a winding.
+    """
+    for index, effect in enumerate(case.effects):
+        if effect.turns() is None:
+            continue
+        for field in type(effect).model_fields.values():
+            if field.alias == "as":
+                words = tuple(_literals(field.annotation))
+                return f"effects.{index}.{effect.name}.as", words
+    return "", ("",)
+
+
+def _literals(annotation: Any) -> Iterator[str]:
+    if get_origin(annotation) is Literal:
+        yield from get_args(annotation)
+        return
+    for part in get_args(annotation):
+        yield from _literals(part)
+
+
+def _rungs(
+    source: Path | dict[str, Any],
+    settings: Sequence[str],
+    family: Family,
+    changes: Sequence[str],
+    before: Iterable[Rung],
+) -> Iterator[Rung]:
+    """The rungs of a family.
+
+    Raises:
+        _LeftOutError: it has none.
+    """
+    first = _read(source, settings, changes)
+    model = MODELS[family.model]
+    elements = model.elements()
+    others = [rung.family for rung in before]
+    if elements is None:
+        if any(other.model == family.model for other in others):
+            raise _LeftOutError("a closed form has no turns: the same as the rung before")
+        yield _rung(first, family, changes, model)
+        return
+    _refuse_twice(first, family, elements, others)
+    halved, _ = elements.half(first)
+    wholes = (
+        [halved] if not elements.takes_mesh_as_given else [halved, *([False] if halved else [])]
+    )
+    for half in wholes:
+        own = dataclasses.replace(family, half=half if elements.takes_mesh_as_given else None)
+        symmetry = [] if half == halved else ["mesh.symmetry=full"]
+        meshes = list(_meshes(first, elements))
+        if half != halved:
+            # it differs in time and memory only: one mesh shows how much
+            shapes = get_args(Mesh.model_fields["element"].annotation)
+            meshes = meshes[:1] if family.element == shapes[0] else []
+        for mesh in meshes:
+            more = [*changes, *symmetry, *(f"mesh.{key}={value}" for key, value in mesh.items())]
+            yield _rung(_read(source, settings, more), own, more, model)
+
+
+def _read(source: Path | dict[str, Any], settings: Sequence[str], changes: Sequence[str]) -> Case:
+    try:
+        return as_case(source, [*settings, *BARE, *changes])
+    except CaseError as error:
+        problem = error.problems[0]
+        raise _LeftOutError(f"{problem.path}: {problem.text}") from None
+
+
+def _refuse_twice(case: Case, family: Family, model: MeshedModel, others: Sequence[Family]) -> None:
+    """Leave out a uniform model whose slice is alike along the axis: a cheaper one is the same."""
+    turns = case.turns
+    alike = not model.ends and model.layers_a_pitch > 0 and not (turns and turns.discrete)
+    for other in others:
+        cheaper = MODELS[other.model].elements()
+        if alike and cheaper is not None and not cheaper.ends and other.winding == family.winding:
+            text = f"without turns nothing varies along the axis: the same as {other.key}"
+            raise _LeftOutError(text)
+
+
+def _meshes(case: Case, model: MeshedModel) -> Iterator[dict[str, str]]:
+    """Values of `mesh` from coarse to fine, each direction for itself, and a corner.
+
+    The directions are refined one after the other from one mesh, so that each has its own limit;
+    a uniform model has a mesh fine in both as well, by which it shows whether they add up.
+    """
+    every = {SECTION, AXIAL}
+    given = case.mesh.model_copy(update={key: getattr(case.mesh, key) for key in every})
+    unused = model.unused(case.model_copy(update={"mesh": given})).get("mesh", set())
+    axials = [] if AXIAL in unused else _axials(case, model)
+    most = 2 if model.shared else 3 if axials else 4
+    sections = [] if SECTION in unused else [str(number) for number in range(1, most + 1)]
+    if not axials or not sections:
+        key, values = (SECTION, sections) if sections else (AXIAL, axials)
+        yield from ({key: value} for value in values)
+        return
+    yield from ({SECTION: sections[0], AXIAL: axial} for axial in axials)
+    # where elements are too long for the turns, what the section's elements change is another thing
+    base = axials[1] if case.turns is not None and case.turns.discrete else axials[0]
+    yield from ({SECTION: section, AXIAL: base} for section in sections[1:])
+    if not model.shared:
+        yield {SECTION: sections[1], AXIAL: axials[-1]}
+
+
+def _axials(case: Case, model: MeshedModel) -> list[str]:
+    """Lengths of the elements, halved twice: of a pitch's parts, or of the section's size."""
+    turns = case.turns
+    if turns is not None and turns.discrete:
+        lengths = [turns.pitch / (model.layers_a_pitch * factor) for factor in _LAYERS]
+    else:
+        width = convert.dimensions(case.actuator).outline_half_width
+        count = max(1, round(case.actuator.length / (_SPREAD * width)))
+        lengths = [case.actuator.length / (count * factor) for factor in (1, 2, 4)]
+    return [show(_up(length), "length") for length in lengths]
+
+
+def _up(length: float) -> float:
+    """Four digits, rounded up: rounded down there would be one element more."""
+    step = 10.0 ** (math.floor(math.log10(length)) - 3)
+    return float(f"{math.ceil(length / step * (1 - 1e-9)) * step:.4g}")
+
+
+def _rung(case: Case, family: Family, changes: Sequence[str], model: ModelKind) -> Rung:
+    left_out = tuple(f"{path}: {text}" for path, text in model.leaves_out(case))
+    elements = model.elements()
+    if elements is None:
+        seconds, memory = model.start_s, needed_mb(case)
+        return Rung(family, tuple(changes), case, {}, left_out, 0, seconds, memory)
+    size = elements.size(case)
+    cost = cost_of(case, elements, size)
+    expected = cost.seconds()
+    seconds = cost.start_s + _STEPS * cost.step_s if expected is None else expected
+    mesh = {}
+    named = {change.partition("=")[0] for change in changes}
+    if f"mesh.{SECTION}" in named:
+        mesh[SECTION] = 1.0 / case.mesh.section
+    if f"mesh.{AXIAL}" in named:
+        mesh[AXIAL] = _length(case, elements)
+    return Rung(
+        family, tuple(changes), case, mesh, left_out, size.unknowns, seconds, cost.memory_mb
+    )
+
+
+def _length(case: Case, model: MeshedModel) -> float:
+    """Length of the elements along the axis as they are made, mm."""
+    axial = model.mesh_size(case, model.half(case)[0]).axial
+    if not model.ends:
+        return axial
+    return case.actuator.length / math.ceil(case.actuator.length / axial - 1e-9)

@@ -1,0 +1,79 @@
+"""Rungs, times and errors in words."""
+
+from __future__ import annotations
+
+import math
+import shlex
+
+from fiberbend.answer.numbers import number as _number
+from fiberbend.ladder.rungs import AXIAL, SECTION, Family, Rung
+from fiberbend.schema.units import show
+
+_WINDINGS = {"turns": "every turn", "spread": "spread winding"}
+_SHORT = {"hexahedron": "", "tetrahedron": "tets"}
+_ELEMENTS = {"hexahedron": "hexahedra", "tetrahedron": "tetrahedra"}
+
+
+def title(family: Family) -> str:
+    """A family in words, such as "body, every turn, hexahedra, half"."""
+    winding = family.winding and _WINDINGS.get(family.winding, f"{family.winding} winding")
+    element = _ELEMENTS.get(family.element, family.element)
+    half = {True: "half", False: "whole", None: ""}[family.half]
+    return ", ".join(filter(None, (family.model, winding, element, half)))
+
+
+def mesh_words(rung: Rung) -> str:
+    """The mesh of a rung as its case has it: "mesh.section 2, mesh.axial 8 mm"."""
+    parts = []
+    if SECTION in rung.mesh:
+        parts.append(f"mesh.section {rung.case.mesh.section}")
+    if AXIAL in rung.mesh:
+        parts.append(f"mesh.axial {show(rung.case.mesh.axial, 'length')}")
+    return ", ".join(parts)
+
+
+def short(rung: Rung) -> str:
+    """A rung on a picture: model, winding and mesh in few letters."""
+    family = rung.family
+    parts = [family.model, family.winding, _SHORT.get(family.element, family.element)]
+    if family.half is False:
+        parts.append("whole")
+    return " ".join(filter(None, [*parts, short_mesh(rung)]))
+
+
+def short_mesh(rung: Rung) -> str:
+    """The mesh of a rung on a picture: mesh.section / mesh.axial."""
+    parts = []
+    if SECTION in rung.mesh:
+        parts.append(str(rung.case.mesh.section))
+    if AXIAL in rung.mesh:
+        parts.append(show(rung.case.mesh.axial, "length"))
+    return " / ".join(parts)
+
+
+def settings(rung: Rung) -> str:
+    """The options of a rung as they are typed."""
+    return " ".join(f"--set {shlex.quote(setting)}" for setting in rung.settings)
+
+
+def number(value: float) -> str:
+    """Two or three digits, as a person writes them."""
+    return _number(value, digits=3) if value < 100 else f"{value:.0f}"
+
+
+def percent(value: float) -> str:
+    """An error, one or two digits; no more of it is known."""
+    if not math.isfinite(value):
+        return "an unknown error"
+    digits = 2 if value < 9.95 else 3
+    return f"{_number(value, 5, digits)} %"
+
+
+def seconds(value: float) -> str:
+    """A time: tenths up to ten seconds, minutes from two on."""
+    if value < 10:
+        return f"{value:.1f} s"
+    if value < 120:
+        return f"{value:.0f} s"
+    minutes, rest = divmod(round(value), 60)
+    return f"{minutes} min {rest} s" if minutes < 10 else f"{minutes} min"

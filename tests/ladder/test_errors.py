@@ -1,0 +1,172 @@
+"""Errors of rungs whose limits are known, the front, and the sentence of advice."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import pytest
+
+from fiberbend.ladder.advice import advice, front, pareto
+from fiberbend.ladder.asked import Asked, asked
+from fiberbend.ladder.errors import family_limit, judge
+from fiberbend.ladder.rungs import Family, Rung
+from fiberbend.reader.reader import read_case
+from tests.conftest import ROOT
+from tests.ladder.parts import judged, of_case, record, solved, truth
+
+
+def test_directions_add_up_and_a_corner_shows_whether_they_do() -> None:
+    def value(section: float, axial: float) -> float:
+        return 45 + 2 * section**2 + 0.5 * axial
+
+    line = [(1.0, 2.0), (1.0, 1.0), (1.0, 0.5), (0.5, 1.0), (1 / 3, 1.0)]
+    points = [({"section": s, "axial": a}, value(s, a)) for s, a in line]
+    without = family_limit(points)
+    assert without.limit.value == pytest.approx(45)
+    assert without.orders == pytest.approx({"section": 2.0, "axial": 1.0})
+    corner = ({"section": 0.5, "axial": 0.5}, value(0.5, 0.5))
+    same = family_limit([*points, corner])
+    assert same.limit.value == pytest.approx(45)
+    assert same.limit.uncertainty == pytest.approx(without.limit.uncertainty)
+    apart = family_limit([*points, (corner[0], corner[1] + 0.1)])
+    assert apart.limit.value == pytest.approx(45.1)
+    assert apart.limit.uncertainty == pytest.approx(without.limit.uncertainty + 0.1)
+
+
+def test_one_mesh_has_no_limit_and_a_closed_form_is_its_own() -> None:
+    assert math.isinf(family_limit([({"section": 1.0}, 45.0)]).limit.uncertainty)
+    closed = family_limit([({}, 45.0)])
+    assert (closed.limit.value, closed.limit.uncertainty) == (45.0, 0.0)
+
+
+def test_mesh_and_model_apart() -> None:
+    judgement = judged()
+    assert judgement.reference == Family("body", "turns", "hexahedron")
+    reference = judgement.limits[judgement.reference]["pressure_90deg_kPa"].limit
+    assert reference.value == pytest.approx(99.0, rel=1e-6)
+    for each in judgement.rungs:
+        for name, error in each.errors.items():
+            value, family = each.record.values[name], each.rung.family
+            assert error.total == pytest.approx(100 * (value / 99 - 1), abs=1e-4)
+            limit = {"analytic": 130.0, "section": 97.0, "cell": 100.0}.get(family.model)
+            if limit is None:
+                limit = 0.99 * (100.0 if family.winding == "turns" else 97.0)
+            assert error.model == pytest.approx(100 * (limit / 99 - 1), abs=0.01), each.rung.name
+            assert error.mesh == pytest.approx(100 * (value - limit) / 99, abs=0.01)
+            assert error.size == pytest.approx(abs(error.mesh) + abs(error.model))
+        assert not each.flaw
+
+
+def test_whole_and_half_share_their_limit() -> None:
+    halves = {each.rung.name: each for each in judged().rungs}
+    pairs = [name for name in halves if "-full-" in name]
+    assert pairs
+    for name in pairs:
+        assert halves[name].errors == halves[name.replace("-full-", "-half-")].errors
+
+
+def test_two_meshes_take_the_order_of_other_families() -> None:
+    """The bodies have two sections only; section and cell show that it is 2."""
+    found = judged().limits[Family("body", "turns", "hexahedron")]["pressure_90deg_kPa"]
+    assert "other families" in found.limit.remark
+    assert found.limit.value == pytest.approx(99.0, rel=1e-6)
+
+
+def test_without_the_dear_rungs_a_cheaper_family_is_the_reference() -> None:
+    few = [(rung, found) for rung, found in solved() if rung.family.model != "body"]
+    quantities = asked(of_case().rungs[0].case)
+    judgement = judge(quantities, few)
+    assert judgement.reference == Family("cell", "turns")
+    single = [pair for pair in solved() if pair[0].name.startswith("body-turns-hexahedron-half")]
+    judgement = judge(quantities, [*few, single[0]])
+    assert judgement.reference == Family("cell", "turns")
+    alone = next(each for each in judgement.rungs if each.rung.family.model == "body")
+    assert alone.flaw == "mesh error not known"
+    assert math.isfinite(alone.worst())
+    assert alone not in pareto(judgement)
+
+
+def test_a_rung_that_misses_a_quantity_is_not_chosen() -> None:
+    pairs = solved()
+    rung, found = next(pair for pair in pairs if pair[0].family.model == "section")
+    values = {name: value for name, value in found.values.items() if "360" not in name}
+    pairs[pairs.index((rung, found))] = (rung, record(rung, values))
+    judgement = judge(asked(rung.case), pairs)
+    flawed = next(each for each in judgement.rungs if each.rung is rung)
+    assert flawed.flaw == "not all that is asked for"
+    assert flawed not in pareto(judgement)
+
+
+def test_nothing_to_compare() -> None:
+    judgement = judge(asked(of_case().rungs[0].case), [])
+    assert judgement.reference is None
+    assert advice(judgement).startswith("No advice")
+
+
+def test_a_part_of_a_ladder_says_what_it_does_not_know() -> None:
+    every = of_case().rungs
+    quantities = asked(every[0].case)
+    few = [pair for pair in solved() if pair[0].family.model == "section"]
+    text = advice(judge(quantities, few, every))
+    assert text.count("against the limit of section, spread winding: body, every turn") == 1
+    whole = judge(quantities, solved(), every)
+    assert whole.finest == whole.reference == Family("body", "turns", "hexahedron")
+    assert "has none yet" not in advice(whole)
+
+
+def test_a_closed_form_is_no_reference() -> None:
+    alone = [pair for pair in solved() if pair[0].family.model == "analytic"]
+    assert judge(asked(of_case().rungs[0].case), alone).reference is None
+    body = [pair for pair in solved() if pair[0].family.model == "body"][:1]
+    assert judge(asked(of_case().rungs[0].case), [*alone, *body]).reference is None
+
+
+def test_front() -> None:
+    points = [(1.0, 5.0), (2.0, 5.0), (2.0, 1.0), (3.0, 2.0), (9.0, 0.1), (0.5, 30.0)]
+    assert front(points) == [5, 0, 2, 4]
+    # what cannot be told apart is not worth its time
+    assert front(points, least=1.0) == [5, 0, 2]
+    assert front([]) == []
+    assert front([(1.0, 1.0), (1.0, 1.0)]) == [0]
+
+
+def test_nothing_beats_the_front() -> None:
+    judgement = judged()
+    best = pareto(judgement)
+    for one in best:
+        for other in judgement.rungs:
+            quicker = other.record.wall_s < one.record.wall_s
+            assert not (quicker and other.worst() < one.worst() - judgement.known_to())
+
+
+def test_advice_names_rung_time_and_what_to_type() -> None:
+    def exact(rung: Rung, each: Asked) -> float:
+        """Every mesh is as good as its limit."""
+        closed = rung.family.model == "analytic"
+        return 130.0 if closed else 100.0 if rung.family.winding == "turns" else 99.5
+
+    text = advice(judged(exact))
+    assert text.startswith("For 1 % take section, spread winding, mesh.section 1: 2.4 s (--set ")
+    second = text.index("for 0.1 % take cell, every turn")
+    assert text.endswith(").")
+    typed = re.findall(r"--set ('[^']*'|\S+?)(?=[ )])", text[second:])
+    case = read_case(ROOT / "cases" / "free_bending.yaml", [word.strip("'") for word in typed])
+    assert case.model == "cell"
+    assert case.mesh.axial == pytest.approx(0.75)
+
+
+def test_advice_takes_the_quickest_that_is_sure_though_it_lies_in_the_band() -> None:
+    judgement = judged()
+    known = judgement.known_to()
+    goal = 1.02 * (known + min(each.worst() for each in judgement.rungs))
+    assert known < goal
+    text = advice(judgement, goals=(goal,))
+    assert text.startswith("For ")
+    assert " take " in text
+
+
+def test_advice_does_not_promise_what_the_reference_does_not_know() -> None:
+    text = advice(judged(truth), goals=(1.0, 1e-3))
+    assert "for 0.001 % the reference itself is known to" in text
+    assert "only" in text

@@ -1,0 +1,66 @@
+"""The page of `make accuracy`: its price list and what it takes from a ladder's folder."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from bench import accuracy, prices
+from tests.ladder.parts import of_case, record
+
+
+@pytest.mark.parametrize("scene", prices.SCENES, ids=lambda scene: scene.effect)
+def test_a_scene_differs_from_the_one_beside_it_by_its_effect(scene: prices.Scene) -> None:
+    own = prices.rung(scene.effect, scene.settings, "4 mm")
+    other = prices.rung(scene.effect, scene.without, "4 mm")
+    assert own.digest != other.digest
+    # an effect adds unknowns or none, and takes away none
+    assert own.unknowns >= other.unknowns > 10_000
+    names = [effect.name for effect in own.case.effects]
+    assert names[:2] == ["pressure", "winding"]
+    assert len(names) - len(other.case.effects) in (0, 1)
+
+
+def test_the_price_list() -> None:
+    found = {"unknowns": 1000, "load_steps": 5, "iterations": 20, "solve_cpu_s": 4.0}
+    more = {"unknowns": 1500, "load_steps": 6, "iterations": 30, "solve_cpu_s": 5.0}
+    scenes = [{"effect": "gravity", "with": more, "without": found}]
+    *_, line = prices.table({"scenes": scenes})
+    cells = [cell.strip() for cell in line.strip("|").split("|")]
+    assert cells == [
+        *("gravity", "1000 → 1500", "5 → 6", "20 → 30", "4.0 → 5.0"),
+        *("+500", "+1.0 s (+25 %)"),
+    ]
+
+
+def test_the_least_of_several_times_counts_and_a_failure_is_none() -> None:
+    rung = of_case().rungs[1]
+    records = [record(rung, {}, wall) for wall in (3.0, 2.0, 4.0)]
+    assert prices.least(records)["solve_cpu_s"] == 1.0
+    failed = [*records[:2], prices.Record(**{**vars(records[2]), "status": "failed"})]
+    with pytest.raises(RuntimeError, match="failed"):
+        prices.least(failed)
+
+
+def test_a_part_of_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(accuracy, "RUNS", tmp_path)
+    monkeypatch.setattr(accuracy, "IMAGES", tmp_path)
+    folder = tmp_path / "accuracy_free_bending"
+    (folder / "rungs").mkdir(parents=True)
+    (folder / "accuracy.png").write_bytes(b"picture")
+    (folder / "accuracy.md").write_text("# Free bending\n\nFor 1 % take …\n\n| rung |\n")
+    for rung in of_case().rungs[:2]:
+        text = json.dumps(vars(record(rung, {})))
+        (folder / "rungs" / f"{rung.name}.json").write_text(text)
+    lines = list(accuracy.part(accuracy.LADDERS[0]))
+    assert lines[0] == "## Free bending"
+    assert "For 1 % take …" in lines
+    assert not any(line.startswith("# ") for line in lines)
+    assert (tmp_path / "accuracy_free_bending.png").read_bytes() == b"picture"
+    other = json.loads(text)
+    other["key"]["commit"] = "0" * 40
+    (folder / "rungs" / "other.json").write_text(json.dumps(other))
+    with pytest.raises(SystemExit, match="expected one"):
+        list(accuracy.part(accuracy.LADDERS[0]))
