@@ -244,6 +244,15 @@ class WindingEffect(Effect):
             update["lines"] = self.lines or (DEFAULT_LINES if width else 1)
         return self.model_copy(update=update)
 
+    def representations(self) -> tuple[Self, ...]:
+        """Spread and in turns, unless the case says which; a ribbon lies in turns."""
+        if not {"representation", "width", "lines"}.isdisjoint(self.model_fields_set):
+            return (self,)
+        plain = self.model_copy(update={"width": None, "lines": None})
+        return tuple(
+            plain.model_copy(update={"representation": kind}) for kind in ("smeared", "discrete")
+        )
+
     def turns(self) -> Turns:
         """Pitch, pattern and thread."""
         discrete = self.representation != "smeared"

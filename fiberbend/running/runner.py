@@ -18,6 +18,7 @@ from fem.march.march import ACROSS
 from fem.results.checkpoint import Archive
 from fem.scene import Scene
 from fiberbend import columns as col
+from fiberbend.accuracy.words import missed
 from fiberbend.answer.answer import answer
 from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
@@ -94,6 +95,13 @@ def run_case(
         if (out / REPORT).exists():
             progress.log(f"report in {out / REPORT}")
         return result
+
+
+def _solve_beside(case: Case) -> RunResult:
+    """A case beside the run, on this rank alone."""
+    model = choose_model(case)[0].elements()
+    assert model is not None
+    return _Run(case, model, None, Progress(quiet=True), MPI.COMM_SELF).go(False)
 
 
 class _AcrossError(Exception):
@@ -205,6 +213,10 @@ class _Run:
         self._warn_of_ends(status, assembly, recorder, recording)
         check = self._cross_check(recorder.rows, section)
         recording.warn([] if check is None else check.doubts(), silent=True)
+        accuracy = self._accuracy(status, recorder.rows)
+        recording.warn(
+            [line for block in accuracy.values() if (line := missed(block))], silent=True
+        )
         progress.phase("output")
         recording.keep(LAST)
         rows = check.beside(recorder.rows) if check else recorder.rows
@@ -219,6 +231,7 @@ class _Run:
             kernels.versions(),
         )
         run |= record.of_effects(case, recorder.rows) | record.beside(check)
+        run |= accuracy
         run |= on_rank_0(self.comm, lambda: record.strain(case, assembly, recording.last))
         if self.folder is not None:
             self.folder.write_history(rows)
@@ -346,13 +359,21 @@ class _Run:
 
         self.progress.phase("crosscheck")
         known = None if section is None else section.bending
+        return on_rank_0(
+            self.comm, lambda: check_run(self.case, self.model, rows, _solve_beside, known)
+        )
 
-        def solve(beside: Case) -> RunResult:
-            model = choose_model(beside)[0].elements()
-            assert model is not None
-            return _Run(beside, model, None, Progress(quiet=True), MPI.COMM_SELF).go(False)
+    def _accuracy(self, status: str, rows: list[dict[str, Any]]) -> dict[str, Any]:
+        """The block `accuracy` of run.json, where the case asks for one."""
+        if self.case.accuracy is None:
+            return {}
+        from fiberbend.running.accuracy import estimated
 
-        return on_rank_0(self.comm, lambda: check_run(self.case, self.model, rows, solve, known))
+        self.progress.phase("accuracy")
+        return on_rank_0(
+            self.comm,
+            lambda: {"accuracy": estimated(self.case, self.model, status, rows, _solve_beside)},
+        )
 
     def _close(self, run: dict[str, Any], assembly: Assembly, recording: Recording) -> None:
         """Write how long the last phase took, and what it warned of; on the rank that writes."""
