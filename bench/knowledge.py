@@ -35,6 +35,8 @@ FINE_SECTION = 6
 CELLS = ((1, 1), (1, 2), (1, 4), (1, 8), (2, 2), (2, 4))
 """Refinement of the section, and layers a half pitch."""
 FINE_CELL = (2, 8)
+SPREAD: dict[str, Any] = {"as": "smeared"}
+TURNS: dict[str, Any] = {"as": "discrete"}
 LONG = (1.0, 0.5)
 """Length of the elements of a body over the radius, winding spread."""
 IN_TURNS = (1, 2)
@@ -75,7 +77,11 @@ BODIED = ("baseline", "radius 6", "wall 1", "wall 3", "rectangle", "circle", "ra
 
 
 def case_of(
-    name: str, model: str, mesh: dict[str, Any], radii: int = 20, **winding: Any
+    name: str,
+    model: str,
+    mesh: dict[str, Any],
+    radii: int = 20,
+    winding: dict[str, Any] | None = None,
 ) -> dict[str, Any]:
     """The case of an actuator so many radii long; its cap is 15 mm long."""
     sizes, pitch, materials = GEOMETRIES[name]
@@ -91,7 +97,7 @@ def case_of(
         "mesh": mesh,
         "effects": [
             {"pressure": {"angle": f"{angles[-1]} deg"}},
-            {"winding": WINDING | {"pitch": f"{pitch} mm"} | winding},
+            {"winding": WINDING | {"pitch": f"{pitch} mm"} | (winding or {})},
         ],
         "output": {"at_angles": [f"{angle} deg" for angle in angles]},
     }
@@ -134,14 +140,14 @@ def percent(found: np.ndarray, true: np.ndarray) -> list[float | None]:
 
 def section(name: str, n: int) -> np.ndarray:
     """P of a section, winding spread."""
-    return pressures(case_of(name, "section", {"section": n}, **{"as": "smeared"}))
+    return pressures(case_of(name, "section", {"section": n}, winding=SPREAD))
 
 
-def cell(name: str, n: int, layers: int, **winding: Any) -> np.ndarray:
+def cell(name: str, n: int, layers: int, **more: Any) -> np.ndarray:
     """P of a cell with every turn."""
     axial = f"{GEOMETRIES[name][1] / 2 / layers} mm"
     mesh = {"section": n, "axial": axial}
-    return pressures(case_of(name, "cell", mesh, **{"as": "discrete"}, **winding))
+    return pressures(case_of(name, "cell", mesh, winding=TURNS | more))
 
 
 def fine_section(name: str) -> np.ndarray:
@@ -150,9 +156,11 @@ def fine_section(name: str) -> np.ndarray:
     return fine + (fine - coarse) / ((FINE_SECTION / SECTIONS[-1]) ** 2 - 1)
 
 
-def body(name: str, n: int, axial: float, **settings: Any) -> dict[str, Any]:
+def body(
+    name: str, n: int, axial: float, winding: dict[str, Any], radii: int = 20
+) -> dict[str, Any]:
     """The case of a body with elements so many mm long."""
-    return case_of(name, "body", {"section": n, "axial": f"{axial} mm"}, **settings)
+    return case_of(name, "body", {"section": n, "axial": f"{axial} mm"}, radii, winding)
 
 
 def ends(case: dict[str, Any], radii: int = 20) -> dict[str, list[float]]:
@@ -174,10 +182,10 @@ def long_elements() -> dict[str, float]:
 
     Against elements a quarter of the radius long, winding spread.
     """
-    fine = pressures(body("baseline", 1, 2.0, **{"as": "smeared"}))
+    fine = pressures(body("baseline", 1, 2.0, winding=SPREAD))
     found = {}
     for part in LONG:
-        coarse = pressures(body("baseline", 1, 8.0 * part, **{"as": "smeared"}))
+        coarse = pressures(body("baseline", 1, 8.0 * part, winding=SPREAD))
         found[f"{part}"] = round(float(np.nanmax(np.abs(100 * (coarse / fine - 1)))), 3)
     return found
 
@@ -190,9 +198,9 @@ def bodies_in_turns() -> tuple[dict[str, float], float]:
     pressure of the body beside that of the cell at the angle of the body's middle.
     """
     apart, more, radii = {}, [], 10
-    spread = ends(body("baseline", 1, 4.0, radii=radii, **{"as": "smeared"}), radii)
+    spread = ends(body("baseline", 1, 4.0, radii=radii, winding=SPREAD), radii)
     for layers in IN_TURNS:
-        case = body("baseline", 1, 1.5 / layers, radii=radii, **{"as": "discrete"})
+        case = body("baseline", 1, 1.5 / layers, radii=radii, winding=TURNS)
         rows = solved(case)
         middle = [row["uniform_angle_deg"] for row in rows]
         beside = copy.deepcopy(case)
@@ -215,7 +223,7 @@ def _radius(name: str) -> float:
 def entry(name: str) -> dict[str, Any]:
     """What is known of an actuator."""
     true = fine_section(name)
-    made = parse_case(case_of(name, "section", {}, **{"as": "smeared"}))
+    made = parse_case(case_of(name, "section", {}, winding=SPREAD))
     known: dict[str, Any] = {
         "name": name,
         "section": made.actuator.section,
@@ -228,7 +236,7 @@ def entry(name: str) -> dict[str, Any]:
         known["turns"] = turns
         known["winding"] = percent(true, fine)
     if name in BODIED:
-        known["ends"] = ends(body(name, 1, _radius(name), **{"as": "smeared"}))
+        known["ends"] = ends(body(name, 1, _radius(name), winding=SPREAD))
     return known
 
 

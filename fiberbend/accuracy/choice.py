@@ -129,7 +129,8 @@ def complete(case: Case) -> Case | None:
 
 def _given(spec: S, keys: set[str]) -> S:
     """A part of a case whose file has given some keys of it; the others were chosen."""
-    return type(spec).model_construct(set(keys), **dict(spec))
+    made: S = type(spec).model_construct(set(keys), **dict(spec))
+    return made
 
 
 def problems(case: Case) -> Iterator[Objection]:

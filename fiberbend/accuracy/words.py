@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from fiberbend.accuracy.budget import ENDS, MESH, WINDING, Estimate, estimate, percent
@@ -50,6 +50,24 @@ def way_named(case: Case) -> str:
     """Model, mesh and winding of a completed case."""
     model = meshed(case)
     return Candidate(case, model, 0.0, 0.0, Estimate({}, None)).named()
+
+
+def ways_differ(cases: Sequence[Case]) -> str:
+    """Why the points of a sweep are no one curve: they choose other models or windings."""
+    found: dict[str, int] = {}
+    for case in cases:
+        if picked(case):
+            turns = case.turns
+            how = "" if turns is None else " in turns" if turns.discrete else " spread"
+            name = f"{case.model}{', winding' if how else ''}{how}"
+            found[name] = found.get(name, 0) + 1
+    if len(found) < 2:
+        return ""
+    ways = "; ".join(f"{name}: {number} points" for name, number in found.items())
+    return (
+        f"the points choose different models, and what they show would jump between them ({ways}), "
+        "expected a model, or a winding with `as`"
+    )
 
 
 def why_not(found: Estimate, asked: float) -> str:
