@@ -6,7 +6,7 @@ import dataclasses
 import itertools
 import math
 from collections.abc import Iterator
-from typing import TypeVar
+from typing import TypeVar, cast
 
 from fiberbend.accuracy.budget import Estimate, estimate
 from fiberbend.case.case import Case
@@ -129,8 +129,7 @@ def complete(case: Case) -> Case | None:
 
 def _given(spec: S, keys: set[str]) -> S:
     """A part of a case whose file has given some keys of it; the others were chosen."""
-    made: S = type(spec).model_construct(set(keys), **dict(spec))
-    return made
+    return cast("S", type(spec).model_construct(set(keys), **dict(spec)))
 
 
 def problems(case: Case) -> Iterator[Objection]:

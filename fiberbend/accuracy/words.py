@@ -14,7 +14,7 @@ from fiberbend.models.choice import meshed
 from fiberbend.schema.units import show
 
 PAGE = "docs/models.md"
-_MISSED = "cannot be promised"
+MISSED = "cannot be promised"
 
 
 def expected_lines(case: Case) -> Iterator[str]:
@@ -23,7 +23,7 @@ def expected_lines(case: Case) -> Iterator[str]:
         return
     found = estimate(case, meshed(case))
     where = "" if found.angle is None else f" at {math.degrees(found.angle):.3g}°"
-    verdict = "promised" if found.meets(case.accuracy) else _MISSED
+    verdict = "promised" if found.meets(case.accuracy) else MISSED
     reason = "" if found.meets(case.accuracy) else f": {why_not(found, case.accuracy)}"
     asked = show(case.accuracy, "accuracy")
     yield f"{asked} asked, about {found.short()} expected{where}: {verdict}{reason}"
@@ -117,15 +117,4 @@ def verdict(run: Mapping[str, Any]) -> str:
     asked = show(block["asked"], "accuracy")
     if block["promised"]:
         return f"the {asked} asked for is met by the estimate"
-    return f"the {asked} asked for {_MISSED}"
-
-
-def missed(block: Mapping[str, Any]) -> str:
-    """A warning where an accuracy is missed; empty elsewhere."""
-    if block["promised"]:
-        return ""
-    asked = show(block["asked"], "accuracy")
-    return (
-        f"accuracy: {asked} {_MISSED}, {percent(block['estimated'])} % is estimated: "
-        f"{block['reason']}"
-    )
+    return f"the {asked} asked for {MISSED}"

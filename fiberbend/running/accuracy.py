@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from fiberbend import columns as col
-from fiberbend.accuracy.budget import State, estimate, mesh_error
+from fiberbend.accuracy.budget import Estimate, State, estimate, mesh_error, percent
 from fiberbend.accuracy.numbers import curvature
-from fiberbend.accuracy.words import entry
+from fiberbend.accuracy.words import MISSED, entry
 from fiberbend.case.case import Case
 from fiberbend.case.section_beside import as_section
 from fiberbend.effects.effect import TURNS
 from fiberbend.effects.pressure import inflate
 from fiberbend.effects.straight import straight_of
-from fiberbend.models.choice import MODELS
+from fiberbend.models.choice import MODELS, meshed
 from fiberbend.models.model import MeshedModel, Rung
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case
@@ -34,22 +34,45 @@ Solve = Callable[[Case], RunResult]
 
 
 def estimated(
-    case: Case, model: MeshedModel, status: str, rows: Sequence[dict[str, Any]], solve: Solve
+    case: Case,
+    status: str,
+    rows: Sequence[dict[str, Any]],
+    solve: Solve,
+    phase: Callable[[str], None],
 ) -> dict[str, Any]:
-    """The block `accuracy` of run.json; no collective.
+    """The entry `accuracy` of run.json, where a case asks for one; no collective.
 
     Args:
-        case: of the run, which asks for an accuracy.
-        model: its model.
+        case: of the run.
         status: how it ended.
         rows: its history.
         solve: solves a case on this rank alone.
+        phase: takes the name of the phase that begins.
     """
-    assert case.accuracy is not None
+    if case.accuracy is None:
+        return {}
+    phase("accuracy")
+    found = _estimate(case, meshed(case), status, rows, solve)
+    return {"accuracy": entry(case.accuracy, found)}
+
+
+def missed(run: Mapping[str, Any]) -> list[str]:
+    """A warning of a run that misses its accuracy; none elsewhere."""
+    block = run.get("accuracy")
+    if not block or block["promised"]:
+        return []
+    asked = show(block["asked"], "accuracy")
+    estimated = f"{percent(block['estimated'])} % is estimated"
+    return [f"accuracy: {asked} {MISSED}, {estimated}: {block['reason']}"]
+
+
+def _estimate(
+    case: Case, model: MeshedModel, status: str, rows: Sequence[dict[str, Any]], solve: Solve
+) -> Estimate:
     doubts = [] if status == "converged" else [f"the run {status}"]
     asked = _asked(case, rows)
     if not asked:
-        return entry(case.accuracy, estimate(case, model, (), [*doubts, "it has no answer"]))
+        return estimate(case, model, (), [*doubts, "it has no answer"])
     winding: dict[int, float] = {}
     turns = case.turns
     if turns is not None and not turns.discrete and not (case.straight and model.ends):
@@ -67,7 +90,7 @@ def estimated(
             factor = 1 / _FLAT
         angle = 0.0 if case.straight else math.radians(row[col.ANGLE])
         states.append(State(curvature(case, angle), winding.get(row[col.STEP]), factor))
-    return entry(case.accuracy, estimate(case, model, states, doubts))
+    return estimate(case, model, states, doubts)
 
 
 def _asked(case: Case, rows: Sequence[dict[str, Any]]) -> list[tuple[dict[str, Any], bool]]:

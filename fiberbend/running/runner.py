@@ -18,11 +18,10 @@ from fem.march.march import ACROSS
 from fem.results.checkpoint import Archive
 from fem.scene import Scene
 from fiberbend import columns as col
-from fiberbend.accuracy.words import missed
 from fiberbend.answer.answer import answer
 from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
-from fiberbend.models.choice import choose_model
+from fiberbend.models.choice import choose_model, meshed
 from fiberbend.models.model import MeshedModel
 from fiberbend.models.result import RunResult
 from fiberbend.plan.doubts import doubts
@@ -31,6 +30,7 @@ from fiberbend.process.signals import Interrupted, stop_of
 from fiberbend.results.folder import MESH, REPORT, RunFolder
 from fiberbend.results.states import LAST, write_fibers
 from fiberbend.running import launch, messages, record, restart
+from fiberbend.running.accuracy import estimated, missed
 from fiberbend.running.assembly import Assembly, assemble
 from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording, ended, shows_states, unmet
@@ -99,9 +99,7 @@ def run_case(
 
 def _solve_beside(case: Case) -> RunResult:
     """A case beside the run, on this rank alone."""
-    model = choose_model(case)[0].elements()
-    assert model is not None
-    return _Run(case, model, None, Progress(quiet=True), MPI.COMM_SELF).go(False)
+    return _Run(case, meshed(case), None, Progress(quiet=True), MPI.COMM_SELF).go(False)
 
 
 class _AcrossError(Exception):
@@ -213,10 +211,9 @@ class _Run:
         self._warn_of_ends(status, assembly, recorder, recording)
         check = self._cross_check(recorder.rows, section)
         recording.warn([] if check is None else check.doubts(), silent=True)
-        accuracy = self._accuracy(status, recorder.rows)
-        recording.warn(
-            [line for block in accuracy.values() if (line := missed(block))], silent=True
-        )
+        given = (status, recorder.rows, _solve_beside, progress.phase)
+        error = on_rank_0(self.comm, lambda: estimated(case, *given))
+        recording.warn(missed(error), silent=True)
         progress.phase("output")
         recording.keep(LAST)
         rows = check.beside(recorder.rows) if check else recorder.rows
@@ -230,8 +227,7 @@ class _Run:
             self.comm.size,
             kernels.versions(),
         )
-        run |= record.of_effects(case, recorder.rows) | record.beside(check)
-        run |= accuracy
+        run |= record.of_effects(case, recorder.rows) | record.beside(check) | error
         run |= on_rank_0(self.comm, lambda: record.strain(case, assembly, recording.last))
         if self.folder is not None:
             self.folder.write_history(rows)
@@ -361,18 +357,6 @@ class _Run:
         known = None if section is None else section.bending
         return on_rank_0(
             self.comm, lambda: check_run(self.case, self.model, rows, _solve_beside, known)
-        )
-
-    def _accuracy(self, status: str, rows: list[dict[str, Any]]) -> dict[str, Any]:
-        """The block `accuracy` of run.json, where the case asks for one."""
-        if self.case.accuracy is None:
-            return {}
-        from fiberbend.running.accuracy import estimated
-
-        self.progress.phase("accuracy")
-        return on_rank_0(
-            self.comm,
-            lambda: {"accuracy": estimated(self.case, self.model, status, rows, _solve_beside)},
         )
 
     def _close(self, run: dict[str, Any], assembly: Assembly, recording: Recording) -> None:
