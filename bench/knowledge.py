@@ -253,7 +253,7 @@ def main() -> None:
             "commit": origin.commit(ROOT),
             "machine": origin.machine(),
         },
-        "curvatures": [round(float(np.radians(angle) / 20), 4) for angle in ANGLES],
+        "curvatures": [round(float(np.radians(angle) / 20), 6) for angle in ANGLES],
         "spread body": long_elements(),
         "turns body": apart,
         "ends of turns": more,
