@@ -47,14 +47,14 @@ ACTUATORS: dict[str, tuple[dict[str, str], str, dict[str, str]]] = {
 MODELS = ("section", "cell", "body", "auto")
 HEAD = """# Does an accuracy keep its word?
 
-`accuracy: 1 %` on eight actuators that its table
-([Ask for an accuracy](../models.md#ask-for-an-accuracy)) was not made from, at 45, 90, 180 and 270°,
-with the model given or left open. "Found" is the greatest difference of the pressure from a cell of
-{layers} layers a half pitch, {section} elements through each thickness and {lines} lines a ribbon; of a
-body it is taken at the angle that L times the curvature of its middle half makes. So it holds mesh
-and winding, and is to be compared with the estimate of these two. The ends, which no cell has, are
-estimated beside. A run that its plan gives more than {seconds:g} s is planned only.
-`python bench/promise.py` makes the page.
+`accuracy: 1 %` on eight actuators that its table ([Ask for an
+accuracy](../models.md#ask-for-an-accuracy)) was not made from, at 45, 90, 180 and 270°, with
+the model given or left open. "Found" is the greatest difference of the pressure from a cell of
+{layers} layers a half pitch, {section} elements through each thickness and {lines} lines a
+ribbon; of a body it is taken at the angle that L times the curvature of its middle half makes.
+So it holds mesh and winding, and is to be compared with the estimate of these two. The ends,
+which no cell has, are estimated beside. A run that its plan gives more than {seconds:g} s is
+planned only. `python bench/promise.py` makes the page.
 
 """
 
