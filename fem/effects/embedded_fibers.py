@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping
 
 import numpy as np
@@ -10,39 +9,16 @@ import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from analytic.path import cross_matrix
+from fem.effects.mean_stretch import Lines, MeanStretch, Second
 from fem.kinematics.kinematics import Kinematics
 from fem.ranks import total
 from geometry.mesh.data import facet_positions
-from geometry.mesh.reference import shape_functions
 from geometry.winding.segments import EmbeddedFibers
 
 Floats = npt.NDArray[np.float64]
 
 ROUND_OFF = 1e-12
 """Strains of fibers at rest are ±1e-15; one that carries in tension only is taut down to −this."""
-
-
-@dataclasses.dataclass(frozen=True)
-class _Second:
-    """Second derivatives of s segments with k dofs each.
-
-    Attributes:
-        block: ∂²Π/∂w², (s, k, k).
-        mixed: by scalar, ∂²Π/∂w∂q, (s, k).
-        scalars: by pair of scalars, ∂²Π/∂q∂r of all segments together.
-    """
-
-    block: Floats
-    mixed: dict[str, Floats]
-    scalars: dict[tuple[str, str], float]
-
-
-def _contract(vectors: Floats, maps: Floats) -> Floats:
-    """Σ_qi v_qi M_qik over points and components: v (n, q, 3), M (n, q, 3, k), result (n, k)."""
-    count, width = len(maps), maps.shape[3]
-    result: Floats = (vectors.reshape(count, 1, -1) @ maps.reshape(count, -1, width))[:, 0]
-    return result
 
 
 class FiberPotential:
@@ -83,83 +59,22 @@ class FiberPotential:
         self.tension_only = tension_only
         self.length = segments.length[self.index]
         self.stiffness = stiffness * segments.share[self.index]
-        local, facet = local[self.index], segments.facet[self.index]
         host = host[self.index]
         self._start = np.flatnonzero(np.r_[True, host[1:] != host[:-1]][: len(host)])
-
-        # With φ_a the shape functions of the host cell, ξ its reference coordinates, X_a (mm) the
-        # nodes of the host facet and t = dξ/ds along the piece (s its parameter): dX/ds =
-        # Σ_a (∇φ_a · t) X_a, S (mm) the arc length, dS = |dX/ds| ds. At each point i
-        #   _slope: T·∇φ_a = (∇φ_a · t)/|dX/ds|, 1/mm, so that F T = Σ_a slope_a x_a;
-        #   _rise: T_z = dZ/dS; _value: φ_a; _share: c_i = w_i dS_i/Σ w dS, weights of the mean.
-        # Only nodes of the facet enter: off it φ_a and its derivative along it vanish.
-        positions = facet_positions(domain.data.cell_type)[facet]
-        count, quadrature = len(self.index), segments.weights.shape[1]
-        dim = segments.points.shape[2]
-        points = segments.points[self.index].reshape(-1, dim)
-        value, gradient = shape_functions(domain.data.cell_type, points)
-        tangent = segments.tangents[self.index].reshape(-1, dim)
-        along = np.einsum("pad,pd->pa", gradient, tangent).reshape(count, quadrature, -1)
-        along = np.take_along_axis(along, positions[:, None, :], axis=2)
-        self._dofs = body.cell_dofs[local[:, None], positions].reshape(count, -1)
-        cells = domain.data.cells[segments.cell[self.index, None], positions]
-        self._reference = domain.data.nodes[cells]
-        rise = segments.axial[self.index]
-        if self._reference.shape[2] == 3:
-            rise = np.einsum("nqa,na->nq", along, self._reference[:, :, 2])
-        plane = along @ self._reference[:, :, :2]
-        metric = np.sqrt(np.sum(plane**2, axis=2) + rise**2)
-        slope = along / metric[:, :, None]  # ∂φ_a/∂S, 1/mm
-        share = segments.weights[self.index] * metric
-        self._share = share / share.sum(axis=1, keepdims=True)
-        self._uniform = body.carry() is not None
-        parts = body.components
-        if self._uniform:
-            value = np.take_along_axis(
-                value.reshape(count, quadrature, -1), positions[:, None, :], axis=2
-            )
-            self._value = np.einsum("nqa,ij->nqiaj", value, np.eye(3)[:, :parts]).reshape(
-                count, quadrature, 3, -1
-            )
-            self._rise: Floats = (rise / metric)[:, :, None]
-        self._slope = np.einsum("nqa,ij->nqiaj", slope, np.eye(3)[:, :parts]).reshape(
-            count, quadrature, 3, -1
-        )
-        rest = np.zeros((*self._reference.shape[:2], parts))
-        # x' in the turning frame: z is not a position there
-        shown = 2 if self._uniform else 3
-        rest[:, :, :shown] = self._reference[:, :, :shown]
-        self._reference = rest.reshape(count, -1)
+        self._along = MeanStretch(body, Lines.of(segments, self.index))
+        self._dofs = self._along.dofs
         self._predicted: Floats | None = None
-        self._second: _Second | None = None
+        self._second: Second | None = None
         self._slackens = False
         """The predicted motion shortens those fibers that are as long as at rest, as a whole."""
-        self.strain = np.zeros(count)
+        self.strain = np.zeros(len(self.index))
 
     # --- state ---------------------------------------------------------------------------------
 
     def update(self, w: Floats) -> None:
         """Strain and its derivatives at the local coefficients w and the present scalars."""
-        x = self._reference + w[self._dofs]
-        self._map = self._slope
-        self._rates: dict[str, Floats] = {}
-        t = (self._slope @ x[:, None, :, None])[..., 0]
-        carry = self._body.carry()
-        if carry is not None:
-            position = (self._value @ x[:, None, :, None])[..., 0]
-            along, spin = np.array([0.0, 0.0, carry.stretch]), cross_matrix(carry.spin)
-            t = t + self._rise * (along + position @ spin.T)
-            self._map = self._slope + self._rise[..., None] * (spin @ self._value)
-            for name, (vector, turn) in carry.rates.items():
-                self._rates[name] = self._rise * (vector + position @ cross_matrix(turn).T)
-        self._stretch = np.linalg.norm(t, axis=2)
-        self._direction = t / self._stretch[:, :, None]
-        self.strain = np.sum(self._share * self._stretch, axis=1) - 1
-        weighted = self._share[:, :, None] * self._direction
-        self._b = _contract(weighted, self._map)
-        self._e_q = {
-            name: np.sum(weighted * rate, axis=(1, 2)) for name, rate in self._rates.items()
-        }
+        self._along.update(w)
+        self.strain = self._along.value - 1
         self._second = None
 
     @property
@@ -201,20 +116,12 @@ class FiberPotential:
 
     def add_residual(self, b: Floats) -> None:
         """Add ∂Π/∂w = Σ ℓ N ∂e/∂w to local coefficients."""
-        self._add(b, (self.length * self.force)[:, None] * self._b)
+        self._along.add(b, (self.length * self.force)[:, None] * self._along.by_dofs)
 
     def add_noise(self, b: Floats) -> None:
-        """Add the forces that round-off in the strains makes, at rest, to local coefficients.
-
-        F T is a sum of positions over the size of an element: its error is that of the summands.
-        """
-        x = np.abs(self._reference)[:, None, :, None]
-        error = np.finfo(float).eps * np.linalg.norm((np.abs(self._slope) @ x)[..., 0], axis=2)
-        force = self.length * self.stiffness * np.sum(self._share * error, axis=1)
-        self._add(b, force[:, None] * np.abs(self._b))
-
-    def _add(self, b: Floats, values: Floats) -> None:
-        b += np.bincount(self._dofs.ravel(), values.ravel(), len(b))
+        """Add the forces that round-off in the strains makes, at rest, to local coefficients."""
+        force = self.length * self.stiffness * self._along.noise()
+        self._along.add(b, force[:, None] * np.abs(self._along.by_dofs))
 
     def predict(
         self, correction: Floats | None, scalars: Mapping[str, float] | None = None
@@ -225,29 +132,22 @@ class FiberPotential:
         if correction is None:
             self._predicted = None
             return
-        change = np.einsum("nk,nk->n", self._b, correction[self._dofs])
-        for name, value in (scalars or {}).items():
-            if name in self._e_q:
-                change += self._e_q[name] * value
+        change = self._along.change(correction, scalars)
         self._predicted = self.stiffness * (self.strain + change)
         if self.tension_only:
             # fiber by fiber it would be a set that the answer itself changes: all or none
             pull = np.where(self._at_rest, self.length * self.stiffness * change, 0.0)
             self._slackens = bool(total(self._body.domain.comm, float(pull.sum())) < 0)
 
-    def _second_derivatives(self) -> _Second:
+    def _second_derivatives(self) -> Second:
         """∂²Π of every segment in its own dofs and the scalars, at the present state.
 
-        With t = F T, λ = |t| and n = t/λ at each point, c its weight, e = Σ c λ − 1, ℓ in mm, EA
-        and the force N in N, and a, b any of the unknowns w and q:
+        With ℓ in mm, EA and the force N in N, and a, b any of the unknowns w and q:
 
-            ∂e/∂a = Σ c n · ∂t/∂a,
-            ∂²Π/∂a∂b = ℓ EA ∂e/∂a ∂e/∂b
-                     + ℓ N Σ c [∂t/∂a · (I − n nᵀ)/λ · ∂t/∂b + n · ∂²t/∂a∂b].
+            ∂²Π/∂a∂b = ℓ EA ∂e/∂a ∂e/∂b + ℓ N ∂²e/∂a∂b,
 
-        t is linear in w and in q; ∂²t/∂w∂q = T_z (∂ω/∂q) × φ alone does not vanish, and only in
-        uniform bending. Material and geometric stiffness of a truss: Crisfield 1991, Non-linear
-        Finite Element Analysis of Solids and Structures 1, chapter 3.
+        material and geometric stiffness of a truss: Crisfield 1991, Non-linear Finite Element
+        Analysis of Solids and Structures 1, chapter 3.
         """
         if self._second is not None:
             return self._second
@@ -257,28 +157,14 @@ class FiberPotential:
         if self.tension_only:
             slack = self.slack | self._at_rest if self._slackens else self.slack
             stiffness = np.where(slack, 0.0, stiffness)
-        n = self._direction
-        across = np.eye(3) - n[..., :, None] * n[..., None, :]
-        pull = self.length[:, None] * force[:, None] * self._share
-        across *= (pull / self._stretch)[..., None, None]
-        stiff = self.length * stiffness
-        side = across @ self._map
-        count, width = self._dofs.shape
-        block = self._map.reshape(count, -1, width).swapaxes(1, 2) @ side.reshape(count, -1, width)
-        block += stiff[:, None, None] * (self._b[:, :, None] * self._b[:, None, :])
-        mixed: dict[str, Floats] = {}
-        scalars: dict[tuple[str, str], float] = {}
-        carry = self._body.carry()
-        for name, rate in self._rates.items():
-            assert carry is not None
-            turned = self._rise[..., None] * (cross_matrix(carry.rates[name][1]) @ self._value)
-            geometric = _contract(rate, side) + _contract(pull[:, :, None] * n, turned)
-            mixed[name] = geometric + (stiff * self._e_q[name])[:, None] * self._b
-            for other, last in self._rates.items():
-                turning = np.sum(rate * (across @ last[..., None])[..., 0])
-                material = np.sum(stiff * self._e_q[name] * self._e_q[other])
-                scalars[name, other] = float(turning + material)
-        self._second = _Second(block, mixed, scalars)
+        self._second = second = self._along.curved(self.length * force)
+        stiff, first = self.length * stiffness, self._along.by_dofs
+        block = second.block
+        block += stiff[:, None, None] * (first[:, :, None] * first[:, None, :])
+        for name, rate in self._along.by_scalar.items():
+            second.mixed[name] += (stiff * rate)[:, None] * first
+            for other, last in self._along.by_scalar.items():
+                second.scalars[name, other] += float(np.sum(stiff * rate * last))
         return self._second
 
     def add_tangent(self, matrix: PETSc.Mat, free: npt.NDArray[np.bool_]) -> None:
@@ -296,18 +182,18 @@ class FiberPotential:
 
     def conjugate(self, name: str) -> float:
         """This rank's −∂Π/∂q of a global scalar; zero where it does not enter."""
-        if name not in self._e_q:
+        if name not in self._along.by_scalar:
             return 0.0
-        return -float(np.sum(self.length * self.force * self._e_q[name]))
+        return -float(np.sum(self.length * self.force * self._along.by_scalar[name]))
 
     def add_load(self, name: str, b: Floats) -> None:
         """Add ∂²Π/∂w∂q to local coefficients (owned and ghosts)."""
-        if name in self._e_q:
-            self._add(b, self._second_derivatives().mixed[name])
+        if name in self._along.by_scalar:
+            self._along.add(b, self._second_derivatives().mixed[name])
 
     def second_derivative(self, first: str, second: str) -> float:
         """This rank's ∂²Π/∂q∂r of two global scalars."""
-        if first not in self._e_q or second not in self._e_q:
+        if first not in self._along.by_scalar or second not in self._along.by_scalar:
             return 0.0
         return self._second_derivatives().scalars[first, second]
 

@@ -1,15 +1,17 @@
-"""The fiber winding: every fiber embedded, or the same fibers smeared over their surface."""
+"""The fiber winding: every fiber embedded, or smeared over a surface that may bulge."""
 
 from __future__ import annotations
 
+from fem.effects.bulging_fibers import BulgingPotential
 from fem.effects.effect import Effect
 from fem.effects.embedded_fibers import FiberPotential
 from fem.kinematics.kinematics import Kinematics
-from geometry.winding.segments import EmbeddedFibers
+from geometry.winding.segments import EmbeddedFibers, SmearedFibers
+from materials.bulging import Bulging
 
 
 class _Fibers(Effect):
-    """Common to both windings.
+    """Common to all windings.
 
     Args:
         segments: pieces of fiber on the mesh's winding surface.
@@ -40,3 +42,35 @@ class Winding(_Fibers):
 
 class SmearedWinding(_Fibers):
     """The same winding as a membrane: a fiber length √(S² + p²)/(S p) per area and helix."""
+
+
+class CalibratedWinding(_Fibers):
+    """The membrane in series with the rubber that bulges between the turns of the same winding.
+
+    Args:
+        segments: smeared pieces of fiber on the mesh's winding surface.
+        stiffness: axial stiffness EA of a fiber, N.
+        bulging: stiffness against the bulge, fitted to a model that has the turns.
+        tension_only: slack fibers carry nothing.
+
+    Raises:
+        ValueError: a stiffness that is not positive.
+    """
+
+    segments: SmearedFibers
+
+    def __init__(
+        self,
+        segments: SmearedFibers,
+        stiffness: float,
+        bulging: Bulging,
+        tension_only: bool = False,
+    ) -> None:
+        super().__init__(segments, stiffness, tension_only)
+        self.bulging = bulging
+
+    def discrete(self, body: Kinematics) -> BulgingPotential:
+        """The potential of fibers and bulge on this body."""
+        return BulgingPotential(
+            body, self.segments, self.stiffness, self.bulging, self.tension_only
+        )

@@ -11,9 +11,15 @@ from fiberbend.accuracy.table import BEYOND, Knowledge, Known, at, knowledge, ou
 from fiberbend.case.case import Case
 from fiberbend.effects.effect import Turns
 from fiberbend.models.model import MeshedModel, Rung
+from fiberbend.models.resolution import CALIBRATED
 
 MESH, WINDING, ENDS = "mesh", "winding", "ends"
 PARTS = (MESH, WINDING, ENDS)
+FINE = Rung(1, 8)
+"""The cell beside which a spread winding is put: by a run, and where it is calibrated."""
+CALIBRATED_SECTION = 2
+"""Elements through each thickness of the section that is calibrated by it, see
+`fiberbend.calibration.digest`: their own error is within its numbers."""
 BLOCKED = 3.0
 """Percent of the force of a blocked tip by which the mesh of a body moves it
 (docs/evidence/blocked.md)."""
@@ -170,7 +176,8 @@ def mesh_error(case: Case, rung: Rung, state: float) -> float | None:
     table = knowledge()
     entries = table.of_section(case.actuator.section)
     if not rung.layers:
-        found = _worst((known.spread for known in entries), rung.section, table, state)
+        base = CALIBRATED_SECTION if case.turns is not None and case.turns.bulges else None
+        found = _worst((known.spread for known in entries), rung.section, base, table, state)
         if found is None or not rung.axial:
             return found
         beyond = _step(table.spread_body, rung.axial / radius(case), longest=True)
@@ -196,14 +203,20 @@ def mesh_error(case: Case, rung: Rung, state: float) -> float | None:
 
 
 def _worst(
-    ladders: Iterator[Mapping[int, tuple[float, ...]]], section: int, table: Knowledge, state: float
+    ladders: Iterator[Mapping[int, tuple[float, ...]]],
+    section: int,
+    base: int | None,
+    table: Knowledge,
+    state: float,
 ) -> float | None:
+    """The greatest error of sections; beside that of a refinement whose error does not count."""
     found = []
     for ladder in ladders:
         known = [n for n in ladder if n <= section]
         if not known:
             return None
-        found.append(abs(at(table.curvatures, ladder[max(known)], state)))
+        error = at(table.curvatures, ladder[max(known)], state)
+        found.append(abs(error - (at(table.curvatures, ladder[base], state) if base else 0.0)))
     return max(found)
 
 
@@ -224,11 +237,13 @@ def _finest(rung: Rung) -> Rung:
 def winding_error(case: Case, state: float) -> float:
     """Percent of P by which a spread winding is off: of the nearest actuator, by its pitch.
 
-    The run computes it: see `fiberbend.running.accuracy`.
+    The run computes it: see `fiberbend.accuracy.computed`.
     """
     turns = case.turns
     if turns is None or turns.discrete:
         return 0.0
+    if turns.bulges:
+        return CALIBRATED + lacking(case, state)
     table, here = knowledge(), numbers(case)
     entries = [k for k in table.of_section(case.actuator.section) if k.winding]
     nearest = min(entries, key=lambda known: _distance(known.numbers, here))
@@ -240,6 +255,11 @@ def _distance(one: Mapping[str, float], other: Mapping[str, float]) -> float:
     """Of two actuators, by the logarithms of their numbers; the thread's last."""
     pairs = [(one[key], other[key]) for key in ("wall", "pitch", "floor", "height")]
     return sum(math.log(max(a, 1e-3) / max(b, 1e-3)) ** 2 for a, b in pairs)
+
+
+def lacking(case: Case, state: float) -> float:
+    """Percent of P by which the cell is off beside which a spread winding is put."""
+    return mesh_error(case, FINE, state) or 0.0
 
 
 def ends_error(case: Case, state: float) -> float:

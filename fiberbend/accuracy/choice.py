@@ -9,7 +9,10 @@ from collections.abc import Iterator
 from typing import TypeVar, cast
 
 from fiberbend.accuracy.budget import Estimate, estimate
+from fiberbend.calibration import expected
+from fiberbend.calibration.calibrate import waits
 from fiberbend.case.case import Case
+from fiberbend.effects.effect import Turns
 from fiberbend.models.choice import MODELS, objection
 from fiberbend.models.model import MeshedModel, Objection, completed_mesh
 from fiberbend.schema.quantities import Spec
@@ -58,8 +61,13 @@ class Candidate:
             words.append(f"axial {show(mesh.axial, 'length')}")
         turns = self.case.turns
         if turns is not None:
-            words.append("winding in turns" if turns.discrete else "winding spread")
+            words.append(f"winding {wound(turns)}")
         return ", ".join(words)
+
+
+def wound(turns: Turns) -> str:
+    """How a winding is represented, in words."""
+    return "in turns" if turns.discrete else "calibrated" if turns.bulges else "spread"
 
 
 def candidates(case: Case) -> list[Candidate]:
@@ -187,4 +195,5 @@ def _candidate(case: Case, model: MeshedModel) -> Candidate:
     if not case.straight:
         steps += math.ceil(abs(angle) / turn)
     seconds = model.start_s + steps * model.step_seconds(case, size)
+    seconds += expected.seconds(case) if waits(case) else 0.0
     return Candidate(case, model, seconds, model.memory_mb(size), estimate(case, model))

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from fiberbend.accuracy.budget import ENDS, MESH, WINDING, Estimate, estimate, percent
-from fiberbend.accuracy.choice import Candidate, cheaper, picked
+from fiberbend.accuracy.choice import Candidate, cheaper, picked, wound
 from fiberbend.accuracy.table import knowledge
 from fiberbend.case.case import Case
 from fiberbend.models.choice import meshed
@@ -58,8 +58,7 @@ def ways_differ(cases: Sequence[Case]) -> str:
     for case in cases:
         if picked(case):
             turns = case.turns
-            how = "" if turns is None else " in turns" if turns.discrete else " spread"
-            name = f"{case.model}{', winding' if how else ''}{how}"
+            name = case.model if turns is None else f"{case.model}, winding {wound(turns)}"
             found[name] = found.get(name, 0) + 1
     if len(found) < 2:
         return ""

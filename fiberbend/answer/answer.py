@@ -84,6 +84,7 @@ def answer(case: Case, rows: Sequence[col.Row], run: Mapping[str, Any]) -> Answe
         *_critical(run),
         *_strain(run),
         *_errors(case, model, run),
+        *_calibrated(run),
         *_measured(run),
     ]
     return Answer(
@@ -321,6 +322,13 @@ def _errors(case: Case, model: ModelKind, run: Mapping[str, Any]) -> Iterator[En
         return
     for index, line in enumerate(errors(case, model)):
         yield Entry("" if index else "expected error", line)
+
+
+def _calibrated(run: Mapping[str, Any]) -> Iterator[Entry]:
+    """By what numbers the rubber between the turns of a winding bulges, and how good they are."""
+    text = (run.get("calibration") or {}).get("text")
+    if text:
+        yield Entry("", text)
 
 
 def _measured(run: Mapping[str, Any]) -> Iterator[Entry]:

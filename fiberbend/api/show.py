@@ -95,5 +95,7 @@ def _winding(case: Case) -> str:
     if turns is None:
         return ""
     kind = "every turn by itself" if turns.discrete else "spread over its surface"
+    if turns.bulges:
+        kind += ", bulging as in its cell"
     count = case.actuator.length / turns.pitch
     return f"pitch {turns.pitch:g} mm, {count:.3g} turns, {kind}"

@@ -25,7 +25,7 @@ from fiberbend.models.closed_form import (
     lever_arm,
 )
 from fiberbend.models.model import ModelKind
-from fiberbend.models.resolution import bulging
+from fiberbend.models.resolution import beyond_section, bulging
 
 _SHARE = 0.25
 """Part of a difference that a cause has to account for to be named."""
@@ -91,7 +91,7 @@ def find_causes(
         seen = {col.ANGLE: row[col.ANGLE], col.PRESSURE: value}
         found = _of_closed_form(case, model, seen, curves[lines.ZERO_FIT], curves)
         return [cause.reversed() for cause in found]
-    return [*_ends(model, row, other), *_fibers(case, model, row)]
+    return [*_ends(model, row, other), *_fibers(case, beyond_section(case, model), row)]
 
 
 def _ends(model: ModelKind, row: col.Row, other: OtherModel) -> list[Cause]:
@@ -112,8 +112,9 @@ def _ends(model: ModelKind, row: col.Row, other: OtherModel) -> list[Cause]:
     return [Cause("end caps", percent, f"{text}: {percent:+.1f} %", brief="the end caps")]
 
 
-def _fibers(case: Case, model: ModelKind, row: col.Row) -> list[Cause]:
-    turns, part = case.turns, model.resolved_bulging(case)
+def _fibers(case: Case, part: float, row: col.Row) -> list[Cause]:
+    """What a part of the bulging between the turns costs, which the other model has not."""
+    turns = case.turns
     if turns is None or part == 0:
         return []
     percent = part * bulging(turns.pitch, row[col.ANGLE])
@@ -147,7 +148,7 @@ def _of_closed_form(
     if floor_limits(case):
         found.append(_floor_stiffness(case, closed, angle))
     found += _floor_bulging(row, wide, angle)
-    return [*found, *_fibers(case, model, row)]
+    return [*found, *_fibers(case, model.resolved_bulging(case), row)]
 
 
 def _floor_stiffness(case: Case, closed: Hemicircle, angle: float) -> Cause:

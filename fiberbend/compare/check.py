@@ -34,7 +34,12 @@ from fiberbend.drawing.overlay import Line, Overlay, Points
 from fiberbend.models import lines
 from fiberbend.models.closed_form import dimensions, no_analytic
 from fiberbend.models.model import ModelKind
-from fiberbend.models.resolution import BULGING_PITCH, FARTHEST_PITCH, bulging
+from fiberbend.models.resolution import (
+    BULGING_PITCH,
+    FARTHEST_PITCH,
+    beyond_section,
+    bulging,
+)
 from fiberbend.models.result import Curve
 
 PAPER_PRESSURE = 11.0
@@ -228,7 +233,7 @@ def band(case: Case, model: ModelKind) -> float:
     other pitches in proportion to `bulging`.
     """
     turns = case.turns
-    if turns is None or model.resolved_bulging(case) == 0:
+    if turns is None or beyond_section(case, model) == 0:
         return model.agreement
     scale = bulging(turns.pitch, 360.0) / bulging(BULGING_PITCH, 360.0)
     return round(max(model.agreement, _SMEARED + _BULGING * scale), 2)
@@ -237,7 +242,7 @@ def band(case: Case, model: ModelKind) -> float:
 def _limit(case: Case, model: ModelKind, other: OtherModel, blocked: bool) -> float | None:
     turns = case.turns
     far = turns is not None and turns.pitch > FARTHEST_PITCH
-    if far and (model.resolved_bulging(case) > 0 or other.name != "section"):
+    if far and (beyond_section(case, model) > 0 or other.name != "section"):
         return None
     if other.name == "section" and not (blocked and model.ends):
         return band(case, model)

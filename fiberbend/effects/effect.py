@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from geometry.mesh.data import Floats, MeshData
     from geometry.sections.size import MeshSize, Strips
     from geometry.winding.segments import EmbeddedFibers
+    from materials.bulging import Bulging
     from materials.material import Material
 
 CHAMBER = "chamber"
@@ -71,6 +72,7 @@ class Turns:
         stiffness: axial stiffness EA of the thread, N.
         modulus: Young's modulus of the thread, MPa.
         curves: lines that stand for the thread: helices, times the lines of a ribbon.
+        bulges: spread over its surface, with rubber that bulges between the turns.
     """
 
     pitch: float
@@ -79,6 +81,7 @@ class Turns:
     stiffness: float
     modulus: float
     curves: int
+    bulges: bool = False
 
 
 @dataclasses.dataclass(frozen=True)
@@ -286,6 +289,22 @@ class Effect(Spec):
     def beside(self) -> Effect | None:
         """What stands for it in the section that is solved beside a case; None: left out."""
         return None
+
+    def uncalibrated(self) -> bool:
+        """Whether it waits for numbers that the cell of its section gives."""
+        return False
+
+    def bulges(self) -> Bulging | None:
+        """How stiff rubber is that bulges between its turns; None where that is not given."""
+        return None
+
+    def in_cell(self) -> Effect | None:
+        """What stands for it in the cell by which a winding is calibrated; None: left out."""
+        return None
+
+    def with_bulging(self, bulging: Bulging) -> Effect:
+        """The effect with the numbers that it waited for."""
+        raise NotImplementedError(f"effect {self.name} is not calibrated")
 
     def not_beside(self) -> str:
         """Why no section can be solved beside a case with it; empty where one can."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal, Self
 
-from pydantic import Field, model_serializer, model_validator
+from pydantic import Field
 
 from fiberbend.effects.effect import (
     THREAD,
@@ -20,8 +20,9 @@ from fiberbend.effects.effect import (
     Site,
     Turns,
 )
-from fiberbend.schema.problems import Problem, found, meant
-from fiberbend.schema.quantities import Length, LengthOrZero, Modulus, Spec
+from fiberbend.effects.thread import BulgingSpec, FiberSpec
+from fiberbend.schema.problems import Problem
+from fiberbend.schema.quantities import Length, LengthOrZero
 from fiberbend.schema.units import show
 from geometry.winding.patterns import PATTERNS, least_pitch, turn_spacing
 
@@ -30,79 +31,20 @@ if TYPE_CHECKING:
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
     from geometry.winding.helix import Winding
-    from materials.fiber import Fiber
+    from materials.bulging import Bulging
 else:
     PatternName = Literal[tuple(PATTERNS)]
 
+Kind = Literal["discrete", "calibrated", "smeared"]
+
 DEFAULT_LINES = 5
+DISCRETE: Kind = "discrete"
+CALIBRATED: Kind = "calibrated"
+SMEARED: Kind = "smeared"
 _POINTS_A_TURN = 24
 _ROUNDING = 1e-9
 _STIFF = 1e3
 """Modulus in MPa from which a thread hardly stretches."""
-
-
-class FiberSpec(Spec):
-    """The thread of a winding: a name, or modulus and diameter."""
-
-    name: str | None = None
-    """A named fiber; written alone, `fiber: kevlar`."""
-    modulus: Modulus | None = None
-    """Young's modulus of the thread."""
-    diameter: Length | None = None
-    """Diameter of the thread."""
-    radius_factor: float | None = Field(default=None, gt=0, le=1)
-    """Part of the radius that carries; 0.5 where the paper halves it, 1 by default."""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_name(cls, data: Any) -> Any:
-        return {"name": data} if isinstance(data, str) else data
-
-    @model_serializer(mode="wrap")
-    def _to_name(self, write: Any) -> Any:
-        return self.name if self.name is not None else write(self)
-
-    @classmethod
-    def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict[str, Any]:
-        """A name alone is allowed too."""
-        return {"anyOf": [{"type": "string"}, handler.resolve_ref_schema(handler(schema))]}
-
-    def thread(self) -> Fiber:
-        """The thread as the geometry takes it; a described one carries with all of its radius.
-
-        Raises:
-            ValueError: an unknown name, or one without modulus and diameter.
-        """
-        from materials.fiber import FIBERS, Fiber
-
-        if self.name is not None:
-            if self.name not in FIBERS:
-                known = ", ".join(FIBERS)
-                raise ValueError(f"fiber {self.name!r} is unknown: expected one of {known}")
-            return FIBERS[self.name]
-        if self.modulus is None or self.diameter is None:
-            raise ValueError("a fiber without a name needs modulus and diameter")
-        factor = 1.0 if self.radius_factor is None else self.radius_factor
-        return Fiber(self.modulus, self.diameter, factor, source="the case")
-
-    def problems(self, path: str) -> Iterator[Problem]:
-        """What is missing, unknown or without effect."""
-        own = ("modulus", "diameter", "radius_factor")
-        if self.name is None:
-            for key in own[:2]:
-                if getattr(self, key) is None:
-                    text = f"missing, expected the {key} of an unnamed fiber"
-                    yield Problem(f"{path}.{key}", text)
-            return
-        from materials.fiber import FIBERS
-
-        if self.name not in FIBERS:
-            names = ", ".join(FIBERS)
-            wanted = f"expected {names}, or modulus and diameter{meant(self.name, FIBERS)}"
-            yield Problem(path, f"{found(self.name)}, {wanted}")
-        for key in own:
-            if getattr(self, key) is not None:
-                yield Problem(f"{path}.{key}", "no effect on a named fiber, expected no value")
 
 
 class WindingEffect(Effect):
@@ -116,14 +58,19 @@ class WindingEffect(Effect):
     """Length along the axis of one turn."""
     fiber: FiberSpec
     """A named fiber or its modulus and diameter."""
-    representation: Literal["discrete", "smeared"] | None = Field(default=None, alias="as")
-    """Every turn by itself, or the same thread spread over its surface. By default every turn
-    where the model has turns, and spread in the models section and analytic."""
+    representation: Kind | None = Field(default=None, alias="as")
+    """Every turn by itself (discrete); the same thread spread over its surface, with rubber that
+    bulges between the turns as in the cell of this section, which is solved before (calibrated); or
+    spread alone (smeared). By default every turn where the model has turns, and smeared in the
+    models section and analytic."""
+    bulging: BulgingSpec | None = None
+    """How stiff that rubber is, where it is known: no cell is solved; calibrated only."""
     width: LengthOrZero | None = None
-    """Width of the ribbon that stands for the thread, its diameter by default; discrete only.
-    "0 mm" makes it a line, under which the pressure drifts with the mesh."""
+    """Width of the ribbon that stands for the thread, its diameter by default; discrete, or in the
+    cell of a calibrated winding. "0 mm" makes it a line, under which the pressure drifts with the
+    mesh."""
     lines: int | None = Field(default=None, ge=1)
-    """Parallel curves across the ribbon, 5 by default; discrete only."""
+    """Parallel curves across the ribbon, 5 by default; likewise."""
     tension_only: bool = False
     """The thread goes slack instead of carrying compression."""
 
@@ -134,10 +81,13 @@ class WindingEffect(Effect):
     def needs(self) -> dict[str, str]:
         """Turns where every one is to lie by itself, twist where the pattern has a hand."""
         needed = {WOUND: "it has no thread around the body"}
-        if self.representation == "discrete":
+        if self.representation == DISCRETE:
             needed[TURNS] = (
-                "only cell and body have turns (as: smeared, or leave `as` to the model)"
+                "only cell and body have turns (as: calibrated, as: smeared, or leave `as` to the "
+                "model)"
             )
+        if self.representation == CALIBRATED:
+            needed[THREAD] = "in closed forms no rubber bulges between turns (leave out `as`)"
         if self._twists:
             needed[TWIST] = "the closed form has no twist"
         return needed
@@ -173,7 +123,8 @@ class WindingEffect(Effect):
 
     def in_turns(self) -> dict[str, Any]:
         """Every turn by itself."""
-        return {} if self.turns().discrete else {"as": "discrete"}
+        turns = self.turns()
+        return {} if turns.discrete or turns.bulges else {"as": DISCRETE}
 
     def mirror_breaker(self) -> str:
         """A pattern with a hand."""
@@ -186,12 +137,17 @@ class WindingEffect(Effect):
 
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
         """Ribbon and thread, and whether there is room for them."""
-        if self.representation == "smeared":
-            for key in ("width", "lines"):
-                if getattr(self, key) is not None:
-                    text = "no effect on a smeared winding, expected no value"
-                    yield Problem(f"{path}.{key}", text)
-        elif self.width == 0 and (self.lines or 1) > 1:
+        idle = {}
+        if self.bulging is not None:
+            idle = dict.fromkeys(("width", "lines"), "where bulging is given and no cell solved")
+        if self.representation == SMEARED:
+            idle = dict.fromkeys(("width", "lines", "bulging"), "on a smeared winding")
+        elif self.representation == DISCRETE:
+            idle = {"bulging": "where every turn lies by itself"}
+        for key, where in idle.items():
+            if getattr(self, key) is not None:
+                yield Problem(f"{path}.{key}", f"no effect {where}, expected no value")
+        if self.representation != SMEARED and self.width == 0 and (self.lines or 1) > 1:
             yield Problem(f"{path}.lines", f"{self.lines}, expected 1 line where the width is zero")
         wrong = list(self.fiber.problems(f"{path}.fiber"))
         yield from wrong
@@ -236,9 +192,11 @@ class WindingEffect(Effect):
         if kind is None:
             ribbon = self.width is not None or self.lines is not None
             spread = offers is not None and TURNS not in offers and not ribbon
-            kind = "smeared" if spread else "discrete"
+            kind = SMEARED if spread else DISCRETE
+            if self.bulging is not None:
+                kind = CALIBRATED
         update: dict[str, Any] = {"fiber": fiber, "representation": kind}
-        if kind == "discrete":
+        if kind == DISCRETE or (kind == CALIBRATED and self.bulging is None):
             width = fiber.thread().diameter if self.width is None else self.width
             update["width"] = width
             update["lines"] = self.lines or (DEFAULT_LINES if width else 1)
@@ -246,16 +204,16 @@ class WindingEffect(Effect):
 
     def representations(self) -> tuple[Self, ...]:
         """Spread and in turns, unless the case says which; a ribbon lies in turns."""
-        if not {"representation", "width", "lines"}.isdisjoint(self.model_fields_set):
+        given = {"representation", "width", "lines", "bulging"} & self.model_fields_set
+        if given:
             return (self,)
         plain = self.model_copy(update={"width": None, "lines": None})
-        return tuple(
-            plain.model_copy(update={"representation": kind}) for kind in ("smeared", "discrete")
-        )
+        kinds = (SMEARED, CALIBRATED, DISCRETE)
+        return tuple(plain.model_copy(update={"representation": kind}) for kind in kinds)
 
     def turns(self) -> Turns:
         """Pitch, pattern and thread."""
-        discrete = self.representation != "smeared"
+        discrete = self.representation in (DISCRETE, None)
         thread = self.fiber.thread()
         lines = (self.lines or DEFAULT_LINES) if discrete else 1
         return Turns(
@@ -265,6 +223,7 @@ class WindingEffect(Effect):
             thread.stiffness,
             thread.modulus,
             lines * len(PATTERNS[self.pattern].helices),
+            bulges=self.representation == CALIBRATED,
         )
 
     def fixes_circumference(self) -> bool:
@@ -288,8 +247,33 @@ class WindingEffect(Effect):
         return not self._twists
 
     def beside(self) -> WindingEffect:
-        """The same thread, spread."""
-        return self.model_copy(update={"representation": "smeared", "width": None, "lines": None})
+        """The same thread, spread; calibrated as it is."""
+        if self.representation == CALIBRATED:
+            return self
+        return self.model_copy(update={"representation": SMEARED, "width": None, "lines": None})
+
+    def uncalibrated(self) -> bool:
+        """Where it is to be calibrated and nobody has given the numbers."""
+        return self.representation == CALIBRATED and self.bulging is None
+
+    def bulges(self) -> Bulging | None:
+        """As the case or a calibration gives it."""
+        return None if self.bulging is None else self.bulging.bulging()
+
+    def in_cell(self) -> WindingEffect:
+        """Every turn by itself."""
+        return self.model_copy(update={"representation": DISCRETE, "bulging": None})
+
+    def with_bulging(self, bulging: Bulging) -> WindingEffect:
+        """Spread, with rubber that bulges; what the cell alone needs is gone."""
+        return self.model_copy(
+            update={
+                "representation": CALIBRATED,
+                "bulging": BulgingSpec.of(bulging),
+                "width": None,
+                "lines": None,
+            }
+        )
 
     def uncertainties(self, straight: bool) -> Iterator[str]:
         """None: the model's own errors were measured with it."""
@@ -313,15 +297,22 @@ class WindingEffect(Effect):
 
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
         """The thread on the faces of the mesh."""
-        from fem.effects.winding import SmearedWinding, Winding
+        from fem.effects.winding import CalibratedWinding, SmearedWinding, Winding
         from geometry.winding.embed import embed
         from geometry.winding.smear import smear
 
-        smeared = self.representation == "smeared"
-        fibers = (smear if smeared else embed)(mesh, site.actuator, self.helix())
-        kind = SmearedWinding if smeared else Winding
-        term = kind(fibers, self.fiber.thread().stiffness, self.tension_only)
-        return Built((term,), (), fibers, smeared)
+        actuator, helix = site.actuator, self.helix()
+        stiffness, slack = self.fiber.thread().stiffness, self.tension_only
+        if self.turns().discrete:
+            turns = embed(mesh, actuator, helix)
+            return Built((Winding(turns, stiffness, slack),), (), turns)
+        spread = smear(mesh, actuator, helix)
+        if self.representation == SMEARED:
+            return Built((SmearedWinding(spread, stiffness, slack),), (), spread, True)
+        if self.bulging is None:
+            raise ValueError("a winding that is to be calibrated is built after its cell")
+        term = CalibratedWinding(spread, stiffness, self.bulging.bulging(), slack)
+        return Built((term,), (), spread, True)
 
 
 def _rounded_up(length: float) -> float:

@@ -125,7 +125,7 @@ class Body(MeshedModel):
 
         turns = case.turns
         if turns is None or not turns.discrete:
-            return 0.0
+            return super().resolved_bulging(case)
         sizes, parts = zip(*_RESOLVED, strict=True)
         ratio = case.mesh.axial / turns.pitch
         return 0.0 if ratio > _END * sizes[-1] else float(np.interp(ratio, sizes, parts))

@@ -108,7 +108,7 @@ class Cell(UniformModel):
     def resolved_bulging(self, case: Case) -> float:
         """All of it, where every turn lies by itself."""
         turns = case.turns
-        return 1.0 if turns is not None and turns.discrete else 0.0
+        return 1.0 if turns is not None and turns.discrete else super().resolved_bulging(case)
 
     def size(self, case: Case) -> ProblemSize:
         """Of its mesh."""

@@ -182,7 +182,8 @@ class ModelKind(ABC):
 
     def resolved_bulging(self, case: Case) -> float:
         """Part of the bulging between the turns of a winding that it gives: 1 all, 0 nothing."""
-        return 0.0
+        turns = case.turns
+        return 1.0 if self.elements() is not None and turns is not None and turns.bulges else 0.0
 
     def hardly_sees(self, case: Case) -> Iterator[Objection]:
         """Settings whose change moves its answer little or not at all: paths and reasons."""

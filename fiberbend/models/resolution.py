@@ -16,6 +16,9 @@ BULGING_PITCH = 3.0
 """Pitch in mm for which the bulging between the fibers was measured."""
 FARTHEST_PITCH = 6.0
 """Twice that: beyond, nothing is known of it."""
+CALIBRATED = 0.3
+"""Percent of pressure for an angle by which a calibrated section is off its cell: pitch 1.5 to
+6 mm, radius 6 to 12 mm, wall 1 to 3 mm (docs/evidence/calibration.md)."""
 _BULGING = ((90.0, 3.5), (180.0, 4.1), (270.0, 4.7), (360.0, 5.1))
 """Angle in degrees, and percent of pressure that every fiber by itself takes beyond a smeared
 winding: the cell against the section model, baseline."""
@@ -36,10 +39,22 @@ def bulging(pitch: float, angle_deg: float) -> float:
     return scale * float(np.interp(abs(angle_deg), angles, percent))
 
 
+def beyond_section(case: Case, model: ModelKind) -> float:
+    """Part of the bulging that a model gives and the section solved beside it does not."""
+    turns = case.turns
+    return 0.0 if turns is not None and turns.bulges else model.resolved_bulging(case)
+
+
 def lost_pressure(case: Case, model: ModelKind) -> Iterator[str]:
     """What a model does not see of the rubber between the turns, in words."""
     turns = case.turns
     if turns is None or case.inflation is None or case.straight or not model.elements():
+        return
+    if turns.bulges:
+        yield (
+            f"winding: calibrated, P within {CALIBRATED} % of the cell's "
+            "(docs/evidence/calibration.md)"
+        )
         return
     missing = 1 - model.resolved_bulging(case)
     if missing and turns.pitch > FARTHEST_PITCH:

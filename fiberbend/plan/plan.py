@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 from fiberbend.accuracy.choice import picked
 from fiberbend.accuracy.words import expected_lines
+from fiberbend.calibration.expected import expected
 from fiberbend.case.case import Case
 from fiberbend.models.choice import MODELS, choose_model, objection
 from fiberbend.models.model import MeshedModel, ModelKind
@@ -84,6 +85,8 @@ def make_plan(case: Case) -> Plan:
     remark = winding_remark(case)
     if remark is not None:
         tail["winding"] = [remark]
+    if found := list(expected(case)):
+        tail["winding"] = found
     if found := doubts(case):
         tail["warnings"] = found
     elements = model.elements()

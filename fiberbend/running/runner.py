@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import shutil
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from fem.march.march import ACROSS
 from fem.results.checkpoint import Archive
 from fem.scene import Scene
 from fiberbend import columns as col
+from fiberbend.accuracy.computed import estimated, missed
 from fiberbend.answer.answer import answer
 from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
@@ -25,20 +26,19 @@ from fiberbend.models.choice import choose_model, meshed
 from fiberbend.models.model import MeshedModel
 from fiberbend.models.result import RunResult
 from fiberbend.plan.doubts import doubts
-from fiberbend.plan.memory import refuse_shortage
+from fiberbend.plan.memory import fits, refuse_shortage
 from fiberbend.process.signals import Interrupted, stop_of
 from fiberbend.results.folder import MESH, REPORT, RunFolder
 from fiberbend.results.states import LAST, write_fibers
 from fiberbend.running import launch, messages, record, restart
-from fiberbend.running.accuracy import estimated, missed
 from fiberbend.running.assembly import Assembly, assemble
+from fiberbend.running.calibrated import Own, calibrated
 from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording, ended, shows_states, unmet
 from fiberbend.running.launch import on_rank_0
 from fiberbend.running.outputs import draw, write_page
 from fiberbend.running.progress import Progress
 from fiberbend.running.warm import SectionStates, section_guides, section_states
-from fiberbend.schema.problems import CaseError
 from geometry.mesh.data import MeshData
 
 GMSH_FILE = "actuator.msh"
@@ -65,21 +65,23 @@ def run_case(
         states: folder for mesh, winding and states of a run without `out`; none by default.
 
     Raises:
-        CaseError: the folder cannot be used, or there is not enough memory for the run.
+        CaseError: the folder cannot be used, there is not enough memory for the run, or a winding
+            cannot be calibrated.
         MeshError: gmsh failed.
     """
     comm = MPI.COMM_WORLD
     progress = progress or Progress(quiet=True)
     if not force:
         refuse_shortage(case, comm, out is not None)
+    case, own = calibrated(case, comm, progress, out if resume else None)
     if out is None:
         scratch = None if states is None else RunFolder(states, comm.rank == 0, durable=False)
-        return _solve(case, None, progress, comm, False, force, scratch)
+        return _solve(case, None, progress, comm, False, force, own, scratch)
     if resume:
         folder = RunFolder.resume(out, case, comm)
     else:
         folder = RunFolder.create(out, case, overwrite, comm)
-    with folder, progress.logged(folder.log, record.header()):
+    with folder, progress.logged(folder.log, [*record.header(), *own.lines]):
         # in place of an end that is no more
         folder.write_run(
             status="running",
@@ -88,8 +90,9 @@ def run_case(
             ranks=comm.size,
             versions=record.versions(),
             **record.provenance(),
+            **own.entries,
         )
-        result = _solve(case, folder, progress, comm, resume, force)
+        result = _solve(case, folder, progress, comm, resume, force, own)
         progress.log(f"{result.status}{': ' if result.reason else ''}{result.reason}")
         progress.log(f"results in {out}")
         if (out / REPORT).exists():
@@ -113,6 +116,7 @@ def _solve(
     comm: MPI.Comm,
     resume: bool,
     force: bool,
+    own: Own,
     scratch: RunFolder | None = None,
 ) -> RunResult:
     model = choose_model(case)[0].elements()
@@ -124,32 +128,24 @@ def _solve(
         whole = _whole(case)
         # asked now: later the half body takes of the memory that is free
         leaves = case.mesh.symmetry == "auto" and model.half(case)[0]
-        leaves = leaves and (force or _fits(whole, comm, folder))
+        leaves = leaves and (force or fits(whole, comm, folder is not None))
         try:
-            run = _Run(case, model, folder, progress, comm, scratch, may_leave=leaves)
+            run = _Run(case, model, folder, progress, comm, scratch, own, may_leave=leaves)
             return run.go(resume)
         except _AcrossError:
             if run.states is not None:
                 restart.discard(run.states)
-            run = _Run(whole, model, folder, progress, comm, scratch, (messages.WHOLE,))
+            whole_own = own.also(messages.WHOLE)
+            run = _Run(whole, model, folder, progress, comm, scratch, whole_own)
             return run.go(False)
     # too small to share: one rank solves it
-    alone = _Run(case, model, folder, progress, MPI.COMM_SELF, scratch)
+    alone = _Run(case, model, folder, progress, MPI.COMM_SELF, scratch, own)
     return on_rank_0(comm, lambda: alone.go(False))
 
 
 def _whole(case: Case) -> Case:
     """The case without a mirror plane."""
     return case.model_copy(update={"mesh": case.mesh.model_copy(update={"symmetry": "full"})})
-
-
-def _fits(case: Case, comm: MPI.Comm, folder: RunFolder | None) -> bool:
-    """Whether there is memory for a case; collective, the same on all ranks."""
-    try:
-        refuse_shortage(case, comm, folder is not None)
-    except CaseError:
-        return False
-    return True
 
 
 class _Run:
@@ -163,13 +159,13 @@ class _Run:
         progress: Progress,
         comm: MPI.Comm,
         scratch: RunFolder | None = None,
-        remarks: Sequence[str] = (),
+        own: Own | None = None,
         may_leave: bool = False,
     ) -> None:
         self.case, self.model, self.folder = case, model, folder
         self.states = folder or scratch
         self.progress, self.comm = progress, comm
-        self.remarks, self.may_leave = remarks, may_leave
+        self.own, self.may_leave = own or Own(), may_leave
         self.recording: Recording | None = None
         self.solved = False
         self.run: dict[str, Any] = {}
@@ -196,7 +192,7 @@ class _Run:
         self.recording = recording
         if self.states is not None and assembly.parts.fibers is not None:
             write_fibers(self.states, assembly.parts.fibers, assembly.parts.smeared)
-        recording.warn(self.remarks, silent=True)
+        recording.warn(self.own.remarks, silent=True)
         recording.warn(known)
         if again and not mesh.half and case.mesh.symmetry == "auto" and self.model.half(case)[0]:
             # killed in the whole body that stands for the half
@@ -211,7 +207,7 @@ class _Run:
         self._warn_of_ends(status, assembly, recorder, recording)
         check = self._cross_check(recorder.rows, section)
         recording.warn([] if check is None else check.doubts(), silent=True)
-        given = (status, recorder.rows, _solve_beside, progress.phase)
+        given = (status, recorder.rows, self.own.entries, _solve_beside, progress.phase)
         error = on_rank_0(self.comm, lambda: estimated(case, *given))
         recording.warn(missed(error), silent=True)
         progress.phase("output")
@@ -228,6 +224,7 @@ class _Run:
             kernels.versions(),
         )
         run |= record.of_effects(case, recorder.rows) | record.beside(check) | error
+        run |= self.own.entries
         run |= on_rank_0(self.comm, lambda: record.strain(case, assembly, recording.last))
         if self.folder is not None:
             self.folder.write_history(rows)

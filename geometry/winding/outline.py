@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 
 from geometry.actuator import Actuator, Point, Side
 from geometry.mesh.data import Floats
@@ -85,13 +86,34 @@ def tangent(actuator: Actuator, s: Floats) -> Floats:
     return _frame(actuator, s)[1]
 
 
-def _frame(actuator: Actuator, s: Floats) -> tuple[Floats, Floats]:
+def curvature(actuator: Actuator, s: Floats) -> Floats:
+    """Curvature of the outline in 1/mm, (n,): 1/radius on its arcs, zero on its straight lines.
+
+    A corner between two pieces has no length, so no curvature either.
+
+    Args:
+        actuator: dimensions.
+        s: arc length in mm, (n,), any real number (taken modulo S).
+    """
+    along_half, ends, half, _ = _halved(actuator, s)
+    bent = np.array([1 / piece.radius for piece in along_half])
+    return bent[np.searchsorted(ends[:-1], half)]
+
+
+def _halved(
+    actuator: Actuator, s: Floats
+) -> tuple[list[Piece], Floats, Floats, npt.NDArray[np.bool_]]:
+    """Pieces of the half x ≥ 0, their ends in s, s on that half, and what is on the other one."""
     along_half = pieces(actuator)
     ends = np.cumsum([piece.length for piece in along_half])
     perimeter = actuator.winding_perimeter
     around = np.mod(np.asarray(s, dtype=float), perimeter)
     back = around > perimeter / 2
-    half = np.where(back, perimeter - around, around)
+    return along_half, ends, np.where(back, perimeter - around, around), back
+
+
+def _frame(actuator: Actuator, s: Floats) -> tuple[Floats, Floats]:
+    along_half, ends, half, back = _halved(actuator, s)
     number = np.searchsorted(ends[:-1], half)
     xy, along = np.empty((len(half), 2)), np.empty((len(half), 2))
     for i, piece in enumerate(along_half):

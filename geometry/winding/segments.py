@@ -55,6 +55,20 @@ class EmbeddedFibers:
 
 
 @dataclasses.dataclass(frozen=True)
+class SmearedFibers(EmbeddedFibers):
+    """Fibers smeared over their surface: segments of one point each.
+
+    Attributes:
+        curvature: curvature of the fiber's path normal to the surface, in 1/mm, (n,): with it a
+            fiber under the tension T presses on the surface by T curvature per length.
+        density: length of all helices together per area, in 1/mm, (n,).
+    """
+
+    curvature: Floats
+    density: Floats
+
+
+@dataclasses.dataclass(frozen=True)
 class Facets:
     """The winding's facets as affine images of their reference interval, square or triangle.
 

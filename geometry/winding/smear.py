@@ -8,15 +8,19 @@ from geometry.actuator import Actuator
 from geometry.mesh.data import MeshData
 from geometry.mesh.reference import area_vectors, facet_rule
 from geometry.winding.helix import Winding
-from geometry.winding.segments import EmbeddedFibers, develop, push
+from geometry.winding.outline import curvature
+from geometry.winding.segments import SmearedFibers, develop, push
 
 
-def smear(mesh: MeshData, actuator: Actuator, winding: Winding) -> EmbeddedFibers:
+def smear(mesh: MeshData, actuator: Actuator, winding: Winding) -> SmearedFibers:
     """Spread the winding over its surface: at each quadrature point a bit of every helix.
 
     A point stands for weight × area × √(S² + pitch²)/(S pitch) of fiber per helix, along the
     helix's direction; the area is the mesh's own. On a section, which stands for 1 mm of z, the
     area is the length of the edge and the direction has its z part in `axial`.
+
+    On a cylinder a helix is a geodesic: its curvature is all normal to the surface, and that of
+    the outline times sin² of its angle to the axis, S²/(S² + pitch²) (Euler's theorem).
 
     Args:
         mesh: hexahedra, tetrahedra or quadrilaterals with the surface "winding"; half, full, or a
@@ -47,7 +51,9 @@ def smear(mesh: MeshData, actuator: Actuator, winding: Winding) -> EmbeddedFiber
         axial.append(rise * scale)
     helices, n = len(winding.hands), len(cell)
     z = developed[:, 1] if d == 3 else np.zeros(n)
-    return EmbeddedFibers(
+    bent = curvature(actuator, developed[:, 0])
+    bent *= (actuator.winding_perimeter / winding.turn_length(actuator)) ** 2
+    return SmearedFibers(
         cell=np.tile(cell, helices),
         facet=np.tile(facets.facet[facet], helices),
         points=np.tile(points, (helices, 1, 1)),
@@ -59,4 +65,6 @@ def smear(mesh: MeshData, actuator: Actuator, winding: Winding) -> EmbeddedFiber
         curve=np.repeat(np.arange(helices), n),
         z=np.tile(z, helices),
         s=np.tile(developed[:, 0], helices),
+        curvature=np.tile(bent, helices),
+        density=np.full(helices * n, helices * winding.density(actuator)),
     )

@@ -9,11 +9,11 @@ import pytest
 
 from fiberbend import columns as col
 from fiberbend.accuracy.budget import percent
+from fiberbend.accuracy.computed import MISSED, estimated, missed
 from fiberbend.answer.answer import answer, lines
 from fiberbend.case.case import Case
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import read_case
-from fiberbend.running.accuracy import MISSED, estimated, missed
 from fiberbend.running.runner import run_case
 from tests.conftest import ROOT
 
@@ -110,7 +110,7 @@ def turns(*settings: str) -> Case:
 def total(made: Case, history: list[dict[str, Any]], status: str = "converged") -> dict[str, Any]:
     """The block of a history."""
     phases: list[str] = []
-    found = estimated(made, status, history, no_solver, phases.append)
+    found = estimated(made, status, history, {}, no_solver, phases.append)
     assert phases == ["accuracy"]
     block: dict[str, Any] = found["accuracy"]
     return block

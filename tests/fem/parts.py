@@ -15,7 +15,7 @@ from fem.effects.elastic import Elastic
 from fem.effects.gravity import Gravity
 from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Clamp, Symmetry
-from fem.effects.winding import SmearedWinding
+from fem.effects.winding import CalibratedWinding, SmearedWinding
 from fem.effects.winding import Winding as Discrete
 from fem.kinematics.domain import Domain
 from fem.march.frames import Frames
@@ -41,6 +41,7 @@ from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
 from geometry.winding.smear import smear
+from materials.bulging import Bulging
 from materials.laws.table import LAWS
 from tests.exact.solids import tube_sector
 from tests.materials.rubber import RUBBERS
@@ -54,6 +55,8 @@ SHORT = HemicircleActuator(radius=8, length=24, wall=2, floor=2, sheath=1, cap=5
 """Cheapest actuator that bends."""
 PITCH = 3.0
 EA = 881.0
+BULGING = Bulging(0.72, 1.1, 3.0)
+"""Stiffness between turns 3 mm apart, each of its three terms felt."""
 
 
 def _as(cell: str, mesh: MeshData) -> MeshData:
@@ -92,6 +95,14 @@ def smeared(domain: Domain, actuator: Actuator = STUB) -> SmearedWinding:
     """The same fibers smeared."""
     segments = smear(domain.data, actuator, Winding("double-helix", PITCH, 0.38))
     return SmearedWinding(segments, EA)
+
+
+def calibrated(
+    domain: Domain, actuator: Actuator = STUB, tension_only: bool = False
+) -> CalibratedWinding:
+    """The same fibers smeared, rubber bulging between their turns."""
+    segments = smear(domain.data, actuator, Winding("double-helix", PITCH, 0.38))
+    return CalibratedWinding(segments, EA, BULGING, tension_only)
 
 
 def perturb(scene: Scene, amplitude: float, seed: int) -> Floats:

@@ -18,7 +18,18 @@ from fem.kinematics.domain import Domain
 from fem.scene import Scene
 from geometry.checks import region_volumes
 from materials.laws.table import LAWS
-from tests.fem.parts import CELLS, EA, Floats, gravity, law, perturb, smeared, stub, winding
+from tests.fem.parts import (
+    CELLS,
+    EA,
+    Floats,
+    calibrated,
+    gravity,
+    law,
+    perturb,
+    smeared,
+    stub,
+    winding,
+)
 
 REGIONS = ("wall", "floor")
 # The fibers' matrix lives in the sparsity of a solid: one so soft that it does not count.
@@ -44,6 +55,8 @@ EFFECTS: dict[str, Callable[[Domain], list[Effect]]] = {
     "line": lambda domain: [SOFT, winding(domain, 0.0)],
     "tension-only": lambda domain: [SOFT, winding(domain, 0.38, tension_only=True)],
     "smeared": lambda domain: [SOFT, smeared(domain)],
+    "calibrated": lambda domain: [SOFT, calibrated(domain)],
+    "calibrated, tension only": lambda domain: [SOFT, calibrated(domain, tension_only=True)],
     "gravity": lambda _: [gravity(REGIONS)],
     "plane": lambda _: [SOFT, obstacle(Plane((0.0, 3.0, 5.0), (0.2, 1.0, -0.5)))],
     "bar": lambda _: [SOFT, obstacle(Cylinder((-2.0, 6.0), 7.0))],
@@ -68,7 +81,7 @@ def _scene(name: str, cell: str) -> Scene:
 
 def _step(name: str) -> float:
     """In mm; so small that no fiber is caught going slack, and no point touching."""
-    return 1e-7 if name in {"tension-only", "plane", "bar"} else 1e-4
+    return 1e-7 if name in {"tension-only", "calibrated, tension only", "plane", "bar"} else 1e-4
 
 
 def _direction(scene: Scene, seed: int) -> Floats:

@@ -11,7 +11,7 @@ import pytest
 from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.effect import Effect
 from fem.effects.incompressible import Incompressible
-from fem.effects.winding import SmearedWinding
+from fem.effects.winding import CalibratedWinding, SmearedWinding
 from fem.effects.winding import Winding as Discrete
 from fem.kinematics.cell import Cell
 from fem.kinematics.domain import Domain
@@ -24,7 +24,7 @@ from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
 from geometry.winding.smear import smear
-from tests.fem.parts import EA, SHORT, Floats, law, perturb
+from tests.fem.parts import BULGING, EA, SHORT, Floats, law, perturb
 
 PITCH = 3.0
 REGIONS = ("wall", "floor", "sheath")
@@ -51,6 +51,11 @@ def _effects(domain: Domain, name: str) -> list[Effect]:
         return [ChamberPressure()]
     if name == "smeared":
         return [soft, SmearedWinding(smear(mesh, SHORT, helix), EA)]
+    if name == "calibrated":
+        return [soft, CalibratedWinding(smear(mesh, SHORT, helix), EA, BULGING)]
+    if name == "calibrated helix":
+        helix = Winding("single-helix-left", 15.0, 0.38)
+        return [soft, CalibratedWinding(smear(mesh, SHORT, helix), EA, BULGING)]
     return [soft, Discrete(embed(mesh, SHORT, helix), EA)]
 
 
@@ -68,6 +73,8 @@ CASES = [
         "solid": ("section", "cell"),
         "pressure": ("section", "cell"),
         "smeared": ("section",),
+        "calibrated": ("section", "cell"),
+        "calibrated helix": ("section",),
         "discrete": ("cell",),
     }.items()
     for model in models

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fiberbend import columns as col
-from fiberbend.accuracy.budget import Estimate, State, estimate, mesh_error, percent
+from fiberbend.accuracy.budget import FINE, Estimate, State, estimate, lacking, percent
 from fiberbend.accuracy.numbers import curvature
 from fiberbend.accuracy.words import MISSED, entry
 from fiberbend.case.case import Case
@@ -18,14 +18,11 @@ from fiberbend.effects.effect import TURNS
 from fiberbend.effects.pressure import inflate
 from fiberbend.effects.straight import straight_of
 from fiberbend.models.choice import MODELS, meshed
-from fiberbend.models.model import MeshedModel, Rung
+from fiberbend.models.model import MeshedModel
 from fiberbend.models.result import RunResult
-from fiberbend.reader.reader import parse_case
-from fiberbend.schema.problems import CaseError
+from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.units import show
 
-LAYERS = 8
-"""Elements along half a turn of the cell that shows what a spread winding costs."""
 _SAME = 1e-6
 _FLAT = 0.05
 """Relative rise of the pressure for that of the angle, below which no pressure gives an angle."""
@@ -37,6 +34,7 @@ def estimated(
     case: Case,
     status: str,
     rows: Sequence[dict[str, Any]],
+    entries: Mapping[str, Any],
     solve: Solve,
     phase: Callable[[str], None],
 ) -> dict[str, Any]:
@@ -46,13 +44,15 @@ def estimated(
         case: of the run.
         status: how it ended.
         rows: its history.
+        entries: of run.json so far: how good the calibration of its winding is.
         solve: solves a case on this rank alone.
         phase: takes the name of the phase that begins.
     """
     if case.accuracy is None:
         return {}
     phase("accuracy")
-    found = _estimate(case, meshed(case), status, rows, solve)
+    left = (entries.get("calibration") or {}).get("left_percent")
+    found = _estimate(case, meshed(case), status, rows, left, solve)
     return {"accuracy": entry(case.accuracy, found)}
 
 
@@ -67,7 +67,12 @@ def missed(run: Mapping[str, Any]) -> list[str]:
 
 
 def _estimate(
-    case: Case, model: MeshedModel, status: str, rows: Sequence[dict[str, Any]], solve: Solve
+    case: Case,
+    model: MeshedModel,
+    status: str,
+    rows: Sequence[dict[str, Any]],
+    left: float | None,
+    solve: Solve,
 ) -> Estimate:
     doubts = [] if status == "converged" else [f"the run {status}"]
     asked = _asked(case, rows)
@@ -75,7 +80,9 @@ def _estimate(
         return estimate(case, model, (), [*doubts, "it has no answer"])
     winding: dict[int, float] = {}
     turns = case.turns
-    if turns is not None and not turns.discrete and not (case.straight and model.ends):
+    if left is not None:
+        winding = {row[col.STEP]: left + lacking(case, _curvature(case, row)) for row, _ in asked}
+    elif turns is not None and not turns.discrete and not (case.straight and model.ends):
         try:
             winding = _of_winding(case, [row for row, _ in asked], solve)
         except CaseError as error:
@@ -88,9 +95,12 @@ def _estimate(
         if factor is None:
             doubts.append("near its greatest pressure no angle follows from the pressure")
             factor = 1 / _FLAT
-        angle = 0.0 if case.straight else math.radians(row[col.ANGLE])
-        states.append(State(curvature(case, angle), winding.get(row[col.STEP]), factor))
+        states.append(State(_curvature(case, row), winding.get(row[col.STEP]), factor))
     return estimate(case, model, states, doubts)
+
+
+def _curvature(case: Case, row: Mapping[str, Any]) -> float:
+    return 0.0 if case.straight else curvature(case, math.radians(row[col.ANGLE]))
 
 
 def _asked(case: Case, rows: Sequence[dict[str, Any]]) -> list[tuple[dict[str, Any], bool]]:
@@ -129,25 +139,41 @@ def _of_winding(case: Case, rows: Sequence[dict[str, Any]], solve: Solve) -> dic
     Section and cell have the same elements through each thickness, so that these do not count; what
     layers of the cell may still lack is added.
     """
-    turns = case.turns
-    assert turns is not None
     spread = _beside(case, rows)
-    data = spread.resolved()
-    data["model"] = next(name for name, model in MODELS.items() if TURNS in model.offers)
-    data["mesh"] = {"section": 1, "axial": show(turns.pitch / 2 / LAYERS, "length")}
-    for effect, given in zip(spread.effects, data["effects"], strict=True):
-        given[effect.name] |= effect.in_turns()
-    cell = parse_case(data)
+    cell = _in_turns(spread)
     key, value = (col.PRESSURE, col.TIP_FORCE) if case.straight else (col.ANGLE, col.PRESSURE)
     smooth, bulged = (_column(solve(each), key, value) for each in (spread, cell))
     found = {}
     for row in rows:
         at = round(row[key], 6)
         if at in smooth and at in bulged:
-            state = 0.0 if case.straight else curvature(case, math.radians(row[col.ANGLE]))
-            rest = mesh_error(case, Rung(1, LAYERS), state) or 0.0
+            rest = lacking(case, _curvature(case, row))
             found[row[col.STEP]] = 100 * abs(smooth[at] / bulged[at] - 1) + rest
     return found
+
+
+def _in_turns(section: Case) -> Case:
+    """The cell of a section, with every turn.
+
+    Raises:
+        CaseError: it cannot be.
+    """
+    turns = section.turns
+    assert turns is not None
+    model = next(kind for kind in MODELS.values() if TURNS in kind.offers)
+    wound = (effect.in_cell() if effect.turns() else effect for effect in section.effects)
+    axial = turns.pitch / 2 / FINE.layers
+    cell = section.model_copy(
+        update={
+            "model": model.name,
+            "mesh": section.mesh.model_copy(update={"section": FINE.section, "axial": axial}),
+            "effects": tuple(effect for effect in wound if effect is not None),
+        }
+    )
+    found = [Problem(path, text) for path, text in model.refuses(cell)]
+    if found:
+        raise CaseError(found)
+    return cell
 
 
 def _beside(case: Case, rows: Sequence[dict[str, Any]]) -> Case:
@@ -161,7 +187,7 @@ def _beside(case: Case, rows: Sequence[dict[str, Any]]) -> Case:
         angles = [math.radians(row[col.ANGLE]) for row in rows]
         section = as_section(case, inflate(angle=max(angles, key=abs)))
         effects, stops = section.effects, {"at_angles": tuple(angles)}
-    mesh = section.mesh.model_copy(update={"section": 1})
+    mesh = section.mesh.model_copy(update={"section": FINE.section})
     output = section.output.model_copy(update=stops)
     return section.model_copy(update={"mesh": mesh, "effects": effects, "output": output})
 

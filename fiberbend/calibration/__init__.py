@@ -1,0 +1,1 @@
+"""How stiff rubber is against bulging between the turns of a winding, from the cell of a case."""

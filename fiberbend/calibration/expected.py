@@ -1,0 +1,49 @@
+"""What is known of a calibration before a run, which solves no cell: for a plan."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from fiberbend.calibration import cases, reach
+from fiberbend.calibration.calibrate import known, waits
+from fiberbend.calibration.record import words
+from fiberbend.case.case import Case
+from fiberbend.models.choice import meshed
+from fiberbend.models.resolution import CALIBRATED
+from fiberbend.models.uniform import twists
+
+_STEPS = (5, 4)
+"""Load steps of a cell, bent and kept straight."""
+_FIT_S = 2.0
+"""Seconds for sections and fit."""
+
+
+def expected(case: Case) -> Iterator[str]:
+    """How the winding of a case gets its numbers, what that costs and how good they are.
+
+    Yields:
+        Sentences; none where no winding is calibrated.
+    """
+    for effect in case.effects:
+        numbers = effect.bulges()
+        if numbers is not None:
+            yield f"spread, bulging as the case says ({words(numbers)})"
+    if not waits(case):
+        return
+    kept = known(case)
+    if kept is not None:
+        yield f"calibrated before ({words(kept.found.bulging())}; left {kept.left_percent:.2f} %)"
+        yield from kept.remarks
+        return
+    yield (
+        f"to be calibrated by the cell of this section before the run, about {seconds(case):.0f} "
+        f"s, and kept; within {CALIBRATED} % of the cell (docs/evidence/calibration.md)"
+    )
+
+
+def seconds(case: Case) -> float:
+    """Seconds to calibrate a case whose winding waits for its numbers, kernels compiled."""
+    cell = cases.bent_cell(case, reach.first(case))
+    model = meshed(cell)
+    steps = _STEPS[0] if twists(case) else sum(_STEPS)
+    return _FIT_S + steps * model.step_seconds(cell, model.size(cell))

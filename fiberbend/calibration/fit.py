@@ -1,0 +1,235 @@
+"""Cell states, and the three numbers with which a section gives the same."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from fem.march.records import State
+from fiberbend.calibration import cases
+from fiberbend.calibration.reach import Reach, height
+from fiberbend.calibration.record import Calibration
+from fiberbend.calibration.solving import Reading, Small
+from fiberbend.case import convert
+from fiberbend.case.case import Case
+from fiberbend.models.uniform import twists
+from materials.bulging import Bulging
+
+Floats = npt.NDArray[np.float64]
+
+LEAST_STATES = 3
+"""As many as there are numbers."""
+_START = 8.0
+"""K0 times pitch over the wall's shear modulus: 6 to 10 on the geometries of
+docs/evidence/calibration.md."""
+_QUADRATIC = 4.0
+_STEP = 1e-3
+"""Difference by which a slope is taken; residuals are good to 1e-7."""
+_ITERATIONS = 12
+_STILL = 2e-3
+"""Change of the numbers, relative, that moves no pressure by 0.01 %."""
+_DAMPING = 1e-6
+_OTHER = 0.1
+"""Weight of states of the other kind than a case asks for. Three numbers give both kinds to 0.1 %
+where turns lie 3 mm apart; 6 mm apart, states that are bent to 0.1 % leave 4 % in those kept
+straight, and both alike leave 0.5 % (docs/evidence/calibration.md)."""
+_UNKNOWN = 1.0
+"""Residual of a state that a section does not find."""
+
+
+class CalibrationError(Exception):
+    """A winding that cannot be calibrated; the message says why."""
+
+
+@dataclasses.dataclass(frozen=True)
+class CellStates:
+    """What the cell of a case gives.
+
+    Attributes:
+        bent: bent by pressure, from the least curvature on.
+        straight: kept straight, from the least pressure on.
+        whole: it came to the end of what was asked.
+        reason: why not.
+    """
+
+    bent: tuple[Reading, ...]
+    straight: tuple[Reading, ...]
+    whole: bool
+    reason: str = ""
+
+
+def cell_states(case: Case, reach: Reach) -> CellStates:
+    """Solve the cell of a case, bent and kept straight.
+
+    Args:
+        case: has a winding.
+        reach: how far it is bent.
+
+    Raises:
+        CalibrationError: it has too few states.
+    """
+    bent, whole, reason = _bent(case, reach, 1.0)
+    if bent and bent[0].pressure < 0:
+        # it bends up, toward a soft floor
+        bent, whole, reason = _bent(case, reach, -1.0)
+    if not bent or bent[0].pressure <= 0:
+        raise CalibrationError(f"no pressure bends the cell of this section far enough: {reason}")
+    straight: tuple[Reading, ...] = ()
+    if not twists(case):
+        small = Small(cases.straight_cell(case, reach, max(r.pressure for r in bent)))
+        states, report = small.march()
+        straight = tuple(small.read(state) for state in states)
+        whole, reason = whole and report.status == "converged", reason or report.reason
+    if len(bent) + len(straight) < LEAST_STATES:
+        raise CalibrationError(f"its cell has {len(bent)} states only: {reason}")
+    return CellStates(bent, straight, whole, reason)
+
+
+def _bent(case: Case, reach: Reach, sign: float) -> tuple[tuple[Reading, ...], bool, str]:
+    small = Small(cases.bent_cell(case, reach, sign))
+    states, report = small.march()
+    return tuple(small.read(s) for s in states), report.status == "converged", report.reason
+
+
+def fit(case: Case, reach: Reach, cell: CellStates, began: float) -> Calibration:
+    """The three numbers of a case, by least squares over the states of its cell.
+
+    Args:
+        case: has a winding.
+        reach: how far the cell is bent.
+        cell: its states.
+        began: when the calibration did, by `time.perf_counter`.
+
+    Raises:
+        CalibrationError: the section comes to fewer states than the cell.
+    """
+    model = _Sections(case, reach, cell)
+    numbers = model.rounded(least_squares(model.residual, np.zeros(3)))
+    bent_left, straight_left = (
+        round(float(100 * np.max(np.abs(part), initial=0.0)), 4) for part in model.parts(numbers)
+    )
+    rest = convert.dimensions(case.actuator).chamber_volume / case.actuator.length
+    bent = cell.bent
+    length = cases.bent_cell(case, reach).actuator.length
+    return Calibration(
+        stiffness=numbers.stiffness,
+        linear=numbers.linear,
+        quadratic=numbers.quadratic,
+        bent_percent=bent_left,
+        straight_percent=straight_left,
+        states=len(bent) + len(cell.straight),
+        strain=max(abs(r.angle) for r in bent) / length * height(case),
+        pressure=max(r.pressure for r in bent),
+        growth=max(r.area for r in bent) / rest,
+        whole=cell.whole,
+        seconds=round(time.perf_counter() - began, 2),
+    )
+
+
+def least_squares(residual: Callable[[Floats], Floats], x: Floats) -> Floats:
+    """Where a sum of squares is least, by Levenberg's and Marquardt's method.
+
+    A residual here costs tens of milliseconds and its numbers are of order one: slopes are taken by
+    forward differences of a size known to be right.
+
+    Args:
+        residual: of m numbers at n, (m,).
+        x: the start, (n,).
+    """
+    value, damping = residual(x), _DAMPING
+    for _ in range(_ITERATIONS):
+        slopes = np.array([residual(x + _STEP * e) - value for e in np.eye(len(x))]).T / _STEP
+        square = slopes.T @ slopes
+        while True:
+            scale = damping * np.diag(square).max() * np.eye(len(x))
+            step = np.linalg.solve(square + scale, -slopes.T @ value)
+            step *= min(1.0, 1.0 / max(np.abs(step).max(), 1e-300))
+            trial = residual(x + step)
+            if trial @ trial < value @ value or np.abs(step).max() < _STILL:
+                break
+            damping = max(10 * damping, 1e-4)
+        if trial @ trial < value @ value:
+            x, value = x + step, trial
+        damping /= 3
+        if np.abs(step).max() < _STILL:
+            break
+    return x
+
+
+class _Sections:
+    """The section of a case at the states of its cell, as a function of the three numbers."""
+
+    def __init__(self, case: Case, reach: Reach, cell: CellStates) -> None:
+        turns = cases.turns_of(case)
+        modulus = convert.site(case).materials["wall"].initial_shear_modulus
+        self._start = _START * modulus / turns.pitch
+        self._kept = case.straight
+        begin = self.bulging(np.zeros(3))
+        wound = self._wound(case, begin)
+        self._windings = [e for e in wound.effects if e.turns() is not None]
+        angles = tuple(r.angle for r in cell.bent)
+        asked = [(cases.bent_section(wound, reach, angles), cell.bent)]
+        if cell.straight:
+            end = max(r.pressure for r in cell.bent)
+            asked.append((cases.straight_section(wound, reach, end), cell.straight))
+        self._parts: list[tuple[Small, list[State], Sequence[Reading]]] = []
+        for small_case, readings in asked:
+            small = Small(small_case)
+            states, report = small.march()
+            if len(states) < len(readings):
+                raise CalibrationError(
+                    f"its section has {len(states)} of the {len(readings)} states of its cell: "
+                    f"{report.reason}"
+                )
+            self._parts.append((small, states[: len(readings)], readings))
+
+    @staticmethod
+    def _wound(case: Case, bulging: Bulging) -> Case:
+        wound = (e if e.turns() is None else e.with_bulging(bulging) for e in case.effects)
+        return case.model_copy(update={"effects": tuple(wound)})
+
+    def bulging(self, x: Floats) -> Bulging:
+        """The numbers of a point; of every point K_b is positive, as 4 a2 > a1²."""
+        scale, linear, beyond = (float(value) for value in x)
+        quadratic = linear**2 / 4 + _QUADRATIC * np.exp(beyond)
+        return Bulging(self._start * float(np.exp(scale)), linear, float(quadratic))
+
+    def rounded(self, x: Floats) -> Bulging:
+        """To six digits: the same on every machine but for the last."""
+        numbers = self.bulging(x)
+        return Bulging(*(float(f"{value:.6g}") for value in dataclasses.astuple(numbers)))
+
+    def residual(self, x: Floats) -> Floats:
+        """Weighted relative differences from the cell at a point."""
+        bent, straight = self.parts(self.bulging(x))
+        if self._kept and len(straight):
+            return np.r_[_OTHER * bent, straight]
+        return np.r_[bent, _OTHER * straight]
+
+    def parts(self, numbers: Bulging) -> tuple[Floats, Floats]:
+        """Relative differences between section and cell: of states bent, and kept straight."""
+        found: list[Floats] = []
+        for small, states, readings in self._parts:
+            for winding in self._windings:
+                small.wind(winding.with_bulging(numbers))
+            values: list[float] = []
+            for index, cell in enumerate(readings):
+                state = small.again(states[index])
+                if state is None:
+                    values.append(_UNKNOWN)
+                    continue
+                states[index] = state
+                values.append(_difference(small.read(state), cell))
+            found.append(np.array(values))
+        return found[0], found[1] if len(found) > 1 else np.zeros(0)
+
+
+def _difference(section: Reading, cell: Reading) -> float:
+    """Of the pressure of what is bent, or of the moment of what is kept straight."""
+    if cell.moment:
+        return section.moment / cell.moment - 1
+    return section.pressure / cell.pressure - 1
