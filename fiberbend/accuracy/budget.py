@@ -153,8 +153,8 @@ def _sources(case: Case, state: State) -> dict[str, str]:
 def curvatures(case: Case, table: Knowledge) -> list[float]:
     """Radius times curvature at what the case asks for.
 
-    Where the load is a pressure, no angle is known before the run: all of the table up to 360°, or
-    to where the run ends early.
+    Of a pressure, at the end or on the way, the angle is not known before the run: all angles count
+    up to 360°, or to where the run ends early.
     """
     if case.straight:
         return [table.curvatures[0]]
@@ -162,8 +162,11 @@ def curvatures(case: Case, table: Knowledge) -> list[float]:
     ends = [load.angle if load is not None else None, output.stop_at_angle]
     given = [abs(angle) for angle in (*output.at_angles, *ends) if angle is not None]
     states = [curvature(case, angle) for angle in given]
-    if load is None or load.angle is None:
-        last = curvature(case, output.stop_at_angle or _HIGHEST)
+    unknown = load is None or (load.angle is None and output.stop_at_angle is None)
+    if unknown or output.at_pressures:
+        last = max(states, default=0.0)
+        if unknown:
+            last = max(last, curvature(case, _HIGHEST))
         states += [*(known for known in table.curvatures if known < last), last]
     return sorted(set(states))
 
@@ -188,14 +191,15 @@ def mesh_error(case: Case, rung: Rung, state: float) -> float | None:
     near = [k for k in celled if k.numbers["pitch"] <= min(above, default=math.inf) * (1 + 1e-6)]
     values = []
     for known in near:
-        sections = [n for n, layers in known.turns if n <= rung.section]
-        if not sections:
+        # the finest section that is no finer, with the most layers that are no more
+        coarser = [
+            (section, layers)
+            for section, layers in known.turns
+            if section <= rung.section and layers <= rung.layers * (1 + 1e-6)
+        ]
+        if not coarser:
             return None
-        layered = {lay: v for (n, lay), v in known.turns.items() if n == max(sections)}
-        least = [lay for lay in layered if lay <= rung.layers * (1 + 1e-6)]
-        if not least:
-            return None
-        values.append(abs(at(table.curvatures, layered[max(least)], state)))
+        values.append(abs(at(table.curvatures, known.turns[max(coarser)], state)))
     if not rung.axial:
         return max(values)
     beyond = _step(table.turns_body, rung.layers, longest=False)

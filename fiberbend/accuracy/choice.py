@@ -96,8 +96,12 @@ def chosen(case: Case) -> Candidate | None:
     for way in able:
         if way.estimate.meets(case.accuracy):
             return way
-    least = min((way.estimate.total for way in able or ways), default=0.0)
-    return next((way for way in able or ways if way.estimate.total <= NEAR * least), None)
+    rest = able or ways
+    # of a mesh of which nothing is known, the estimate is a least
+    doubts = min((len(way.estimate.unknown) for way in rest), default=0)
+    rest = [way for way in rest if len(way.estimate.unknown) == doubts]
+    least = min((way.estimate.total for way in rest), default=0.0)
+    return next((way for way in rest if way.estimate.total <= NEAR * least), None)
 
 
 def cheaper(case: Case) -> list[Candidate]:

@@ -43,7 +43,7 @@ def _carried(found: Estimate) -> Iterator[str]:
             f"{'; '.join(found.outside)}"
         )
     origin = knowledge().origin
-    yield f"from {origin['command']}, see {PAGE}; the run computes what a spread winding costs"
+    yield f"from {origin['command']}, see {PAGE}"
 
 
 def way_named(case: Case) -> str:
