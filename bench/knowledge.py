@@ -279,7 +279,10 @@ def main() -> None:
             PARTS[part]()
         return
     _only["kept"] = bool(wanted)
-    entries = [entry(name) for name in GEOMETRIES]
+    entries = []
+    for name in GEOMETRIES:
+        with _unless_missing(name):
+            entries.append(entry(name))
     apart, more = bodies_in_turns()
     content = {
         "origin": {

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 
 from fiberbend.accuracy.numbers import curvature, numbers, radius
-from fiberbend.accuracy.table import BEYOND, Knowledge, Known, at, knowledge, outside
+from fiberbend.accuracy.table import BEYOND, Curve, Knowledge, Known, at, knowledge, outside
 from fiberbend.case.case import Case
 from fiberbend.effects.effect import Turns
 from fiberbend.models.model import MeshedModel, Rung
@@ -30,6 +30,8 @@ OTHER_PATTERN = 2.0
 _LAWS = frozenset({"yeoh", "neo-hooke"})
 _EXPONENT = 1.3
 """Of the pitch in the error of a spread winding, see `fiberbend.models.resolution`."""
+_END = 1e-6
+"""Rounding of the table's numbers."""
 _HIGHEST = math.radians(360)
 
 
@@ -174,7 +176,8 @@ def curvatures(case: Case, table: Knowledge) -> list[float]:
 def mesh_error(case: Case, rung: Rung, state: float) -> float | None:
     """Percent of P at a curvature, as of the worst actuator of the shape; None: not known.
 
-    Of turns only actuators count whose pitch is no greater than the next one to the case's.
+    Of turns only actuators count whose pitch is no greater than the next one to the case's: their
+    error grows with it.
     """
     table = knowledge()
     entries = table.of_section(case.actuator.section)
@@ -186,24 +189,51 @@ def mesh_error(case: Case, rung: Rung, state: float) -> float | None:
         beyond = _step(table.spread_body, rung.axial / radius(case), longest=True)
         return None if beyond is None else found + beyond
     pitch = case.turns.pitch / radius(case) if case.turns is not None else 0.0
-    celled = [known for known in entries if known.turns]
-    above = [k.numbers["pitch"] for k in celled if k.numbers["pitch"] >= pitch * (1 - 1e-6)]
-    near = [k for k in celled if k.numbers["pitch"] <= min(above, default=math.inf) * (1 + 1e-6)]
-    values = []
-    for known in near:
-        # the finest section that is no finer, with the most layers that are no more
-        coarser = [
-            (section, layers)
-            for section, layers in known.turns
-            if section <= rung.section and layers <= rung.layers * (1 + 1e-6)
-        ]
-        if not coarser:
-            return None
-        values.append(abs(at(table.curvatures, known.turns[max(coarser)], state)))
+    near = _up_to([known for known in entries if known.turns], "pitch", pitch)
+    values = [_of_turns(known, rung, table, state) for known in near]
+    if not values or None in values:
+        return None
+    worst = max(value for value in values if value is not None)
     if not rung.axial:
-        return max(values)
+        return worst
     beyond = _step(table.turns_body, rung.layers, longest=False)
-    return None if beyond is None else max(values) + beyond
+    return None if beyond is None else worst + beyond
+
+
+def _up_to(known: Sequence[Known], name: str, value: float) -> list[Known]:
+    """Actuators that have no more of a number than the next one to a value."""
+    above = [k.numbers[name] for k in known if k.numbers[name] >= value * (1 - _END)]
+    return [k for k in known if k.numbers[name] <= min(above, default=math.inf) * (1 + _END)]
+
+
+def _of_turns(known: Known, rung: Rung, table: Knowledge, state: float) -> float | None:
+    """Error of the best rung of a cell that is nowhere finer, with what its finest rung may lack.
+
+    Signs change along the curve: the greater of the two known curvatures beside the state counts.
+    """
+    coarser = [
+        _beside(table.curvatures, values, state)
+        for (section, layers), values in known.turns.items()
+        if section <= rung.section
+        and layers <= rung.layers * (1 + _END)
+        and not any(
+            (section, layers) != (n, k)
+            and section <= n <= rung.section
+            and layers <= k <= rung.layers * (1 + _END)
+            for n, k in known.turns
+        )
+    ]
+    if not coarser:
+        return None
+    # the reference has twice the layers: a third of their error is left in it, of order two
+    return min(coarser) + abs(at(table.curvatures, known.turns[max(known.turns)], state)) / 3
+
+
+def _beside(curvatures: Curve, values: Curve, state: float) -> float:
+    """The greatest size of a curve at the known curvatures on both sides of one."""
+    last = len(values) - 1
+    above = next((n for n in range(last + 1) if curvatures[n] >= state), last)
+    return max(abs(values[above]), abs(values[max(above - 1, 0)]))
 
 
 def _worst(
@@ -227,9 +257,9 @@ def _worst(
 def _step(known: Mapping[float, float], value: float, longest: bool) -> float | None:
     """The next known value that is no better than the one at hand."""
     if longest:
-        worse = [key for key in known if key >= value * (1 - 1e-6)]
+        worse = [key for key in known if key >= value * (1 - _END)]
         return known[min(worse)] if worse else None
-    worse = [key for key in known if key <= value * (1 + 1e-6)]
+    worse = [key for key in known if key <= value * (1 + _END)]
     return known[max(worse)] if worse else None
 
 
@@ -250,6 +280,7 @@ def winding_error(case: Case, state: float) -> float:
         return CALIBRATED + lacking(case, state)
     table, here = knowledge(), numbers(case)
     entries = [k for k in table.of_section(case.actuator.section) if k.winding]
+    entries = entries or [known for known in table.actuators if known.winding]
     nearest = min(entries, key=lambda known: _distance(known.numbers, here))
     scale = (here["pitch"] / nearest.numbers["pitch"]) ** _EXPONENT
     return scale * abs(at(table.curvatures, nearest.winding, state))
@@ -270,11 +301,15 @@ def ends_error(case: Case, state: float) -> float:
     """Percent of P by which a body with caps bends further than its middle.
 
     By so many radii it seems longer than it is, whatever its length: the ends are a matter of the
-    section and its curvature. The worst actuator of the shape counts.
+    section and its curvature. A thin wall is pulled in further: only actuators count whose wall is
+    no thinner than the next one below the case's.
     """
     table = knowledge()
-    known = [k.ends for k in table.of_section(case.actuator.section) if k.ends[0]]
-    longer = max(abs(at(*curve, state)) for curve in known) + table.ends_of_turns
+    known = [k for k in table.of_section(case.actuator.section) if k.ends[0]]
+    wall = numbers(case)["wall"]
+    below = [k.numbers["wall"] for k in known if k.numbers["wall"] <= wall * (1 + _END)]
+    near = [k for k in known if k.numbers["wall"] >= max(below, default=0.0) * (1 - _END)]
+    longer = max(abs(at(*k.ends, state)) for k in near) + table.ends_of_turns
     return 100 * longer * radius(case) / case.actuator.length
 
 
@@ -285,7 +320,7 @@ def _widening(
     here, factor, reasons, beyond = numbers(case), 1.0, [], []
     found = list(outside(entries, here))
     most = table.curvatures[-1]
-    if not case.straight and furthest > most * (1 + 1e-6):
+    if not case.straight and furthest > most * (1 + _END):
         text = f"radius times curvature {furthest:.3g} (known: up to {most:.3g})"
         found.append((text, furthest / most))
     for text, times in found:
