@@ -76,7 +76,8 @@ class State:
 
     Attributes:
         curvature: radius times curvature.
-        winding: percent of P that a run has computed for its winding; None: by the table.
+        winding: percent of P by which a run has found its winding off the cell `FINE`, whose own
+            error comes on top; None: by the table.
         factor: percent of what is asked for, for a percent of P: 1 where that is P.
     """
 
@@ -124,9 +125,10 @@ def estimate(
             unknown.append("nothing is known of meshes as coarse as this")
         if case.straight and model.ends:
             mesh = max(mesh, BLOCKED)
-        winding = state.winding
-        if winding is None:
+        if state.winding is None:
             winding = factor * winding_error(case, here)
+        else:
+            winding = state.winding + factor * lacking(case, here)
         parts = {
             MESH: factor * mesh,
             WINDING: winding,

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from fiberbend import columns as col
-from fiberbend.accuracy.budget import FINE, Estimate, State, estimate, lacking, percent
+from fiberbend.accuracy.budget import FINE, Estimate, State, estimate, percent
 from fiberbend.accuracy.numbers import curvature
 from fiberbend.accuracy.words import MISSED, entry
 from fiberbend.case.case import Case
@@ -81,7 +81,7 @@ def _estimate(
     winding: dict[int, float] = {}
     turns = case.turns
     if left is not None:
-        winding = {row[col.STEP]: left + lacking(case, _curvature(case, row)) for row, _ in asked}
+        winding = {row[col.STEP]: left for row, _ in asked}
     elif turns is not None and not turns.discrete and not (case.straight and model.ends):
         try:
             winding = _of_winding(case, [row for row, _ in asked], solve)
@@ -136,8 +136,7 @@ def _factor(rows: Sequence[dict[str, Any]], row: dict[str, Any]) -> float | None
 def _of_winding(case: Case, rows: Sequence[dict[str, Any]], solve: Solve) -> dict[int, float]:
     """Percent of P, or of the force, that a spread winding costs at rows, by their steps.
 
-    Section and cell have the same elements through each thickness, so that these do not count; what
-    layers of the cell may still lack is added.
+    Section and cell have the same elements through each thickness, so that these do not count.
     """
     spread = _beside(case, rows)
     cell = _in_turns(spread)
@@ -147,8 +146,7 @@ def _of_winding(case: Case, rows: Sequence[dict[str, Any]], solve: Solve) -> dic
     for row in rows:
         at = round(row[key], 6)
         if at in smooth and at in bulged:
-            rest = lacking(case, _curvature(case, row))
-            found[row[col.STEP]] = 100 * abs(smooth[at] / bulged[at] - 1) + rest
+            found[row[col.STEP]] = 100 * abs(smooth[at] / bulged[at] - 1)
     return found
 
 
