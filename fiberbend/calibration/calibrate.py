@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import time
 from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
 from fiberbend.calibration import reach as classes
 from fiberbend.calibration.digest import content, digest
@@ -13,7 +14,9 @@ from fiberbend.calibration.record import DOUBTFUL, Calibrated, Calibration
 from fiberbend.calibration.store import Store
 from fiberbend.case.case import Case
 from fiberbend.schema.problems import CaseError, Problem
-from materials.bulging import Bulging
+
+if TYPE_CHECKING:
+    from materials.bulging import Bulging
 
 
 def waits(case: Case) -> bool:

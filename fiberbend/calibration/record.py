@@ -5,9 +5,10 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from materials.bulging import Bulging
+if TYPE_CHECKING:
+    from materials.bulging import Bulging
 
 DOUBTFUL = 0.5
 """Percent left between calibrated section and cell that a user is told of."""
@@ -51,6 +52,8 @@ class Calibration:
 
     def bulging(self) -> Bulging:
         """The three numbers as the finite-element code takes them."""
+        from materials.bulging import Bulging
+
         return Bulging(self.stiffness, self.linear, self.quadratic)
 
     def entries(self) -> dict[str, Any]:
