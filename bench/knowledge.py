@@ -109,6 +109,17 @@ _only = {"kept": False}
 _missing: list[str] = []
 
 
+def only_kept(wish: bool | None = None) -> bool:
+    """Whether solutions that are not kept are missing instead of being solved.
+
+    Args:
+        wish: from now on.
+    """
+    if wish is not None:
+        _only["kept"] = wish
+    return _only["kept"]
+
+
 @contextlib.contextmanager
 def _unless_missing(what: str) -> Iterator[None]:
     """A part of the table that is left out, and named, where its solutions are not kept."""
@@ -125,7 +136,7 @@ def solved(case: dict[str, Any]) -> list[dict[str, float]]:
     if path.exists():
         found: list[dict[str, float]] = json.loads(path.read_text(encoding="utf-8"))["rows"]
         return found
-    if _only["kept"]:
+    if only_kept():
         raise LookupError(case)
     result = run(copy.deepcopy(case))
     angles = [float(text.split()[0]) for text in case["output"]["at_angles"]]
@@ -278,7 +289,7 @@ def main() -> None:
         for part in wanted:
             PARTS[part]()
         return
-    _only["kept"] = bool(wanted)
+    only_kept(bool(wanted))
     entries = []
     for name in GEOMETRIES:
         with _unless_missing(name):

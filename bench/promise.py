@@ -1,7 +1,8 @@
 """Whether `accuracy: 1 %` keeps its word on actuators that its table was not made from.
 
 Writes docs/evidence/promise.md; fine cells are kept in build/knowledge. `python bench/promise.py`
-solves what takes less than `MOST_S` by its own plan; `python bench/promise.py bodies` all.
+solves what takes less than `MOST_S` by its own plan; `python bench/promise.py bodies` all, and
+`python bench/promise.py kept` only that whose fine cell is kept.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from bench.knowledge import LINES, solved
+from bench.knowledge import LINES, only_kept, solved
 from bench.tables import WINDING, table
 from fiberbend import run
 from fiberbend.accuracy.words import way_named
@@ -99,6 +100,15 @@ def _name(case: dict[str, Any]) -> str:
     )
 
 
+def _kept(case: dict[str, Any]) -> bool:
+    """Whether the fine cell at the asked angles is kept."""
+    try:
+        true(case, list(ANGLES))
+    except LookupError:
+        return False
+    return True
+
+
 def rows(name: str, bodies: bool) -> Iterator[list[str]]:
     """A line for each model."""
     for model in MODELS:
@@ -108,6 +118,10 @@ def rows(name: str, bodies: bool) -> Iterator[list[str]]:
         if not bodies and (plan.seconds is None or plan.seconds > MOST_S):
             first = dict(plan.rows)["accuracy"][0]
             yield [name, model, way, first.split(" asked, ")[1], "", "planned only"]
+            continue
+        if only_kept() and not _kept(case):
+            first = dict(plan.rows)["accuracy"][0]
+            yield [name, model, way, first.split(" asked, ")[1], "", "fine cell not solved yet"]
             continue
         result = run(copy.deepcopy(case))
         block = result.run["accuracy"]
@@ -133,6 +147,7 @@ def rows(name: str, bodies: bool) -> Iterator[list[str]]:
 def main() -> None:
     """Write the page; names of actuators on the command line are tried, and nothing is written."""
     bodies = "bodies" in sys.argv[1:]
+    only_kept("kept" in sys.argv[1:])
     names = [name for name in sys.argv[1:] if name in ACTUATORS]
     found = [row for name in names or ACTUATORS for row in rows(name, bodies)]
     if names:
