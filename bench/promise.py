@@ -127,7 +127,8 @@ def rows(name: str, bodies: bool) -> Iterator[list[str]]:
         block = result.run["accuracy"]
         parts = block["parts"]
         stops = [min(result.rows, key=lambda r: abs(r["angle_deg"] - a)) for a in ANGLES]
-        angles = [float(row.get("uniform_angle_deg") or row["angle_deg"]) for row in stops]
+        middles = [row.get("uniform_angle_deg") for row in stops]
+        angles = [m if m is not None else a for m, a in zip(middles, ANGLES, strict=True)]
         pressures = true(case, angles)
         found = max(
             abs(100 * (row["pressure_kPa"] / p - 1))
