@@ -148,9 +148,12 @@ def _sources(case: Case, state: State) -> dict[str, str]:
     """Where each part is from."""
     origin = knowledge().origin
     table = f"{origin['command']} (commit {str(origin['commit'])[:12]})"
-    computed = "section and cell of this actuator, at its own angles"
-    spread = case.turns is not None and not case.turns.discrete
-    winding = computed if state.winding is not None else table if spread else "every turn"
+    turns, winding = case.turns, table
+    if turns is None or turns.discrete:
+        winding = "every turn"
+    elif state.winding is not None:
+        beside = "section and cell of this actuator"
+        winding = f"{beside}, {'calibrated' if turns.bulges else 'at its own angles'}"
     return {MESH: table, WINDING: winding, ENDS: table}
 
 

@@ -27,6 +27,9 @@ _SAME = 1e-6
 _FLAT = 0.05
 """Relative rise of the pressure for that of the angle, below which no pressure gives an angle."""
 
+_BEYOND = 1.05
+"""Part of the greatest pressure of a calibration up to which that is trusted."""
+
 Solve = Callable[[Case], RunResult]
 
 
@@ -51,8 +54,8 @@ def estimated(
     if case.accuracy is None:
         return {}
     phase("accuracy")
-    left = (entries.get("calibration") or {}).get("left_percent")
-    found = _estimate(case, meshed(case), status, rows, left, solve)
+    calibration = entries.get("calibration") or {}
+    found = _estimate(case, meshed(case), status, rows, calibration, solve)
     return {"accuracy": entry(case.accuracy, found)}
 
 
@@ -71,7 +74,7 @@ def _estimate(
     model: MeshedModel,
     status: str,
     rows: Sequence[dict[str, Any]],
-    left: float | None,
+    calibration: Mapping[str, Any],
     solve: Solve,
 ) -> Estimate:
     doubts = [] if status == "converged" else [f"the run {status}"]
@@ -80,8 +83,11 @@ def _estimate(
         return estimate(case, model, (), [*doubts, "it has no answer"])
     winding: dict[int, float] = {}
     turns = case.turns
-    if left is not None:
-        winding = {row[col.STEP]: left for row, _ in asked}
+    if "left_percent" in calibration:
+        winding = {row[col.STEP]: calibration["left_percent"] for row, _ in asked}
+        most = max(row[col.PRESSURE] for row, _ in asked)
+        if most > _BEYOND * calibration["up_to_kPa"]:
+            doubts.append(f"its calibration goes up to {calibration['up_to_kPa']:.4g} kPa")
     elif turns is not None and not turns.discrete and not (case.straight and model.ends):
         try:
             winding = _of_winding(case, [row for row, _ in asked], solve)

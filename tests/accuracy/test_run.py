@@ -83,6 +83,32 @@ def test_a_kept_accuracy_warns_of_nothing() -> None:
     )
 
 
+def test_a_calibrated_winding_is_as_good_as_its_calibration() -> None:
+    numbers = {"left_percent": 0.2, "up_to_kPa": 100.0}
+    made = read_case(
+        ROOT / "cases" / "section.yaml",
+        ["effects.0.pressure.angle=80 deg", "output={}", "accuracy=5 %",
+         "effects.1.winding.as=calibrated"],
+    )  # fmt: skip
+    history = rows((40, 20), (80, 40))
+
+    def block(calibration: dict[str, float]) -> dict[str, Any]:
+        given = {"calibration": calibration}
+        found = estimated(made, "converged", history, given, no_solver, lambda _: None)
+        entries: dict[str, Any] = found["accuracy"]
+        return entries
+
+    good, worse = block(numbers), block(numbers | {"left_percent": 0.5})
+    assert good["promised"]
+    assert "calibrated" in good["from"]["winding"]
+    assert 0.2 < good["parts"]["winding"] < 0.6
+    apart = worse["parts"]["winding"] - good["parts"]["winding"]
+    assert apart == pytest.approx(0.3, abs=2e-3)
+    short = block(numbers | {"up_to_kPa": 30.0})
+    assert not short["promised"]
+    assert "up to 30 kPa" in short["reason"]
+
+
 def test_who_asks_for_none_gets_none() -> None:
     result = run_case(case(), None)
     assert "accuracy" not in result.run
