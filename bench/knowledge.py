@@ -205,16 +205,17 @@ def ends(case: dict[str, Any], radii: int = 20) -> dict[str, list[float]]:
     }
 
 
-def long_elements() -> dict[str, float]:
+def long_elements() -> dict[str, list[float | None]]:
     """Percent of P that long elements cost a body, by their length over the radius.
 
-    Against elements a quarter of the radius long, winding spread.
+    Against elements a quarter of the radius long, winding spread; at the curvatures of
+    `BODY_ANGLES`.
     """
     fine = pressures(body("baseline", 1, 2.0, winding=SPREAD))
     found = {}
     for part in LONG:
         coarse = pressures(body("baseline", 1, 8.0 * part, winding=SPREAD))
-        found[f"{part}"] = round(float(np.nanmax(np.abs(100 * (coarse / fine - 1)))), 3)
+        found[f"{part}"] = percent(coarse, fine)
     return found
 
 
@@ -240,7 +241,10 @@ def bodies_in_turns() -> tuple[dict[str, float], float]:
         apart[f"{layers}"] = round(off, 3)
         longer = np.array(ends(case, radii)["longer"]) - np.array(spread["longer"])
         more.append(float(np.max(np.abs(longer))))
-    return apart, round(max(more), 4)
+    # and as much as the long elements hide with which the ends of all actuators are measured
+    long, short = (ends(body("baseline", 1, axial, SPREAD))["longer"] for axial in (8.0, 4.0))
+    hidden = float(np.max(np.abs(np.array(long) - np.array(short))))
+    return apart, round(max(more) + hidden, 4)
 
 
 def _radius(name: str) -> float:
@@ -303,6 +307,7 @@ def main() -> None:
             "machine": origin.machine(),
         },
         "curvatures": [round(float(np.radians(angle) / 20), 6) for angle in ANGLES],
+        "body curvatures": [round(float(np.radians(angle) / 20), 6) for angle in BODY_ANGLES],
         "spread body": long_elements(),
         "turns body": apart,
         "ends of turns": more,

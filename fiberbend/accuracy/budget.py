@@ -191,8 +191,11 @@ def mesh_error(case: Case, rung: Rung, state: float) -> float | None:
         found = _worst((known.spread for known in entries), rung.section, base, table, state)
         if found is None or not rung.axial:
             return found
-        beyond = _step(table.spread_body, rung.axial / radius(case), longest=True)
-        return None if beyond is None else found + beyond
+        part = rung.axial / radius(case)
+        known = [length for length in table.spread_body if length >= part * (1 - _END)]
+        if not known:
+            return None
+        return found + abs(at(table.body_curvatures, table.spread_body[min(known)], state))
     pitch = case.turns.pitch / radius(case) if case.turns is not None else 0.0
     near = _up_to([known for known in entries if known.turns], "pitch", pitch)
     values = [_of_turns(known, rung, table, state) for known in near]
@@ -201,8 +204,8 @@ def mesh_error(case: Case, rung: Rung, state: float) -> float | None:
     worst = max(value for value in values if value is not None)
     if not rung.axial:
         return worst
-    beyond = _step(table.turns_body, rung.layers, longest=False)
-    return None if beyond is None else worst + beyond
+    fewer = [layers for layers in table.turns_body if layers <= rung.layers * (1 + _END)]
+    return worst + table.turns_body[max(fewer)] if fewer else None
 
 
 def _up_to(known: Sequence[Known], name: str, value: float) -> list[Known]:
@@ -257,15 +260,6 @@ def _worst(
         error = at(table.curvatures, ladder[max(known)], state)
         found.append(abs(error - (at(table.curvatures, ladder[base], state) if base else 0.0)))
     return max(found)
-
-
-def _step(known: Mapping[float, float], value: float, longest: bool) -> float | None:
-    """The next known value that is no better than the one at hand."""
-    if longest:
-        worse = [key for key in known if key >= value * (1 - _END)]
-        return known[min(worse)] if worse else None
-    worse = [key for key in known if key <= value * (1 + _END)]
-    return known[max(worse)] if worse else None
 
 
 def _finest(rung: Rung) -> Rung:

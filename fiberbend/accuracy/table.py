@@ -54,17 +54,20 @@ class Knowledge:
         origin: command, commit and machine that made it.
         curvatures: radius times curvature at which errors are known, rising.
         actuators: what is known of each.
-        body: error of a body beyond that of the slice with the same section and layers: by the
-            length of its elements over the radius under a winding that is spread, and by layers in
-            half a turn under turns, which fill it otherwise than a slice.
-        ends_of_turns: by how many radii more than with a spread winding a body with turns seems
-            longer.
+        body_curvatures: the same of bodies.
+        spread_body: error of a body beyond that of its section at these, by the length of its
+            elements over the radius, winding spread.
+        turns_body: the same of a body beyond its cell, by layers in half a turn: turns fill it
+            otherwise than a slice that repeats.
+        ends_of_turns: by how many radii more than one with a spread winding and long elements a
+            body with turns seems longer.
     """
 
     origin: Mapping[str, Any]
     curvatures: Curve
     actuators: tuple[Known, ...]
-    spread_body: Mapping[float, float]
+    body_curvatures: Curve
+    spread_body: Mapping[float, Curve]
     turns_body: Mapping[float, float]
     ends_of_turns: float
 
@@ -82,7 +85,8 @@ def knowledge() -> Knowledge:
         data["origin"],
         tuple(data["curvatures"]),
         tuple(_known(entry) for entry in data["actuators"]),
-        {float(key): value for key, value in data["spread body"].items()},
+        tuple(data["body curvatures"]),
+        {float(key): _curve(values) for key, values in data["spread body"].items()},
         {float(key): value for key, value in data["turns body"].items()},
         data["ends of turns"],
     )
