@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Iterator, Mapping, Sequence
 
-from fiberbend.accuracy.numbers import curvature, numbers, radius
+from fiberbend.accuracy.numbers import STIFF, curvature, numbers, radius
 from fiberbend.accuracy.table import BEYOND, Curve, Knowledge, Known, at, knowledge, outside
 from fiberbend.case.case import Case
 from fiberbend.effects.effect import Turns
@@ -23,6 +23,9 @@ CALIBRATED_SECTION = 2
 BLOCKED = 3.0
 """Percent of the force of a blocked tip by which the mesh of a body moves it
 (docs/evidence/blocked.md)."""
+MARGIN = 1.1
+"""Widening of every error of turns, by which few actuators stand for all between them: the greatest
+found beyond was 4 % (docs/evidence/promise.md)."""
 OTHER_LAW = 1.5
 """Widening for a rubber whose law is not in the table."""
 OTHER_PATTERN = 2.0
@@ -181,14 +184,15 @@ def curvatures(case: Case, table: Knowledge) -> list[float]:
 def mesh_error(case: Case, rung: Rung, state: float) -> float | None:
     """Percent of P at a curvature, as of the worst actuator of the shape; None: not known.
 
-    Of turns only actuators count whose pitch is no greater than the next one to the case's: their
-    error grows with it.
+    Of spread windings only actuators count whose floor is no softer than the next one below the
+    case's, of turns those whose pitch is no greater than the next one to it.
     """
     table = knowledge()
     entries = table.of_section(case.actuator.section)
     if not rung.layers:
         base = CALIBRATED_SECTION if case.turns is not None and case.turns.bulges else None
-        found = _worst((known.spread for known in entries), rung.section, base, table, state)
+        like = _down_to(entries, STIFF, numbers(case)[STIFF])
+        found = _worst((known.spread for known in like), rung.section, base, table, state)
         if found is None or not rung.axial:
             return found
         part = rung.axial / radius(case)
@@ -214,6 +218,12 @@ def _up_to(known: Sequence[Known], name: str, value: float) -> list[Known]:
     return [k for k in known if k.numbers[name] <= min(above, default=math.inf) * (1 + _END)]
 
 
+def _down_to(known: Sequence[Known], name: str, value: float) -> list[Known]:
+    """Actuators that have no less of a number than the next one below a value."""
+    below = [k.numbers[name] for k in known if k.numbers[name] <= value * (1 + _END)]
+    return [k for k in known if k.numbers[name] >= max(below, default=0.0) * (1 - _END)]
+
+
 def _of_turns(known: Known, rung: Rung, table: Knowledge, state: float) -> float | None:
     """Error of the best rung of a cell that is nowhere finer, with what its finest rung may lack.
 
@@ -234,7 +244,8 @@ def _of_turns(known: Known, rung: Rung, table: Knowledge, state: float) -> float
     if not coarser:
         return None
     # the reference has twice the layers: a third of their error is left in it, of order two
-    return min(coarser) + abs(at(table.curvatures, known.turns[max(known.turns)], state)) / 3
+    rest = abs(at(table.curvatures, known.turns[max(known.turns)], state)) / 3
+    return MARGIN * (min(coarser) + rest)
 
 
 def _beside(curvatures: Curve, values: Curve, state: float) -> float:
@@ -300,14 +311,12 @@ def ends_error(case: Case, state: float) -> float:
     """Percent of P by which a body with caps bends further than its middle.
 
     By so many radii it seems longer than it is, whatever its length: the ends are a matter of the
-    section and its curvature. A thin wall is pulled in further: only actuators count whose wall is
-    no thinner than the next one below the case's.
+    section and its curvature. A thin floor bends more across itself: only actuators count whose
+    floor is no thinner than the next one below the case's.
     """
     table = knowledge()
     known = [k for k in table.of_section(case.actuator.section) if k.ends[0]]
-    wall = numbers(case)["wall"]
-    below = [k.numbers["wall"] for k in known if k.numbers["wall"] <= wall * (1 + _END)]
-    near = [k for k in known if k.numbers["wall"] >= max(below, default=0.0) * (1 - _END)]
+    near = _down_to(known, "floor", numbers(case)["floor"])
     longer = max(abs(at(*k.ends, state)) for k in near) + table.ends_of_turns
     return 100 * longer * radius(case) / case.actuator.length
 

@@ -7,6 +7,8 @@ import math
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 
+STIFF = "floor's modulus"
+"""Of the stiffer of floor and layer."""
 SOFT = "thread"
 """The one number with a lower limit only: a stiffer thread is no other actuator."""
 
@@ -41,7 +43,7 @@ def numbers(case: Case) -> dict[str, float]:
         "wall": spec.wall / r,
         "floor": ((spec.floor or 0.0) + (spec.layer or 0.0)) / r,
         "sheath": (spec.sheath or 0.0) / r,
-        "floor's modulus": max((moduli.get(p, 0.0) for p in ("floor", "layer")), default=0) / wall,
+        STIFF: max((moduli.get(p, 0.0) for p in ("floor", "layer")), default=0) / wall,
         "sheath's modulus": moduli.get("sheath", 0.0) / wall,
     }
     turns = case.turns
