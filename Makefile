@@ -10,7 +10,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
 .DEFAULT_GOAL := help
-.PHONY: browser notebook help setup tools demo sweep test verify hard survive speed knowledge tables check format docs pictures schema \
+.PHONY: browser notebook help setup tools demo sweep test verify hard survive speed knowledge calibration tables check format docs pictures schema \
     clean
 
 help: ## list the commands
@@ -56,6 +56,9 @@ tables: setup ## make the accuracy tables in docs/ again; half an hour
 
 knowledge: setup ## solve the ladders from which an accuracy chooses; an hour
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/knowledge.py
+
+calibration: setup ## calibrated windings beside every turn by itself; an hour on an idle machine
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/calibration.py
 
 speed: setup ## measure what an answer costs in each model; four minutes on an idle machine
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/speed.py

@@ -29,7 +29,13 @@ AREAS = {
         ["fem/results/measures.py"],
         ["turns", "resultants", "frames", "contact", "newton", "march"],
     ),
-    "embedded": (["fem/effects/embedded_fibers.py"], ["uniform", "screw", "newton", "effects"]),
+    "embedded": (
+        [
+            f"fem/effects/{name}.py"
+            for name in ("embedded_fibers", "mean_stretch", "bulging_fibers")
+        ],
+        ["uniform", "screw", "newton", "bulging", "effects"],
+    ),
     "kinematics": (
         [
             f"fem/kinematics/{name}.py"

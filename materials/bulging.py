@@ -58,7 +58,7 @@ class Bulging:
 
     def factor(self, stretch: Floats) -> tuple[Floats, Floats, Floats]:
         """K_b/K0 and its first two derivatives by λ_z, at stretches λ_z (n,)."""
-        part = stretch - 1
+        part = stretch - 1.0
         slope = self.linear + 2 * self.quadratic * part
-        value: Floats = 1 + part * (self.linear + self.quadratic * part)
+        value = 1.0 + part * (self.linear + self.quadratic * part)
         return value, slope, np.full(len(part), 2 * self.quadratic)

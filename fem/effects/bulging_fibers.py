@@ -9,11 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from fem.effects.embedded_fibers import FiberPotential
-from fem.effects.mean_stretch import Lines, MeanStretch, Second
+from fem.effects.mean_stretch import MeanStretch, Second
 from fem.kinematics.kinematics import Kinematics
 from geometry.mesh.data import MeshData
 from geometry.mesh.reference import jacobians
-from geometry.winding.segments import SmearedFibers
+from geometry.winding.segments import Lines, SmearedFibers
 from materials.bulging import Bulging
 
 Floats = npt.NDArray[np.float64]
@@ -79,7 +79,7 @@ class BulgingPotential(FiberPotential):
         """Segments that are curved, (m,): λ_z enters there alone."""
         self._softness = (stiffness * density * curvature**2 / bulging.stiffness)[self._bent]
         """EA ρ/(K0 r²): bulge over fiber in flexibility, at λ_z = 1, (m,)."""
-        lines = Lines.of(segments, self.index[self._bent])
+        lines = segments.lines(self.index[self._bent])
         self._axial = MeanStretch(body, along_axis(body.domain.data, lines))
         self._predicted_across: Floats | None = None
 

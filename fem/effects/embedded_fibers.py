@@ -9,7 +9,7 @@ import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fem.effects.mean_stretch import Lines, MeanStretch, Second
+from fem.effects.mean_stretch import MeanStretch, Second
 from fem.kinematics.kinematics import Kinematics
 from fem.ranks import total
 from geometry.mesh.data import facet_positions
@@ -61,7 +61,7 @@ class FiberPotential:
         self.stiffness = stiffness * segments.share[self.index]
         host = host[self.index]
         self._start = np.flatnonzero(np.r_[True, host[1:] != host[:-1]][: len(host)])
-        self._along = MeanStretch(body, Lines.of(segments, self.index))
+        self._along = MeanStretch(body, segments.lines(self.index))
         self._dofs = self._along.dofs
         self._predicted: Floats | None = None
         self._second: Second | None = None

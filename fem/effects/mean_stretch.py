@@ -12,37 +12,9 @@ from analytic.path import cross_matrix
 from fem.kinematics.kinematics import Kinematics
 from geometry.mesh.data import facet_positions
 from geometry.mesh.reference import shape_functions
-from geometry.winding.segments import EmbeddedFibers
+from geometry.winding.segments import Lines
 
 Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-
-
-@dataclasses.dataclass(frozen=True)
-class Lines:
-    """Pieces of material lines, each in a facet of one cell; n pieces with q points each.
-
-    Attributes:
-        cell: host cell, (n,).
-        facet: local facet of the host cell, (n,).
-        points: reference coordinates in the host cell, (n, q, d).
-        tangents: derivative of the reference coordinates along the piece, (n, q, d).
-        axial: derivative of z along the piece in mm where the mesh has no z, else 0, (n, q).
-        weights: weights of the points, (n, q).
-    """
-
-    cell: Ints
-    facet: Ints
-    points: Floats
-    tangents: Floats
-    axial: Floats
-    weights: Floats
-
-    @classmethod
-    def of(cls, segments: EmbeddedFibers, index: Ints) -> Lines:
-        """Some of the segments of a winding, by their numbers (n,)."""
-        names = (field.name for field in dataclasses.fields(cls))
-        return cls(**{name: getattr(segments, name)[index] for name in names})
 
 
 @dataclasses.dataclass(frozen=True)
@@ -62,8 +34,10 @@ class Second:
 
 def _contract(vectors: Floats, maps: Floats) -> Floats:
     """Σ_qi v_qi M_qik over points and components: v (n, q, 3), M (n, q, 3, k), result (n, k)."""
-    count, width = len(maps), maps.shape[3]
-    result: Floats = (vectors.reshape(count, 1, -1) @ maps.reshape(count, -1, width))[:, 0]
+    count, points, components, width = maps.shape
+    # sizes in full: numpy infers none where a rank holds nothing
+    flat = maps.reshape(count, points * components, width)
+    result: Floats = (vectors.reshape(count, 1, points * components) @ flat)[:, 0]
     return result
 
 
@@ -99,10 +73,13 @@ class MeanStretch:
         count, quadrature, dim = lines.points.shape
         value, gradient = shape_functions(kind, lines.points.reshape(-1, dim))
         tangent = lines.tangents.reshape(-1, dim)
-        along = np.einsum("pad,pd->pa", gradient, tangent).reshape(count, quadrature, -1)
+        along = np.einsum("pad,pd->pa", gradient, tangent)
+        along = along.reshape(count, quadrature, along.shape[1])
         along = np.take_along_axis(along, positions[:, None, :], axis=2)
         local = domain.local_cell[lines.cell]
-        self.dofs = body.cell_dofs[local[:, None], positions].reshape(count, -1)
+        parts = body.components
+        width = positions.shape[1] * parts
+        self.dofs = body.cell_dofs[local[:, None], positions].reshape(count, width)
         reference = data.nodes[data.cells[lines.cell[:, None], positions]]
         rise = lines.axial
         if reference.shape[2] == 3:
@@ -112,24 +89,27 @@ class MeanStretch:
         slope = along / metric[:, :, None]  # ∂φ_a/∂S, 1/mm
         share = lines.weights * metric
         self._share = share / share.sum(axis=1, keepdims=True)
-        self._uniform = body.carry() is not None
-        parts = body.components
-        if self._uniform:
+        carry = body.carry()
+        self._turned: dict[str, Floats] = {}
+        """By scalar, ∂²t/∂w∂q = T_z (∂ω/∂q) × φ: where the spin turns to does not change."""
+        if carry is not None:
             value = np.take_along_axis(
-                value.reshape(count, quadrature, -1), positions[:, None, :], axis=2
+                value.reshape(count, quadrature, value.shape[1]), positions[:, None, :], axis=2
             )
             self._value = np.einsum("nqa,ij->nqiaj", value, np.eye(3)[:, :parts]).reshape(
-                count, quadrature, 3, -1
+                count, quadrature, 3, width
             )
             self._rise: Floats = (rise / metric)[:, :, None]
+            for name, (_, turn) in carry.rates.items():
+                self._turned[name] = self._rise[..., None] * (cross_matrix(turn) @ self._value)
         self._slope = np.einsum("nqa,ij->nqiaj", slope, np.eye(3)[:, :parts]).reshape(
-            count, quadrature, 3, -1
+            count, quadrature, 3, width
         )
         rest = np.zeros((*reference.shape[:2], parts))
         # x' in the turning frame: z is not a position there
-        shown = 2 if self._uniform else 3
+        shown = 3 if carry is None else 2
         rest[:, :, :shown] = reference[:, :, :shown]
-        self._reference = rest.reshape(count, -1)
+        self._reference = rest.reshape(count, width)
         self.value = np.ones(count)
 
     def update(self, w: Floats) -> None:
@@ -184,23 +164,21 @@ class MeanStretch:
 
             ∂²λ/∂a∂b = Σ c [∂t/∂a · (I − n nᵀ)/λ · ∂t/∂b + n · ∂²t/∂a∂b].
 
-        t is linear in w and in q; ∂²t/∂w∂q = T_z (∂ω/∂q) × φ alone does not vanish, and only in
-        uniform bending.
+        t is linear in w and in q; ∂²t/∂w∂q alone does not vanish, and only in uniform bending.
         """
         n = self._direction
         across = np.eye(3) - n[..., :, None] * n[..., None, :]
         shared = pull[:, None] * self._share
         across *= (shared / self._stretch)[..., None, None]
         side = across @ self._map
-        count, width = self.dofs.shape
-        block = self._map.reshape(count, -1, width).swapaxes(1, 2) @ side.reshape(count, -1, width)
+        count, points, components, width = self._map.shape
+        flat = (count, points * components, width)
+        block = self._map.reshape(flat).swapaxes(1, 2) @ side.reshape(flat)
         mixed: dict[str, Floats] = {}
         scalars: dict[tuple[str, str], float] = {}
-        carry = self._body.carry()
         for name, rate in self._rates.items():
-            assert carry is not None
-            turned = self._rise[..., None] * (cross_matrix(carry.rates[name][1]) @ self._value)
-            mixed[name] = _contract(rate, side) + _contract(shared[:, :, None] * n, turned)
+            turning = _contract(shared[:, :, None] * n, self._turned[name])
+            mixed[name] = _contract(rate, side) + turning
             for other, last in self._rates.items():
                 scalars[name, other] = float(np.sum(rate * (across @ last[..., None])[..., 0]))
         return Second(block, mixed, scalars)

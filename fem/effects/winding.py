@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fem.effects.bulging_fibers import BulgingPotential
 from fem.effects.effect import Effect
 from fem.effects.embedded_fibers import FiberPotential
@@ -54,7 +56,8 @@ class CalibratedWinding(_Fibers):
         tension_only: slack fibers carry nothing.
 
     Raises:
-        ValueError: a stiffness that is not positive.
+        ValueError: a stiffness that is not positive; an outline without arcs, on which no rubber
+            bulges by this law: it is the smeared winding.
     """
 
     segments: SmearedFibers
@@ -67,6 +70,11 @@ class CalibratedWinding(_Fibers):
         tension_only: bool = False,
     ) -> None:
         super().__init__(segments, stiffness, tension_only)
+        if not np.any(segments.curvature):
+            raise ValueError(
+                "the winding is nowhere curved: a stiffness against bulges has no effect, expected "
+                "a smeared winding"
+            )
         self.bulging = bulging
 
     def discrete(self, body: Kinematics) -> BulgingPotential:

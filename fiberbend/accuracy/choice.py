@@ -11,8 +11,9 @@ from typing import TypeVar, cast
 from fiberbend.accuracy.budget import Estimate, estimate
 from fiberbend.calibration import expected
 from fiberbend.calibration.calibrate import waits
+from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.effect import Turns
+from fiberbend.effects.effect import Draft, Turns
 from fiberbend.models.choice import MODELS, objection
 from fiberbend.models.model import MeshedModel, Objection, completed_mesh
 from fiberbend.schema.quantities import Spec
@@ -174,7 +175,14 @@ def _models(case: Case) -> Iterator[MeshedModel]:
 
 
 def _hindered(given: Case, case: Case, model: MeshedModel) -> bool:
-    """Whether a model cannot have it: of one that is to be chosen, in full."""
+    """Whether a model cannot have it: of one that is to be chosen, in full.
+
+    A representation that nobody has given may be one that this actuator cannot have.
+    """
+    names = {f"effects.{n}.{effect.name}": effect for n, effect in enumerate(case.effects)}
+    draft = Draft(convert.dimensions(case.actuator), case.actuator.length, names)
+    if any(True for path, effect in names.items() for _ in effect.problems(path, draft)):
+        return True
     if given.model == "auto":
         return objection(case, model) is not None
     return next(model.refuses(case), None) is not None

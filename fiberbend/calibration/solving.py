@@ -101,7 +101,7 @@ class Small:
         for term in built.terms:
             potential = term.discrete(self.scene.body)
             assert potential is not None
-            self.scene.discrete[term.key] = potential
+            self.scene.replace(term.key, potential)
 
     def again(self, state: State) -> State | None:
         """The state at the same angle, or kept straight at the same pressure; None: none found."""

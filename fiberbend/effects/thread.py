@@ -99,6 +99,13 @@ class BulgingSpec(Spec):
             stiffness=bulging.stiffness, linear=bulging.linear, quadratic=bulging.quadratic
         )
 
+    def problems(self, path: str) -> Iterator[Problem]:
+        """A stiffness that is not positive at every stretch."""
+        try:
+            self.bulging()
+        except ValueError as error:
+            yield Problem(path, str(error))
+
     def bulging(self) -> Bulging:
         """As the finite-element code takes it."""
         from materials.bulging import Bulging

@@ -149,9 +149,20 @@ class WindingEffect(Effect):
                 yield Problem(f"{path}.{key}", f"no effect {where}, expected no value")
         if self.representation != SMEARED and self.width == 0 and (self.lines or 1) > 1:
             yield Problem(f"{path}.lines", f"{self.lines}, expected 1 line where the width is zero")
+        if self.bulging is not None:
+            yield from self.bulging.problems(f"{path}.bulging")
         wrong = list(self.fiber.problems(f"{path}.fiber"))
         yield from wrong
-        if not wrong and draft.actuator is not None:
+        if draft.actuator is None:
+            return
+        wanted = self.representation or (None if self.bulging is None else CALIBRATED)
+        if wanted == CALIBRATED and not _rounded(draft.actuator):
+            yield Problem(
+                f"{path}.as",
+                '"calibrated", but the thread is straight apart from corners, where it presses on '
+                "no length of rubber: expected discrete or smeared",
+            )
+        if not wrong:
             yield from self._room(path, draft.actuator)
 
     def _room(self, path: str, actuator: Actuator) -> Iterator[Problem]:
@@ -256,6 +267,11 @@ class WindingEffect(Effect):
         """Where it is to be calibrated and nobody has given the numbers."""
         return self.representation == CALIBRATED and self.bulging is None
 
+    def to_calibrate(self) -> Self:
+        """Spread, and waiting for its numbers where it has none."""
+        changed = self.model_copy(update={"representation": CALIBRATED})
+        return changed.completed(None)
+
     def bulges(self) -> Bulging | None:
         """As the case or a calibration gives it."""
         return None if self.bulging is None else self.bulging.bulging()
@@ -313,6 +329,11 @@ class WindingEffect(Effect):
             raise ValueError("a winding that is to be calibrated is built after its cell")
         term = CalibratedWinding(spread, stiffness, self.bulging.bulging(), slack)
         return Built((term,), (), spread, True)
+
+
+def _rounded(actuator: Actuator) -> bool:
+    """Whether a thread around it is curved anywhere but at corners."""
+    return any(side.center is not None for side in actuator.outline())
 
 
 def _rounded_up(length: float) -> float:

@@ -20,25 +20,17 @@ from geometry.winding.outline import arc_length
 
 
 @dataclasses.dataclass(frozen=True)
-class EmbeddedFibers:
-    """Fiber segments, each within one cell; n segments with q points each.
-
-    With J the Jacobian of the cell's geometry, length = Σ_q weights |J tangents|. A section has no
-    z of its own: there d = 2 and length = Σ_q weights √(|J tangents|² + axial²), in mm per mm of z.
+class Lines:
+    """Pieces of material lines, each in a facet of one cell; n pieces with q points each.
 
     Attributes:
         cell: host cell, (n,).
         facet: local facet of the host cell, (n,).
         points: reference coordinates in the host cell, (n, q, d).
-        tangents: derivative of the reference coordinates along the segment, parameter in [0, 1],
+        tangents: derivative of the reference coordinates along the piece, parameter in [0, 1],
             (n, q, d).
-        axial: derivative of z along the segment in mm where the mesh has no z, else 0, (n, q).
+        axial: derivative of z along the piece in mm where the mesh has no z, else 0, (n, q).
         weights: weights of the points, (n, q); they sum to 1.
-        length: length in mm in the mesh's own geometry, (n,); see above for a section.
-        share: fraction of the fiber's stiffness, (n,).
-        curve: number of the curve (of the helix, when smeared), (n,).
-        z: z in mm of the segment's middle, (n,); 0 on a section.
-        s: arc length in mm on the outline of the segment's middle, (n,).
     """
 
     cell: Ints
@@ -47,6 +39,28 @@ class EmbeddedFibers:
     tangents: Floats
     axial: Floats
     weights: Floats
+
+    def lines(self, index: Ints) -> Lines:
+        """Some of them by their numbers, (m,), as lines alone."""
+        names = (field.name for field in dataclasses.fields(Lines))
+        return Lines(**{name: getattr(self, name)[index] for name in names})
+
+
+@dataclasses.dataclass(frozen=True)
+class EmbeddedFibers(Lines):
+    """Fiber segments, n segments with q points each.
+
+    With J the Jacobian of the cell's geometry, length = Σ_q weights |J tangents|. A section has no
+    z of its own: there d = 2 and length = Σ_q weights √(|J tangents|² + axial²), in mm per mm of z.
+
+    Attributes:
+        length: length in mm in the mesh's own geometry, (n,); see above for a section.
+        share: fraction of the fiber's stiffness, (n,).
+        curve: number of the curve (of the helix, when smeared), (n,).
+        z: z in mm of the segment's middle, (n,); 0 on a section.
+        s: arc length in mm on the outline of the segment's middle, (n,).
+    """
+
     length: Floats
     share: Floats
     curve: Ints

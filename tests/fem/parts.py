@@ -115,6 +115,16 @@ def perturb(scene: Scene, amplitude: float, seed: int) -> Floats:
     return scene.w.copy()
 
 
+def times_tangent(scene: Scene, v: Floats) -> Floats:
+    """K v at the present state, (owned,)."""
+    matrix = scene.assemble_tangent()
+    x, y = matrix.createVecs()
+    x.array_w[:] = v
+    matrix.mult(x, y)
+    result: Floats = y.array_r.copy()
+    return result
+
+
 def set_positions(scene: Scene, x: Floats) -> None:
     """Move every node to a deformed position (n, 3) given by input numbers."""
     body = scene.body

@@ -8,15 +8,17 @@ import math
 import numpy as np
 import pytest
 
-from geometry.bodies.extrude import hexahedral_body, hexahedral_slice
-from geometry.mesh.data import MeshData
+from geometry.bodies.extrude import hexahedral_body, hexahedral_slice, section_quadrilaterals
+from geometry.mesh.data import Floats, Ints, MeshData
 from geometry.mesh.reference import jacobians
 from geometry.mesh.tets import to_tetrahedra
+from geometry.sections.circle import CircleActuator
 from geometry.sections.hemicircle import HemicircleActuator
+from geometry.sections.rectangle import RectangleActuator
 from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
-from geometry.winding.outline import arc_length, position
+from geometry.winding.outline import arc_length, curvature, pieces, position
 from geometry.winding.patterns import PATTERNS, Helix, Pattern
 from geometry.winding.segments import EmbeddedFibers
 from geometry.winding.smear import smear
@@ -194,3 +196,35 @@ def test_windings_without_meaning_are_refused() -> None:
             dataclasses.replace(DOUBLE, **bad)
     with pytest.raises(ValueError, match="pattern 'triple'"):
         Winding("triple", 3, 0.38)
+
+
+def test_smeared_fibers_know_the_curvature_of_their_path() -> None:
+    # of the discrete helices, by differences of their tangents; none on the straight sides, and a
+    # corner has no length to be curved on
+    winding, perimeter = Winding("double-helix", 9.0, 0.0), BODY.winding_perimeter
+    ends = np.cumsum([piece.length for piece in pieces(BODY)])[:-1]
+
+    def piece_at(s: Floats) -> Ints:
+        return np.searchsorted(ends, np.minimum(s % perimeter, -s % perimeter))
+
+    points, tangents = winding.points(BODY, 0, 20001)
+    step = winding.curve_length(BODY) / 20000
+    bend = np.linalg.norm(np.diff(tangents, axis=0), axis=1) / step
+    middle = (points[1:] + points[:-1]) / 2
+    along = piece_at(arc_length(BODY, middle[:, :2], middle[:, 0] < 0))
+    quads = section_quadrilaterals(BODY, MeshSize(section=1, half=False))
+    for mesh in (*_meshes(half=True), quads):
+        fibers = smear(mesh, BODY, winding)
+        assert fibers.density == pytest.approx(2 * winding.density(BODY))
+        there = piece_at(fibers.s)
+        for number in range(3):
+            expected = float(np.median(bend[along == number]))
+            assert fibers.curvature[there == number] == pytest.approx(expected, rel=1e-6, abs=1e-9)
+        assert set(np.sign(fibers.curvature)) == {0.0, 1.0}
+
+
+def test_curvature_of_outlines() -> None:
+    circle = CircleActuator(radius=8, length=40, wall=2, cap=8)
+    assert curvature(circle, np.linspace(-99, 99, 50)) == pytest.approx(1 / 10)
+    rectangle = RectangleActuator(width=10, height=6, length=40, wall=2, floor=2, cap=8)
+    assert not np.any(curvature(rectangle, np.linspace(-99, 99, 50)))

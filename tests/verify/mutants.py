@@ -170,15 +170,15 @@ MUTANTS = (
         SAME + "the winding always says which",
     ),
     Mutant(
-        "effects/embedded_fibers.py",
+        "effects/mean_stretch.py",
         "`reshape(-1, dim)` → `-2`",
         "nothing",
         SAME + "numpy takes any negative number for what is left",
         2,
     ),
     Mutant(
-        "effects/embedded_fibers.py",
-        "`add_noise`: norm along another axis",
+        "effects/mean_stretch.py",
+        "`noise`: norm along another axis",
         "the estimate of round-off below which forces do not count",
         "only a tolerance, of the same order",
     ),

@@ -50,6 +50,15 @@ def test_wound_tube_of_a_finite_pitch() -> None:
     _close(limits.wound_tube(1), 2e-5)
 
 
+def test_wound_tube_that_bulges_between_the_turns() -> None:
+    # exactly, with the bulge as an unknown of its own: thread and rubber in series
+    checks = limits.bulging_tube(2)
+    _close(checks, 2e-5)
+    for check, stretch in zip(checks, (1.1, 1.5), strict=True):
+        plain = limits.extending_tube(2, limits.BULGY_PITCH, stretch)
+        assert abs(check.found / plain - 1) > 0.01
+
+
 @pytest.mark.parametrize(("stretch", "reference"), [(1.1, 0.03107830), (1.5, 0.12667995)])
 def test_wound_tube_tends_to_inextensible_hoops(stretch: float, reference: float) -> None:
     # exact, by quadrature; a pitch of 0.1 mm leaves 5e-5 and 7e-5, by the exact tube of that pitch
@@ -68,8 +77,18 @@ def test_single_helix_unwinds_under_pressure(hand: int) -> None:
     _close([twist, stretch], 1e-4)
 
 
+@pytest.mark.parametrize("hand", [1, -1])
+def test_single_helix_that_bulges(hand: int) -> None:
+    # a steep one: λz at the thread has a part of the twist
+    found = limits.single_helix(2, hand, pitch=20.0, bulging=limits.BULGING)
+    _close(found, 1e-4)
+    plain = limits.single_helix(2, hand, pitch=20.0)
+    for check, without in zip(found, plain, strict=True):
+        assert abs(check.found - without.found) > 100 * abs(check.found - check.exact)
+
+
 @pytest.mark.parametrize(
-    "limit", [limits.beam, limits.free_tube, limits.wound_tube, limits.torsion]
+    "limit", [limits.beam, limits.free_tube, limits.wound_tube, limits.bulging_tube, limits.torsion]
 )
 def test_errors_fall_with_the_fourth_power(limit: Callable[[int], list[Check]]) -> None:
     # resultants and pressures are derivatives of an energy: twice the order of its strains

@@ -10,8 +10,9 @@ import numpy as np
 from mpi4py import MPI
 
 from fem.effects.chamber_pressure import ChamberPressure
+from fem.effects.effect import Effect
 from fem.effects.supports import StraightAxis
-from fem.effects.winding import SmearedWinding
+from fem.effects.winding import CalibratedWinding, SmearedWinding
 from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
 from fem.march.records import Ramp
 from fem.scene import Scene
@@ -21,6 +22,7 @@ from geometry.sections.hemicircle import HemicircleActuator
 from geometry.winding.helix import Winding
 from geometry.winding.patterns import PATTERNS
 from geometry.winding.smear import smear
+from materials.bulging import Bulging
 from materials.material import Material
 from tests.exact.solutions import Torsion, closed_tube
 from tests.verify.helix_tube import HelixTube
@@ -49,6 +51,8 @@ LAW = Material("yeoh", YEOH).principal
 EA = 881.0
 """Of a fiber, N: Kevlar of half the radius of 0.38 mm diameter."""
 FINE_PITCH = 0.5
+BULGING, BULGY_PITCH = Bulging(0.4, 0.7, 3.0), 20.0
+"""A bulge that takes up more than the thread does, and a pitch that its path shows."""
 STEP = 1e-5
 
 
@@ -138,18 +142,23 @@ def composite_bending(n: int) -> Check:
 # --- round tubes --------------------------------------------------------------------------------
 
 
-def _wound(n: int, pattern: str, pitch: float, straight: bool) -> Scene:
+def _wound(
+    n: int, pattern: str, pitch: float, straight: bool, bulging: Bulging | None = None
+) -> Scene:
     where = domain(TUBE, n)
-    fibers = SmearedWinding(smear(where.data, TUBE, Winding(pattern, pitch, 0.38)), EA)
+    segments = smear(where.data, TUBE, Winding(pattern, pitch, 0.38))
+    fibers: Effect = SmearedWinding(segments, EA)
+    if bulging is not None:
+        fibers = CalibratedWinding(segments, EA, bulging)
     effects = [*rubber({"wall": YEOH}), ChamberPressure(), fibers]
     if straight:
         effects.append(StraightAxis())
     return section(where, TUBE, effects, twisted=not PATTERNS[pattern].mirrored)
 
 
-def extending_tube(n: int, pitch: float, stretch: float) -> float:
+def extending_tube(n: int, pitch: float, stretch: float, bulging: Bulging | None = None) -> float:
     """Pressure in MPa that stretches the tube with a smeared double helix."""
-    scene = _wound(n, "double-helix", pitch, straight=True)
+    scene = _wound(n, "double-helix", pitch, True, bulging)
     march(scene, Ramp("pressure", stretch, drive="control"))
     return scene.scalar("pressure")
 
@@ -161,6 +170,19 @@ def wound_tube(n: int) -> list[Check]:
         Check(
             f"P of the wound tube, pitch {FINE_PITCH:g} mm, λz = {stretch:g}, MPa",
             extending_tube(n, FINE_PITCH, stretch),
+            exact.at_stretch(stretch),
+        )
+        for stretch in (1.1, 1.5)
+    ]
+
+
+def bulging_tube(n: int) -> list[Check]:
+    """The extending tube whose rubber bulges, beside one whose bulge is an unknown of its own."""
+    exact = HelixTube(YEOH["c1"], YEOH["c2"], INNER, OUTER, BULGY_PITCH, EA, (1, -1), BULGING)
+    return [
+        Check(
+            f"P of the tube that bulges, pitch {BULGY_PITCH:g} mm, λz = {stretch:g}, MPa",
+            extending_tube(n, BULGY_PITCH, stretch, BULGING),
             exact.at_stretch(stretch),
         )
         for stretch in (1.1, 1.5)
@@ -184,18 +206,24 @@ def free_tube(n: int) -> list[Check]:
     ]
 
 
-def single_helix(n: int, hand: int, pitch: float = 3.0, pressure: float = 0.03) -> list[Check]:
+def single_helix(
+    n: int,
+    hand: int,
+    pitch: float = 3.0,
+    pressure: float = 0.03,
+    bulging: Bulging | None = None,
+) -> list[Check]:
     """A free tube wound by one helix: it stretches and twists, straight.
 
     The pin is not on the tube's axis: there the straight tube's frame follows a helix, ω turned
     against z. |ω| is the twist, and the advance along ω is the stretch.
     """
     pattern = {1: "single-helix-right", -1: "single-helix-left"}[hand]
-    scene = _wound(n, pattern, pitch, straight=False)
+    scene = _wound(n, pattern, pitch, False, bulging)
     march(scene, Ramp("pressure", pressure, first=pressure / 10))
     k, along, twist = (scene.scalar(name) for name in (CURVATURE, STRETCH, TWIST))
     spin = math.copysign(math.hypot(k, twist), twist)
-    exact = HelixTube(YEOH["c1"], YEOH["c2"], INNER, OUTER, pitch, EA, (hand,))
+    exact = HelixTube(YEOH["c1"], YEOH["c2"], INNER, OUTER, pitch, EA, (hand,), bulging)
     stretch, turn = exact.at_pressure(pressure)
     name = f"{pattern}, pitch {pitch:g} mm, {1e3 * pressure:g} kPa"
     return [
