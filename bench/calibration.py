@@ -185,7 +185,7 @@ def straight() -> str:
 
 def bodies() -> str:
     """A coarse body, calibrated, beside a resolved one: bent, and its tip blocked."""
-    kinds = {
+    kinds: dict[str, tuple[str, str, tuple[float, ...], str]] = {
         "free_bending.yaml": ("P at 90 / 180 / 270 / 360°", "angle_deg", ANGLES, "pressure_kPa"),
         "blocked_tip.yaml": (
             "F at 25 / 50 / 75 / 100 kPa",
@@ -202,7 +202,7 @@ def bodies() -> str:
     }
     rows = []
     for name in BODIES:
-        for case, (label, *goals) in kinds.items():
+        for case, (label, key, goals, value) in kinds.items():
             change = dict(GEOMETRIES[name])
             if case == "free_bending.yaml":
                 angles = ", ".join(f"{angle} deg" for angle in ANGLES)
@@ -218,7 +218,7 @@ def bodies() -> str:
                 }
             coarse = {"mesh.axial": COARSE, f"{WINDING}.as": "calibrated"}
             own, fine = anew(case, change | coarse), Run(case, change | layered(name, 1))
-            values, reference = (run.at(*goals) for run in (own, fine))
+            values, reference = (run.at(key, goals, value) for run in (own, fine))
             rows.append(
                 f"| {name} | {label} | {shown(reference)} | {percent(values, reference)} | "
                 f"{own.run['unknowns']} / {fine.run['unknowns']} | "

@@ -208,17 +208,6 @@ class Scene:
         """Value of a global scalar."""
         return float(self.body.scalars[name].value)
 
-    def replace(self, key: str, potential: Discrete) -> None:
-        """Take another potential with its own code in place of one that couples the same dofs.
-
-        Args:
-            key: of the effect.
-            potential: of the same pieces on the same body, with other numbers.
-        """
-        self.discrete[key] = potential
-        self._forget()
-        potential.update(self.body.w.x.array)
-
     def set_scalar(self, name: str, value: float) -> None:
         """Set a global scalar."""
         if self.body.scalars[name].value != value:

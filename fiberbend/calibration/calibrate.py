@@ -12,9 +12,7 @@ from fiberbend.calibration.digest import content, digest
 from fiberbend.calibration.reach import Reach
 from fiberbend.calibration.record import DOUBTFUL, Calibrated, Calibration
 from fiberbend.calibration.store import Store
-from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.effect import Draft
 from fiberbend.schema.problems import CaseError, Problem
 
 if TYPE_CHECKING:
@@ -35,36 +33,6 @@ def with_bulging(case: Case, bulging: Bulging) -> Case:
     """
     effects = (e.with_bulging(bulging) if e.uncalibrated() else e for e in case.effects)
     return case.model_copy(update={"effects": tuple(effects)})
-
-
-def as_calibrated(case: Case) -> Case:
-    """A case of finite elements with its winding calibrated, where it has one that can be.
-
-    For who chooses for a user: the numbers come with the run (`calibrate`), or a plan says what
-    they will cost (`fiberbend.calibration.expected`). A case without a winding stays as it is.
-
-    Args:
-        case: a checked case.
-
-    Raises:
-        CaseError: its winding cannot be calibrated; why.
-    """
-    effects = tuple(effect.to_calibrate() for effect in case.effects)
-    changed = case.model_copy(update={"effects": effects})
-    draft = Draft(
-        convert.dimensions(case.actuator),
-        case.actuator.length,
-        {f"effects.{index}.{effect.name}": effect for index, effect in enumerate(effects)},
-    )
-    problems = [
-        problem
-        for path, effect in draft.effects.items()
-        if effect.uncalibrated()
-        for problem in effect.problems(path, draft)
-    ]
-    if problems:
-        raise CaseError(problems)
-    return changed
 
 
 def known(case: Case, store: Store | None = None) -> Calibrated | None:

@@ -9,7 +9,6 @@ from fiberbend.calibration.calibrate import known, waits
 from fiberbend.calibration.record import words
 from fiberbend.case.case import Case
 from fiberbend.models.choice import meshed
-from fiberbend.models.resolution import CALIBRATED
 from fiberbend.models.uniform import twists
 
 _STEPS = (5, 4)
@@ -37,7 +36,7 @@ def expected(case: Case) -> Iterator[str]:
         return
     yield (
         f"to be calibrated by the cell of this section before the run, about {seconds(case):.0f} "
-        f"s, and kept; within {CALIBRATED} % of the cell (docs/evidence/calibration.md)"
+        "s, and kept"
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 
+import numpy as np
 from mpi4py import MPI
 
 from fem.kinematics.domain import Domain
@@ -101,7 +102,9 @@ class Small:
         for term in built.terms:
             potential = term.discrete(self.scene.body)
             assert potential is not None
-            self.scene.replace(term.key, potential)
+            self.scene.discrete[term.key] = potential
+        # away from the present state, which the scene would take as evaluated
+        self.scene.set(np.zeros_like(self.scene.w))
 
     def again(self, state: State) -> State | None:
         """The state at the same angle, or kept straight at the same pressure; None: none found."""

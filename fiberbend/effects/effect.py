@@ -294,10 +294,6 @@ class Effect(Spec):
         """Whether it waits for numbers that the cell of its section gives."""
         return False
 
-    def to_calibrate(self) -> Self:
-        """The effect with a winding that is calibrated before it is solved; others as they are."""
-        return self
-
     def bulges(self) -> Bulging | None:
         """How stiff rubber is that bulges between its turns; None where that is not given."""
         return None

@@ -267,11 +267,6 @@ class WindingEffect(Effect):
         """Where it is to be calibrated and nobody has given the numbers."""
         return self.representation == CALIBRATED and self.bulging is None
 
-    def to_calibrate(self) -> Self:
-        """Spread, and waiting for its numbers where it has none."""
-        changed = self.model_copy(update={"representation": CALIBRATED})
-        return changed.completed(None)
-
     def bulges(self) -> Bulging | None:
         """As the case or a calibration gives it."""
         return None if self.bulging is None else self.bulging.bulging()

@@ -17,8 +17,10 @@ BULGING_PITCH = 3.0
 FARTHEST_PITCH = 6.0
 """Twice that: beyond, nothing is known of it."""
 CALIBRATED = 0.3
-"""Percent of pressure for an angle by which a calibrated section is off its cell: pitch 1.5 to
-6 mm, radius 6 to 12 mm, wall 1 to 3 mm (docs/evidence/calibration.md)."""
+"""Percent of pressure for an angle by which a calibrated section is off a fine cell: pitch 1.5 to
+4.5 mm, radius 6 to 12 mm, wall 1 to 3 mm (docs/evidence/calibration.md)."""
+_WIDE, _CALIBRATED_WIDE = 4.5, 0.7
+"""Pitch in mm beyond which cells of fine meshes differ, and the percent up to the farthest."""
 _BULGING = ((90.0, 3.5), (180.0, 4.1), (270.0, 4.7), (360.0, 5.1))
 """Angle in degrees, and percent of pressure that every fiber by itself takes beyond a smeared
 winding: the cell against the section model, baseline."""
@@ -45,16 +47,21 @@ def beyond_section(case: Case, model: ModelKind) -> float:
     return 0.0 if turns is not None and turns.bulges else model.resolved_bulging(case)
 
 
+def _within(pitch: float) -> str:
+    """How near a calibrated winding is to a fine cell, in words."""
+    if pitch > FARTHEST_PITCH * (1 + 1e-9):
+        return f"how near to the cell's P is not known beyond {FARTHEST_PITCH:g} mm"
+    percent = CALIBRATED if pitch <= _WIDE * (1 + 1e-9) else _CALIBRATED_WIDE
+    return f"P within {percent} % of a fine cell's"
+
+
 def lost_pressure(case: Case, model: ModelKind) -> Iterator[str]:
     """What a model does not see of the rubber between the turns, in words."""
     turns = case.turns
     if turns is None or case.inflation is None or case.straight or not model.elements():
         return
     if turns.bulges:
-        yield (
-            f"winding: calibrated, P within {CALIBRATED} % of the cell's "
-            "(docs/evidence/calibration.md)"
-        )
+        yield f"winding: calibrated, {_within(turns.pitch)} (docs/evidence/calibration.md)"
         return
     missing = 1 - model.resolved_bulging(case)
     if missing and turns.pitch > FARTHEST_PITCH:

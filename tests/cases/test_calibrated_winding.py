@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from fiberbend.calibration import reach
-from fiberbend.calibration.calibrate import as_calibrated, known, waits, with_bulging
+from fiberbend.calibration.calibrate import known, waits, with_bulging
 from fiberbend.calibration.digest import content, digest
 from fiberbend.calibration.record import Calibration
 from fiberbend.calibration.store import FOLDER, Store
@@ -22,7 +22,6 @@ from fiberbend.schema.problems import CaseError
 from materials.bulging import Bulging
 from tests.run.conftest import small
 
-SPREAD: dict[str, Any] = {"as": "smeared"}
 KNOWN: dict[str, Any] = {"as": None, "bulging": {"stiffness": "0.7 MPa/mm", "quadratic": 6.0}}
 FOUND = Calibration(
     stiffness=0.6,
@@ -76,9 +75,6 @@ def test_a_thread_without_curved_parts_is_refused() -> None:
     case["effects"][1]["winding"]["as"] = "calibrated"
     with pytest.raises(CaseError, match="straight apart from corners"):
         parse_case(case)
-    case["effects"][1]["winding"]["as"] = "smeared"
-    with pytest.raises(CaseError, match="straight apart from corners"):
-        as_calibrated(parse_case(case))
 
 
 def test_numbers_alone_mean_calibrated_and_need_no_cell() -> None:
@@ -106,12 +102,6 @@ def test_the_section_beside_has_the_same_numbers(model: str) -> None:
     assert turns is not None
     assert turns.bulges
     assert not turns.discrete
-
-
-def test_a_smeared_winding_can_be_made_to_wait() -> None:
-    case = as_calibrated(wound("section", None, **SPREAD))
-    assert waits(case)
-    assert case == wound()
 
 
 @pytest.mark.parametrize(
