@@ -13,6 +13,9 @@ export OMPI_MCA_rmaps_base_oversubscribe := 1
 .PHONY: browser notebook help setup tools demo sweep test verify hard survive speed calibration \
     tables check format docs pictures schema accuracy clean
 
+.PHONY: browser notebook help setup tools demo sweep test verify hard survive speed knowledge calibration tables check format docs pictures schema \
+    clean
+
 help: ## list the commands
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
 
@@ -53,6 +56,9 @@ survive: setup ## kill runs at random moments and go on; damaged cases; writes d
 tables: setup ## make the accuracy tables in docs/ again; half an hour
 	$(MPIRUN) $(BIN)/python bench/tables.py
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/contact.py
+
+knowledge: setup ## solve the ladders from which an accuracy chooses; an hour
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/knowledge.py
 
 calibration: setup ## calibrated windings beside every turn by itself; an hour on an idle machine
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/calibration.py

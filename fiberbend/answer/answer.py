@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from fiberbend import columns as col
+from fiberbend.accuracy.words import answered, verdict
 from fiberbend.answer.numbers import number, quantity
 from fiberbend.answer.touch import touches
 from fiberbend.case.case import Case
@@ -82,7 +83,7 @@ def answer(case: Case, rows: Sequence[col.Row], run: Mapping[str, Any]) -> Answe
         *_contacts(case, rows),
         *_critical(run),
         *_strain(run),
-        *_errors(case, model),
+        *_errors(case, model, run),
         *_calibrated(run),
         *_measured(run),
     ]
@@ -313,8 +314,12 @@ def _strain(run: Mapping[str, Any]) -> Iterator[Entry]:
 # --- how far to trust it ----------------------------------------------------------------------
 
 
-def _errors(case: Case, model: ModelKind) -> Iterator[Entry]:
+def _errors(case: Case, model: ModelKind, run: Mapping[str, Any]) -> Iterator[Entry]:
     """How far the model's answer is expected to be off, with the source."""
+    estimated = answered(run)
+    if estimated is not None:
+        yield Entry("estimated error", *estimated)
+        return
     for index, line in enumerate(errors(case, model)):
         yield Entry("" if index else "expected error", line)
 
@@ -349,6 +354,8 @@ def _trust(run: Mapping[str, Any]) -> str:
     parts, warnings = [], run.get("warnings") or ()
     if run.get("status") != "converged":
         parts.append("the values up to the end of the run are valid")
+    if accuracy := verdict(run):
+        parts.append(accuracy)
     beside = _beside(run, "section")
     text = beside.get("text")
     # what is not expected stands among the warnings
@@ -358,5 +365,6 @@ def _trust(run: Mapping[str, Any]) -> str:
         count = len(warnings)
         parts.append(f"read the {'warning' if count == 1 else f'{count} warnings'} below")
     else:
-        parts.append("no doubt beyond the expected error is known")
+        error = "estimated" if accuracy else "expected"
+        parts.append(f"no doubt beyond the {error} error is known")
     return f"Trust: {'; '.join(parts)}."

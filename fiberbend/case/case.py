@@ -24,6 +24,7 @@ from fiberbend.case.names import MODELS
 from fiberbend.effects.effect import Effect, Inflation, Turns, keep_straight
 from fiberbend.effects.table import EffectEntry, unwrap
 from fiberbend.schema.quantities import (
+    Accuracy,
     Angle,
     BodyLength,
     Density,
@@ -284,6 +285,9 @@ class Case(Spec):
     """How the body is supported."""
     model: ModelName = "auto"
     """Model to solve; auto takes the cheapest that supports every effect."""
+    accuracy: Accuracy | None = None
+    """Greatest error of what is asked for: model, mesh and winding that are not given are chosen
+    for it, and the run reports its estimated error beside its result."""
     compare: tuple[Literal["paper"], ...] = Field(default=(), strict=False)
     """What a run is put beside on top of the cheaper models: the figures of the paper."""
     mesh: Mesh = Mesh()

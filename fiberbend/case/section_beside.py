@@ -32,6 +32,7 @@ def as_section(case: Case, load: Effect) -> Case:
     return case.model_copy(
         update={
             "model": MODEL,
+            "accuracy": None,
             "effects": (load, *(effect for effect in beside if effect is not None)),
             "mesh": mesh,
             "solver": Solver(),

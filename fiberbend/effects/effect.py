@@ -214,6 +214,10 @@ class Effect(Spec):
         """
         return self
 
+    def representations(self) -> tuple[Self, ...]:
+        """The effect in every form in which the case leaves it to a model, the roughest first."""
+        return (self,)
+
     def unresolved(self, size: MeshSize) -> Iterator[tuple[str, str]]:
         """What of it a mesh is too coarse to feel.
 

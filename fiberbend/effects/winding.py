@@ -213,6 +213,15 @@ class WindingEffect(Effect):
             update["lines"] = self.lines or (DEFAULT_LINES if width else 1)
         return self.model_copy(update=update)
 
+    def representations(self) -> tuple[Self, ...]:
+        """Spread and in turns, unless the case says which; a ribbon lies in turns."""
+        given = {"representation", "width", "lines", "bulging"} & self.model_fields_set
+        if given:
+            return (self,)
+        plain = self.model_copy(update={"width": None, "lines": None})
+        kinds = (SMEARED, CALIBRATED, DISCRETE)
+        return tuple(plain.model_copy(update={"representation": kind}) for kind in kinds)
+
     def turns(self) -> Turns:
         """Pitch, pattern and thread."""
         discrete = self.representation in (DISCRETE, None)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
@@ -28,6 +29,7 @@ from fiberbend.models.model import (
     MeshedModel,
     Observables,
     ProblemSize,
+    Rung,
     count,
     found_pressure,
     pieces,
@@ -156,6 +158,25 @@ class Body(MeshedModel):
         iteration = 0.65 * (tangent + factor) + 2.8e-6 * size.unknowns
         touching = any(e.touches() or e.strips() is not None for e in case.effects)
         return iteration * (_TOUCHING_ITERATIONS if touching else _ITERATIONS)
+
+    def ladder(self, case: Case) -> Iterator[dict[str, Any]]:
+        """Long elements under a winding that is spread, parts of half a turn under turns."""
+        turns = case.turns
+        if turns is not None and turns.discrete:
+            lengths = [turns.pitch / 2 / layers for layers in (1, 2, 4)]
+        else:
+            width = convert.dimensions(case.actuator).profile.half_width
+            lengths = [width, width / 2]
+        for number, axial in itertools.product((1, 2), lengths):
+            yield {"section": number, "axial": axial}
+
+    def rung(self, case: Case) -> Rung | None:
+        """Nothing is known of tetrahedra."""
+        if case.mesh.element == "tetrahedron":
+            return None
+        turns, axial = case.turns, case.mesh.axial
+        layers = turns.pitch / 2 / axial if turns is not None and turns.discrete else 0.0
+        return Rung(case.mesh.section, layers, axial)
 
     def memory_mb(self, size: ProblemSize) -> float:
         """Mostly the factor, and the thread's own matrices."""

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import itertools
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.effect import ARC, CHAMBER, THREAD, TURNS, TWIST, VOLUME, WOUND
 from fiberbend.models.mesh_error import cell_section_error, section_error
-from fiberbend.models.model import Objection, ProblemSize, completed_mesh, count, pieces
+from fiberbend.models.model import Objection, ProblemSize, Rung, completed_mesh, count, pieces
 from fiberbend.models.uniform import UniformModel, twists
 from fiberbend.schema.units import show
 
@@ -123,6 +124,23 @@ class Cell(UniformModel):
         return ProblemSize(
             counts.cells, "hexahedra", count(counts, 3, 4), scalars, layers, segments
         )
+
+    def ladder(self, case: Case) -> Iterator[dict[str, Any]]:
+        """Layers in half a turn first: they count most."""
+        turns = case.turns
+        if turns is None or not turns.discrete:
+            yield from ({"section": number} for number in (1, 2, 3, 4))
+            return
+        for number, layers in itertools.product((1, 2), (1, 2, 4, 8)):
+            yield {"section": number, "axial": turns.pitch / 2 / layers}
+
+    def rung(self, case: Case) -> Rung:
+        """Along it nothing counts where no turn lies by itself."""
+        turns = case.turns
+        if turns is None or not turns.discrete:
+            return Rung(case.mesh.section)
+        extent, layers = self.slice(case, self.half(case)[0])
+        return Rung(case.mesh.section, layers * turns.pitch / 2 / extent)
 
     def drawn(self, case: Case, size: ProblemSize) -> float:
         """All slices of the length."""

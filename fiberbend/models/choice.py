@@ -24,6 +24,8 @@ def choose_model(case: Case) -> tuple[ModelKind, str]:
         The model and the reason.
     """
     if case.model != "auto":
+        if case.accuracy is not None and "model" not in case.model_fields_set:
+            return MODELS[case.model], "chosen for its accuracy"
         return MODELS[case.model], "given in the case"
     for model in MODELS.values():
         if objection(case, model) is None:

@@ -72,6 +72,22 @@ class Observables:
 
 
 @dataclasses.dataclass(frozen=True)
+class Rung:
+    """How fine a mesh is, in the words in which its error is known.
+
+    Attributes:
+        section: elements through each thickness.
+        layers: elements along half a turn of a winding whose turns lie by themselves; 0: it is
+            spread, or there is none, and everything is alike along the axis.
+        axial: length of the elements of a body, mm; 0 of a slice that repeats.
+    """
+
+    section: int
+    layers: float = 0.0
+    axial: float = 0.0
+
+
+@dataclasses.dataclass(frozen=True)
 class ProblemSize:
     """How large a problem is.
 
@@ -256,6 +272,14 @@ class MeshedModel(ModelKind):
     @abstractmethod
     def memory_mb(self, size: ProblemSize) -> float:
         """Greatest memory on one rank, MB."""
+
+    def ladder(self, case: Case) -> Iterator[dict[str, Any]]:
+        """Settings of `mesh` that an accuracy may choose among; none unless said."""
+        yield from ()
+
+    def rung(self, case: Case) -> Rung | None:
+        """How fine its mesh is; None where nothing is known of the error of such meshes."""
+        return None
 
     def drawn(self, case: Case, size: ProblemSize) -> float:
         """Elements in space that pictures and fields show."""

@@ -7,13 +7,13 @@ import functools
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.effect import ARC, CHAMBER, THREAD, TWIST, VOLUME, WOUND
 from fiberbend.models.mesh_error import section_error
-from fiberbend.models.model import Objection, ProblemSize, completed_mesh, count
+from fiberbend.models.model import Objection, ProblemSize, Rung, completed_mesh, count
 from fiberbend.models.uniform import UniformModel, twists
 
 if TYPE_CHECKING:
@@ -98,6 +98,14 @@ class Section(UniformModel):
         scalars = self.scalars(case)
         # the thread of a section has a piece for each point of the outline: next to none
         return ProblemSize(counts.cells, "quadrilaterals", unknowns, scalars, 1.0, 0.0)
+
+    def ladder(self, case: Case) -> Iterator[dict[str, Any]]:
+        """Finer across: nothing else is meshed."""
+        yield from ({"section": number} for number in (1, 2, 3, 4))
+
+    def rung(self, case: Case) -> Rung:
+        """Across only."""
+        return Rung(case.mesh.section)
 
     def drawn(self, case: Case, size: ProblemSize) -> float:
         """The section along the whole length."""

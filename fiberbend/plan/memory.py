@@ -160,6 +160,15 @@ def refuse_shortage(case: Case, comm: Any, folder: bool) -> None:
         raise CaseError([Problem("memory", text)])
 
 
+def fits(case: Case, comm: Any, folder: bool) -> bool:
+    """Whether there is memory for a case; collective, the same on all ranks."""
+    try:
+        refuse_shortage(case, comm, folder)
+    except CaseError:
+        return False
+    return True
+
+
 def gigabytes(mb: float) -> str:
     """A memory in words, two digits."""
     value = mb / 1000

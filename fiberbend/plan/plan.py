@@ -6,6 +6,8 @@ import dataclasses
 import textwrap
 from collections.abc import Iterator
 
+from fiberbend.accuracy.choice import picked
+from fiberbend.accuracy.words import expected_lines
 from fiberbend.calibration.expected import expected
 from fiberbend.case.case import Case
 from fiberbend.models.choice import MODELS, choose_model, objection
@@ -69,12 +71,14 @@ class Plan:
 def make_plan(case: Case) -> Plan:
     """The plan of a case; takes the mesh from the block layout, without gmsh."""
     model, why = choose_model(case)
+    beside = [] if picked(case) else _cheaper(case, model)
     head = {
         "effects": [", ".join(effect.name for effect in case.effects)],
-        "model": [f"{model.name} ({why})", *_cheaper(case, model)],
+        "model": [f"{model.name} ({why})", *beside],
     }
     tail = {
-        "error": list(errors(case, model)),
+        "accuracy": list(expected_lines(case)),
+        "error": [] if case.accuracy is not None else list(errors(case, model)),
         "left out": [f"{path}: {text}" for path, text in model.leaves_out(case)],
         "not used": [", ".join(names)] if (names := list(unused(case, model))) else [],
     }

@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from fiberbend.accuracy import choice as accuracy
 from fiberbend.case.case import (
     ActuatorSpec,
     Case,
@@ -137,6 +138,9 @@ def parse_case(data: Mapping[str, Any]) -> Case:
         parts = _valid_parts(data) if isinstance(data, Mapping) else ValidParts()
     problems += check(parts)
     if problems or case is None:
+        raise CaseError(problems)
+    problems += [Problem(path, text) for path, text in accuracy.problems(case)]
+    if problems:
         raise CaseError(problems)
     case = complete(case)
     problems += [Problem(path, text) for path, text in choice.problems(case)]

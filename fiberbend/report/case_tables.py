@@ -22,7 +22,7 @@ _OBSTACLE = ("_y_N", "_z_N")
 _ROUND_OFF = 1e-12
 """Part of a column's greatest value that no solver keeps."""
 _PLANNED = {
-    *("effects", "model", "half", "elements", "unknowns", "error"),
+    *("effects", "model", "half", "elements", "unknowns", "accuracy", "error"),
     *("left out", "not used", "winding"),
 }
 """Headings of a plan that are true of the run as well; time and memory are in run.json."""

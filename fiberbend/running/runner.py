@@ -18,14 +18,15 @@ from fem.march.march import ACROSS
 from fem.results.checkpoint import Archive
 from fem.scene import Scene
 from fiberbend import columns as col
+from fiberbend.accuracy.computed import estimated, missed
 from fiberbend.answer.answer import answer
 from fiberbend.case.case import Case
 from fiberbend.compare.check import Check
-from fiberbend.models.choice import choose_model
+from fiberbend.models.choice import choose_model, meshed
 from fiberbend.models.model import MeshedModel
 from fiberbend.models.result import RunResult
 from fiberbend.plan.doubts import doubts
-from fiberbend.plan.memory import refuse_shortage
+from fiberbend.plan.memory import fits, refuse_shortage
 from fiberbend.process.signals import Interrupted, stop_of
 from fiberbend.results.folder import MESH, REPORT, RunFolder
 from fiberbend.results.states import LAST, write_fibers
@@ -38,7 +39,6 @@ from fiberbend.running.launch import on_rank_0
 from fiberbend.running.outputs import draw, write_page
 from fiberbend.running.progress import Progress
 from fiberbend.running.warm import SectionStates, section_guides, section_states
-from fiberbend.schema.problems import CaseError
 from geometry.mesh.data import MeshData
 
 GMSH_FILE = "actuator.msh"
@@ -100,6 +100,11 @@ def run_case(
         return result
 
 
+def _solve_beside(case: Case) -> RunResult:
+    """A case beside the run, on this rank alone."""
+    return _Run(case, meshed(case), None, Progress(quiet=True), MPI.COMM_SELF).go(False)
+
+
 class _AcrossError(Exception):
     """Half a body buckles across its mirror plane, and may be solved whole instead."""
 
@@ -123,7 +128,7 @@ def _solve(
         whole = _whole(case)
         # asked now: later the half body takes of the memory that is free
         leaves = case.mesh.symmetry == "auto" and model.half(case)[0]
-        leaves = leaves and (force or _fits(whole, comm, folder))
+        leaves = leaves and (force or fits(whole, comm, folder is not None))
         try:
             run = _Run(case, model, folder, progress, comm, scratch, own, may_leave=leaves)
             return run.go(resume)
@@ -141,15 +146,6 @@ def _solve(
 def _whole(case: Case) -> Case:
     """The case without a mirror plane."""
     return case.model_copy(update={"mesh": case.mesh.model_copy(update={"symmetry": "full"})})
-
-
-def _fits(case: Case, comm: MPI.Comm, folder: RunFolder | None) -> bool:
-    """Whether there is memory for a case; collective, the same on all ranks."""
-    try:
-        refuse_shortage(case, comm, folder is not None)
-    except CaseError:
-        return False
-    return True
 
 
 class _Run:
@@ -211,6 +207,9 @@ class _Run:
         self._warn_of_ends(status, assembly, recorder, recording)
         check = self._cross_check(recorder.rows, section)
         recording.warn([] if check is None else check.doubts(), silent=True)
+        given = (status, recorder.rows, self.own.entries, _solve_beside, progress.phase)
+        error = on_rank_0(self.comm, lambda: estimated(case, *given))
+        recording.warn(missed(error), silent=True)
         progress.phase("output")
         recording.keep(LAST)
         rows = check.beside(recorder.rows) if check else recorder.rows
@@ -224,7 +223,8 @@ class _Run:
             self.comm.size,
             kernels.versions(),
         )
-        run |= record.of_effects(case, recorder.rows) | record.beside(check) | self.own.entries
+        run |= record.of_effects(case, recorder.rows) | record.beside(check) | error
+        run |= self.own.entries
         run |= on_rank_0(self.comm, lambda: record.strain(case, assembly, recording.last))
         if self.folder is not None:
             self.folder.write_history(rows)
@@ -352,13 +352,9 @@ class _Run:
 
         self.progress.phase("crosscheck")
         known = None if section is None else section.bending
-
-        def solve(beside: Case) -> RunResult:
-            model = choose_model(beside)[0].elements()
-            assert model is not None
-            return _Run(beside, model, None, Progress(quiet=True), MPI.COMM_SELF).go(False)
-
-        return on_rank_0(self.comm, lambda: check_run(self.case, self.model, rows, solve, known))
+        return on_rank_0(
+            self.comm, lambda: check_run(self.case, self.model, rows, _solve_beside, known)
+        )
 
     def _close(self, run: dict[str, Any], assembly: Assembly, recording: Recording) -> None:
         """Write how long the last phase took, and what it warned of; on the rank that writes."""

@@ -138,3 +138,5 @@ PenaltyStiffness = Annotated[float, Quantity("penalty stiffness")]
 """MPa/mm, above zero."""
 Acceleration = Annotated[float, Quantity("acceleration")]
 """mm/s², above zero."""
+Accuracy = Annotated[float, Quantity("accuracy")]
+"""Percent, above zero."""

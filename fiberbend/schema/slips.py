@@ -76,6 +76,8 @@ LIMITS = {
     "density": Limits(2.5e-12, 3e-8, ("2.5 kg/m^3", "30 g/cm^3"), (1e-10, 1e-8)),
     "acceleration": Limits(1e-3, 5e6, ("1 um/s^2", "5000 m/s^2"), (1e2, 1e5)),
     "volume": Limits(1e-18, 1e18, ("1 nm^3", "1 km^3"), (1.0, 1e7)),
+    # below, thread and rubber themselves are no better known; above, it asks for nothing
+    "accuracy": Limits(0.1, 20.0, ("0.1 %", "20 %"), (0.5, 20.0), (100.0,)),
     # thirty turns: 360 rad were degrees
     "angle": Limits(1e-9, 200.0, ("1 nrad", "200 rad"), (1e-2, 50.0), (math.pi / 180,)),
 }

@@ -93,6 +93,7 @@ KINDS = {
         {"MPa/mm": "1", "kPa/mm": "1e-3", "N/mm^3": "1"},
     ),
     "force": Kind("a force", "N", "N", "0.1 N", {"N": "1", "mN": "1e-3", "kN": "1e3"}),
+    "accuracy": Kind("an accuracy", "percent", "%", "1 %", {"%": "1", "percent": "1"}),
     "time": Kind("a time", "s", "ms", "5 ms", {"s": "1", "ms": "1e-3"}),
     "frequency": Kind("a frequency", "Hz", "Hz", "100 Hz", {"Hz": "1", "kHz": "1e3"}),
     "conductance": Kind(

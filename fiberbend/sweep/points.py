@@ -14,6 +14,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from fiberbend.accuracy.words import ways_differ
 from fiberbend.case.case import Case
 from fiberbend.effects.straight import kept_straight
 from fiberbend.models.choice import choose_model
@@ -240,6 +241,8 @@ def _check_all(
                 wrong.setdefault(problem, []).append(index)
     if wrong:
         raise CaseError(_merged(wrong, points, base))
+    if different := ways_differ([case for case, _ in cases]):
+        raise CaseError([base.reported(Problem("accuracy", different))])
     return cases
 
 
@@ -324,6 +327,8 @@ def blocked_case(case: Case, report: ReportSpec) -> Case | None:
         return None
     data = kept_straight(case.resolved(), show(report.force_at, "pressure"))
     data |= {"model": model.name, "output": dict.fromkeys(_OWN_FILES, False)}
+    # of the bending, whose mesh this takes
+    data.pop("accuracy", None)
     try:
         return parse_case(data)
     except CaseError as error:

@@ -1,0 +1,181 @@
+"""Parts of the error of a case, and how far what is known of others carries."""
+
+import math
+from typing import Any
+
+import pytest
+
+from fiberbend.accuracy.budget import (
+    ENDS,
+    MESH,
+    OTHER_LAW,
+    OTHER_PATTERN,
+    WINDING,
+    Estimate,
+    State,
+    estimate,
+    lacking,
+    percent,
+)
+from fiberbend.accuracy.numbers import curvature, numbers
+from fiberbend.accuracy.table import BEYOND, at, knowledge
+from fiberbend.case.case import Case
+from fiberbend.models.choice import meshed
+from fiberbend.reader.reader import read_case
+from tests.conftest import ROOT
+
+DEGREE = math.pi / 180
+
+
+def case(name: str = "section", **settings: Any) -> Case:
+    """A shipped case, with settings by their paths, `__` for each dot."""
+    texts = [f"{key.replace('__', '.')}={value}" for key, value in settings.items()]
+    return read_case(ROOT / "cases" / f"{name}.yaml", texts)
+
+
+def expected(name: str = "section", **settings: Any) -> Estimate:
+    """What is expected of its error."""
+    made = case(name, **settings)
+    return estimate(made, meshed(made))
+
+
+def test_the_table_has_its_origin_and_the_baseline() -> None:
+    table = knowledge()
+    assert table.origin["command"] == "python bench/knowledge.py"
+    assert list(table.curvatures) == sorted(table.curvatures)
+    baseline = next(known for known in table.actuators if known.name == "baseline")
+    assert baseline.numbers == numbers(case())
+    assert {known.section for known in table.actuators} == {"hemicircle", "rectangle", "circle"}
+    for known in table.actuators:
+        assert set(known.spread) == {1, 2, 3, 4}
+        # a finer section is a better one, whatever the actuator
+        worst = [max(abs(value) for value in known.spread[n]) for n in (1, 2, 4)]
+        assert worst == sorted(worst, reverse=True)
+
+
+def test_the_mesh_error_of_the_baseline_is_at_least_that_measured() -> None:
+    table = knowledge()
+    baseline = next(known for known in table.actuators if known.name == "baseline")
+    for degrees in (10, 90, 360):
+        made = case(
+            mesh__section=1,
+            effects__0__pressure__angle=f"{degrees} deg",
+            output="{}",
+        )
+        found = estimate(made, meshed(made))
+        measured = at(table.curvatures, baseline.spread[1], curvature(made, degrees * DEGREE))
+        assert found.parts[MESH] >= abs(measured) > 0
+        assert found.widened == 1
+
+
+def test_a_finer_mesh_has_a_smaller_error() -> None:
+    sections = [expected(mesh__section=n).parts[MESH] for n in (1, 2, 4, 9)]
+    assert sections[0] > sections[1] > sections[2] == sections[3]
+    axial = [expected("cell", mesh__axial=f"{1.5 / n} mm").parts[MESH] for n in (1, 4, 8)]
+    assert axial[0] > axial[1] > axial[2]
+
+
+def test_elements_longer_than_any_that_is_known_promise_nothing() -> None:
+    found = expected("free_bending_smeared", mesh__axial="20 mm")
+    assert any("coarse" in reason for reason in found.unknown)
+    assert not found.meets(20.0)
+
+
+def test_only_a_spread_winding_has_an_error() -> None:
+    assert expected("cell").parts[WINDING] == 0
+    assert expected("section").parts[WINDING] > 2
+    # more between turns that lie apart
+    near, far = (expected(effects__1__winding__pitch=f"{p} mm") for p in (2, 5))
+    assert 0 < near.parts[WINDING] < expected().parts[WINDING] < far.parts[WINDING]
+
+
+def test_what_a_run_has_computed_of_the_winding_counts_as_it_is() -> None:
+    made = case(actuator__wall="3.5 mm")
+    found = estimate(made, meshed(made), [State(0.1, 0.5), State(0.2, 0.7)])
+    assert found.widened > 1
+    assert found.parts[WINDING] == pytest.approx(0.7 + found.widened * lacking(made, 0.2))
+
+
+def test_percent_of_an_angle_is_the_pressures_times_its_slope() -> None:
+    made = case()
+    one = estimate(made, meshed(made), [State(0.1, 0.5)])
+    two = estimate(made, meshed(made), [State(0.1, 0.5, 2.0)])
+    assert two.total == pytest.approx(2 * one.total)
+
+
+def test_ends_count_less_the_longer_the_body_is() -> None:
+    short, long = (
+        expected(
+            actuator__length=f"{length} mm",
+            effects__0__pressure__angle=f"{180 * length / 160} deg",
+            output="{}",
+        )
+        for length in (160, 320)
+    )
+    assert long.parts[ENDS] == pytest.approx(short.parts[ENDS] / 2)
+    assert long.parts[MESH] == pytest.approx(short.parts[MESH])
+    assert expected("free_bending_smeared").parts[ENDS] == 0
+
+
+def test_the_baseline_lies_within_what_is_known_of_its_ends() -> None:
+    """The whole body bends 1.10 % further than its middle at 360° (docs/evidence/free.md)."""
+    found = expected(effects__0__pressure__angle="360 deg", output="{}")
+    assert 1.10 < found.parts[ENDS] < 4
+
+
+def test_the_scale_of_an_actuator_changes_nothing() -> None:
+    sizes = {"radius": 8, "length": 160, "wall": 2, "floor": 2, "sheath": 1, "cap": 15}
+    big = {f"actuator__{key}": f"{10 * value} mm" for key, value in sizes.items()}
+    # a thread ten times as thick
+    thread = "{modulus: 31067 MPa, diameter: 3.8 mm, radius_factor: 0.5}"
+    scaled = expected(**big, effects__1__winding__pitch="30 mm", effects__1__winding__fiber=thread)
+    assert scaled.parts == pytest.approx(expected().parts)
+
+
+def test_a_number_outside_of_the_table_widens_by_its_square() -> None:
+    known = [known.numbers["wall"] for known in knowledge().of_section("hemicircle")]
+    most = max(known)
+    inside, outside = (expected(actuator__wall=f"{8 * wall} mm") for wall in (most, 1.2 * most))
+    assert inside.outside == ()
+    (reason,) = outside.outside
+    assert reason.startswith("wall")
+    assert outside.widened == pytest.approx(1.2**2, rel=1e-4)
+    assert not outside.unknown
+
+
+def test_far_outside_nothing_is_promised() -> None:
+    known = [known.numbers["pitch"] for known in knowledge().of_section("hemicircle")]
+    found = expected(effects__1__winding__pitch=f"{8 * max(known) * BEYOND * 1.1} mm")
+    assert any("pitch" in reason for reason in found.unknown)
+    assert not found.meets(20.0)
+
+
+def test_another_law_and_a_winding_with_a_hand_widen() -> None:
+    ogden = "{law: ogden, mu1: 0.22 MPa, alpha1: 2.0}"
+    made = case(materials__wall=ogden)
+    assert made.materials.wall.law == "ogden"
+    assert estimate(made, meshed(made)).widened == pytest.approx(OTHER_LAW)
+    assert expected("single_helix").widened == pytest.approx(OTHER_PATTERN)
+
+
+@pytest.mark.parametrize(("name", "word"), [("grasp", "obstacles act"), ("blocked_tip", "strips")])
+def test_what_was_never_measured_is_not_promised(name: str, word: str) -> None:
+    found = expected(name)
+    assert any(word in reason for reason in found.unknown)
+    assert not found.meets(20.0)
+
+
+def test_bending_up_and_a_bare_tube_are_not_promised() -> None:
+    up = expected(effects__0__pressure__angle="-90 deg", output="{}")
+    assert any("vacuum" in reason for reason in up.unknown)
+    bare = read_case(
+        ROOT / "cases" / "section.yaml",
+        {"effects": [{"pressure": {"to": "5 kPa"}}], "output": {}, "compare": []},
+    )
+    assert any("without a winding" in why for why in estimate(bare, meshed(bare)).unknown)
+
+
+def test_two_digits() -> None:
+    assert [percent(v) for v in (12.345, 1.96, 0.3049, 0.05, 0.0123, 0.004)] == [
+        "12", "2", "0.3", "0.05", "0.012", "0",
+    ]  # fmt: skip
