@@ -10,7 +10,7 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
 .DEFAULT_GOAL := help
-.PHONY: browser notebook help setup tools demo sweep test verify hard survive speed tables check format docs pictures schema \
+.PHONY: browser notebook help setup tools demo sweep test verify hard survive speed peers tables check format docs pictures schema \
     clean
 
 help: ## list the commands
@@ -56,6 +56,10 @@ tables: setup ## make the accuracy tables in docs/ again; half an hour
 
 speed: setup ## measure what an answer costs in each model; four minutes on an idle machine
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/speed.py
+
+peers: setup ## the same actuator in CalculiX, felupe and plain dolfinx: docs/evidence/peers.md; half an hour
+	bench/peers/setup.sh
+	$(BIN)/python -m bench.peers.run
 
 check: tools ## lint, format, types, the order of the folders and dead code
 	$(BIN)/ruff check .

@@ -1,7 +1,7 @@
 """The actuator in CalculiX: its deck from fiberbend's .inp, hoops as springs, and what it answers.
 
-CalculiX has no hybrid elements, so that the rubbers are slightly compressible; its answer to locking
-is C3D20R. *DSLOAD is a follower load under NLGEOM. Increments are chosen
+CalculiX has no hybrid elements, so that the rubbers are slightly compressible; its answer to
+locking is C3D20R. *DSLOAD is a follower load under NLGEOM. Increments are chosen
 by the program, and so is the solver (SPOOLES in Debian's build).
 """
 

@@ -98,7 +98,7 @@ def solve(task: dict[str, Any]) -> None:
         "symmetry": fem.Boundary(field[0], mask=plane, skip=(False, True, True)),
     }
     unknowns = int(sum(field.fieldsizes))
-    states, iterations = [], [0]
+    states: list[Any] = []
 
     with Path(task["out"]).open("w") as file:
 

@@ -1,8 +1,9 @@
 """The actuator as a plain dolfinx script: Taylor–Hood, MUMPS, Newton's method, fixed load steps.
 
 What a competent user writes after the tutorials of FEniCSx, and no more: mixed elements Q2–Q1, or
-Q2 with pressures that jump from element to element, forms by `ufl.derivative`, `NewtonSolver` with its own settings, LU of the whole matrix. The winding
-is a membrane on its surface that is stiff along hoops. The mesh is gmsh's, from `fiberbend mesh`.
+Q2 with pressures that jump from element to element, forms by `ufl.derivative`, `NewtonSolver` with
+its own settings, LU of the whole matrix. The winding is a membrane on its surface that is stiff
+along hoops. The mesh is gmsh's, from `fiberbend mesh`.
 """
 
 from __future__ import annotations
@@ -34,8 +35,9 @@ def solve(task: dict[str, Any]) -> None:
     """Bend the actuator and write a line for every load step.
 
     Args:
-        task: mesh file, element of the pressures, rubbers (C1, C2, bulk in MPa), hoop stiffness N/mm, pressure and step in
-            MPa, goal in degrees, the same mesh as arrays (`body`), file to write.
+        task: mesh file, element of the pressures, rubbers (C1, C2, bulk in MPa), hoop stiffness in
+            N/mm, pressure and step in MPa, goal in degrees, the same mesh as arrays (`body`), file
+            to write.
     """
     import gmsh
 

@@ -151,4 +151,5 @@ def hoop_pieces(points: Floats, facets: Ints, plain: bool) -> tuple[Ints, Floats
             pairs += step
             carried += [share * length * hoop_stiffness()] * len(step)
     unique, which = np.unique(np.sort(np.array(pairs), axis=1), axis=0, return_inverse=True)
-    return unique.astype(np.int64), np.bincount(which.ravel(), weights=carried)
+    total = np.bincount(which.ravel(), weights=carried).astype(np.float64)
+    return unique.astype(np.int64), total

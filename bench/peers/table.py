@@ -19,6 +19,37 @@ NAMES = {
     "dolfinx-dpc1": "plain dolfinx, Q2–P1 discontinuous",
     "felupe": "felupe, Q2–Q1–Q1 discontinuous",
 }
+HEAD = """# Beside other programs
+
+Made by `make peers` on {machine}, {today}: one program at a time, each in a process of its own, on
+one thread and one rank. Half of the baseline actuator bends to {goal}° with hoops that have the
+stiffness of its winding per length (in fiberbend a double helix of a pitch of 0.6 mm and a fifth of
+the thread). Every rubber has a bulk modulus of 200 times its shear modulus, since CalculiX has no
+incompressible element. All meshes are fiberbend's own. Kernels are compiled before the time is
+taken.
+
+The angle is that of the section z = L against z = 0, by least squares over its area, in every
+program; a pressure at an angle is read off a cubic spline through all load steps. CPU time to an
+angle is the share of the iterations until then, start-up included.
+"""
+OTHERWISE = """## What each model has otherwise
+
+- fiberbend: 27-node hexahedra with linear discontinuous pressures; hoops are a membrane on the
+  winding's surface. Load steps, extrapolation and the angle to end at are the program's own.
+- CalculiX: 20-node hexahedra from the .inp of `fiberbend mesh`, without pressures as unknowns;
+  hoops are springs along all rows of nodes, so polygons. Increments, tolerances and solver
+  (SPOOLES) are its own.
+- Plain dolfinx (bench/peers/plain_dolfinx.py): the same hexahedra and membrane; equal load steps,
+  `NewtonSolver` and MUMPS as they come, and OpenBLAS with the kernel that it takes by itself.
+  Nothing is cut back: a step that fails ends the run.
+- felupe (bench/peers/felupe_peer.py): the same hexahedra with felupe's own fields of pressure and
+  volume, hoops as trusses along all rows of nodes; equal load steps, cut back by its plugin; the
+  solver is pypardiso.
+- On one mesh, fiberbend and plain dolfinx with discontinuous pressures have the same elements:
+  their pressures differ by what sets a helix of 0.6 mm apart from hoops.
+- Turns one by one are in none of these: they want elements of half a pitch in every program
+  ([accuracy of a discrete winding](winding.md)).
+"""
 WANTED = 10.0
 """Times faster that fiberbend wants to be than CalculiX and the plain script."""
 _ASKED = ("calculix-c3d20r", "calculix-c3d20", "dolfinx-taylor-hood", "dolfinx-dpc1")
@@ -65,7 +96,8 @@ def reference_of(records: Sequence[Record], goal: float) -> Reference:
         raise ValueError(f"fiberbend has reached {goal:g}° on {len(ours)} meshes, expected two")
     *_, next_, finest = sorted(ours, key=lambda r: r.unknowns)
     value, other = finest.pressure(goal), next_.pressure(goal)
-    assert value is not None and other is not None
+    assert value is not None
+    assert other is not None
     return Reference(value, finest, abs(other / value - 1))
 
 
@@ -124,22 +156,8 @@ def page(records: Sequence[Record], machine: str, today: datetime.date) -> str:
         machine: name of the processor, and its cores.
         today: date of the run.
     """
-    return "\n".join([*_head(machine, today), *_runs(records), *_equal(records), *_left_out(), ""])
-
-
-def _head(machine: str, today: datetime.date) -> Iterator[str]:
-    yield "# Beside other programs"
-    yield ""
-    yield f"Made by `make peers` on {machine}, {today:%d %B %Y}: one program at a time, each in a"
-    yield "process of its own, on one thread and one rank. The baseline actuator, half of it, to a"
-    yield "bending of 180°: hoops with the stiffness of its winding per length (the double helix of a"
-    yield "pitch of 0.6 mm in fiberbend), every rubber with a bulk modulus of 200 times its shear"
-    yield "modulus. All meshes are fiberbend's own. Kernels are compiled before the time is taken."
-    yield ""
-    yield "The angle is that of the section z = L against z = 0 (least squares over its area) in every"
-    yield "program; a pressure at an angle is read off a cubic spline through all load steps. CPU time"
-    yield "to an angle is the share of the iterations until then, start-up included."
-    yield ""
+    head = HEAD.format(machine=machine, today=f"{today:%d %B %Y}", goal=f"{GOALS[-1]:g}")
+    return "\n".join([head, *_runs(records), *_equal(records), OTHERWISE])
 
 
 def _runs(records: Sequence[Record]) -> Iterator[str]:
@@ -211,19 +229,3 @@ def _equal(records: Sequence[Record]) -> Iterator[str]:
         else:
             yield f"- {NAMES[program]}: no run that can be compared."
     yield ""
-
-
-def _left_out() -> Iterator[str]:
-    yield "## What each model has otherwise"
-    yield ""
-    yield "- fiberbend: 27-node hexahedra, linear discontinuous pressures; the hoops are a membrane on"
-    yield "  the winding's surface. Load steps, extrapolation and the goal are the program's own."
-    yield "- CalculiX: 20-node hexahedra from `fiberbend mesh`'s .inp, without pressures as unknowns;"
-    yield "  hoops are springs along all rows of nodes, so polygons; increments and SPOOLES by default."
-    yield "- plain dolfinx: the same hexahedra and membrane; P by load steps of "
-    yield "  5 kPa, `NewtonSolver` and MUMPS as they come; nothing is cut back, so that a step which"
-    yield "  fails ends the run."
-    yield "- felupe: the same hexahedra with its own fields of pressure and volume, hoops as trusses"
-    yield "  along all rows of nodes; steps of 5 kPa, cut back by its plugin; pypardiso."
-    yield "- None of the others has a winding of single turns here: each turn wants elements of half a"
-    yield "  pitch in all of them, as in fiberbend (docs/evidence/winding.md)."

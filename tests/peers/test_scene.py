@@ -10,10 +10,7 @@ from bench.peers import calculix, scene
 from bench.peers.arrays import Body, bending_angles, facet_functions, load_body, section_turn
 from geometry.mesh.data import MeshData
 
-_CORNERS = np.array(
-    [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1)]
-    + [(-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)]
-)
+_CORNERS = np.array([(x, y, z) for z in (-1, 1) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
 """Of a hexahedron as the manuals of Abaqus and CalculiX number them."""
 _EDGES = (
     *((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)),
@@ -62,8 +59,8 @@ class Deck:
         elif keyword == "*ELEMENT":
             entries = [[int(w) for w in row.split(",")] for row in _joined(lines)]
             kind = self.springs if words["TYPE"] == "SPRINGA" else self.solids
-            for number, *nodes in entries:
-                kind[number], self.set_of[number] = nodes, words["ELSET"]
+            for label, *nodes in entries:
+                kind[label], self.set_of[label] = nodes, words["ELSET"]
         elif keyword == "*SURFACE":
             pairs = [line.split(", ") for line in lines]
             self.faces[words["NAME"]] = [(int(cell), face) for cell, face in pairs]
@@ -144,7 +141,7 @@ def test_the_springs_are_hoops_of_the_winding_s_stiffness(deck: Deck, body: Body
     for number, (first, second) in deck.springs.items():
         step = deck.points[second] - deck.points[first]
         assert abs(step[2]) < 1e-6
-        length = np.linalg.norm(step)
+        length = float(np.linalg.norm(step))
         per_length += deck.stiffness[deck.set_of[number]] * length * length
     perimeter = 10 * np.pi / 2 + 10 + 2
     wanted = scene.hoop_stiffness() * perimeter * 160
@@ -173,7 +170,9 @@ def test_the_angle_of_a_turned_section(body: Body, degrees: float) -> None:
 def test_a_section_that_leans_toward_minus_y_has_turned_forward(body: Body) -> None:
     """Its normal, at first along z, points toward −y."""
     turn = np.radians(20)
-    turned = np.array([[1, 0, 0], [0, np.cos(turn), -np.sin(turn)], [0, np.sin(turn), np.cos(turn)]])
+    turned = np.array(
+        [[1, 0, 0], [0, np.cos(turn), -np.sin(turn)], [0, np.sin(turn), np.cos(turn)]]
+    )
     assert (turned @ (0, 0, 1))[1] < 0
     angle = section_turn(body.points, body.points @ turned.T, body.tip)
     assert angle == pytest.approx(turn, rel=1e-9)
@@ -181,7 +180,9 @@ def test_a_section_that_leans_toward_minus_y_has_turned_forward(body: Body) -> N
 
 @pytest.mark.parametrize("nodes", [8, 9])
 def test_shape_functions_of_a_facet(nodes: int) -> None:
-    places = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0), (0, 0)])
+    places = np.array(
+        [(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0), (0, 0)]
+    )
     values, _ = facet_functions(nodes, places[:nodes].astype(float))
     np.testing.assert_allclose(values, np.eye(nodes), atol=1e-14)
     at, step = np.array([[0.3, -0.6]]), 1e-6
@@ -217,7 +218,7 @@ def test_displacements_of_a_dat_file(body: Body) -> None:
     for name, facets, angle in (("SECTION_ROOT", body.root, 0.0), ("SECTION_TIP", body.tip, turn)):
         text += f"\n displacements (vx,vy,vz) for set {name} and time  0.5000000E+00\n\n"
         for node in np.unique(facets[:, :8]):
-            x, y, z = body.points[node]
+            y = body.points[node, 1]
             u = (0.0, y * (np.cos(angle) - 1), y * np.sin(angle))
             text += f"{label[node]:10d}  " + " ".join(f"{value: .6E}" for value in u) + "\n"
     pressures, angles = calculix.curve(body, text, 0.1)
