@@ -57,7 +57,7 @@ tables: setup ## make the accuracy tables in docs/ again; half an hour
 speed: setup ## measure what an answer costs in each model; four minutes on an idle machine
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/speed.py
 
-peers: setup ## the same actuator in CalculiX, felupe and plain dolfinx: docs/evidence/peers.md; half an hour
+peers: setup ## bend the same actuator in CalculiX, felupe and plain dolfinx; half an hour
 	bench/peers/setup.sh
 	$(BIN)/python -m bench.peers.run
 

@@ -65,6 +65,11 @@ def _ended(usage: Usage, limit: float, reason: str) -> str:
     return reason or (f"exit status {usage.code}" if usage.code else "")
 
 
+def _left(path: Path) -> str:
+    """What a run has left in a file that was not there before it."""
+    return path.read_text(encoding="utf-8") if path.exists() else ""
+
+
 def _fiberbend(rung: Rung, folder: Path, body: Body) -> Record:
     """fiberbend itself, after one run that compiles its kernels."""
     command = [sys.executable, "-m", "fiberbend", "run", str(scene.CASE), "--quiet", "--overwrite"]
@@ -81,6 +86,8 @@ def _fiberbend(rung: Rung, folder: Path, body: Body) -> Record:
     warm = [*command, "--set", 'effects.0.pressure.to="0.1 kPa"']
     run(warm, folder, rung.limit, root, folder / "warm.log")
     usage = run(command, folder, rung.limit, root, folder / "run.log")
+    if usage.code != 0:
+        raise RuntimeError(f"fiberbend {_ended(usage, rung.limit, '')}: see {folder / 'run.log'}")
     rows = list(csv.DictReader((out / "history.csv").open(encoding="utf-8")))[1:]
     facts = json.loads((out / "run.json").read_text(encoding="utf-8"))
     done = np.cumsum([int(row["newton_iterations"] or 0) for row in rows])
@@ -98,7 +105,8 @@ def _fiberbend(rung: Rung, folder: Path, body: Body) -> Record:
         wall=usage.wall,
         cpu=usage.cpu,
         memory=usage.memory,
-        ended=_ended(usage, rung.limit, ""),
+        load=usage.load,
+        ended="",
     )
 
 
@@ -106,12 +114,14 @@ def _calculix(rung: Rung, folder: Path, body: Body) -> Record:
     """CalculiX on fiberbend's .inp."""
     element = ELEMENTS[rung.program]
     calculix.prepare(rung.section, rung.axial, body, element, PRESSURE, folder)
+    for ending in ("dat", "sta"):
+        (folder / f"run.{ending}").unlink(missing_ok=True)
     usage = run(["ccx", "run"], folder, rung.limit, {}, folder / "run.log")
-    pressures, angles = calculix.curve(body, (folder / "run.dat").read_text(), PRESSURE)
-    increments = calculix.increments((folder / "run.sta").read_text())
+    pressures, angles = calculix.curve(body, _left(folder / "run.dat"), PRESSURE)
+    increments = calculix.increments(_left(folder / "run.sta"))
     done = [count for kept, count in increments if kept]
     found = min(len(pressures), len(done))
-    stopped = [line for line in (folder / "run.log").read_text().splitlines() if "*ERROR" in line]
+    stopped = [line for line in _left(folder / "run.log").splitlines() if "*ERROR" in line]
     version = subprocess.run(["ccx", "-v"], capture_output=True, text=True, check=False).stdout
     return Record(
         program=rung.program,
@@ -127,6 +137,7 @@ def _calculix(rung: Rung, folder: Path, body: Body) -> Record:
         wall=usage.wall,
         cpu=usage.cpu,
         memory=usage.memory,
+        load=usage.load,
         ended=_ended(usage, rung.limit, stopped[0].split(":")[-1].strip() if stopped else ""),
     )
 
@@ -151,6 +162,8 @@ def _task(rung: Rung, folder: Path, pressure: float) -> Path:
 
 def _script(rung: Rung, folder: Path, body: Body, python: str, script: str, version: str) -> Record:
     """One of the scripts beside this file, whose lines are load steps."""
+    curve = folder / "curve.jsonl"
+    curve.unlink(missing_ok=True)
     usage = run(
         [python, str(Path(__file__).with_name(script)), str(_task(rung, folder, PRESSURE))],
         folder,
@@ -158,7 +171,7 @@ def _script(rung: Rung, folder: Path, body: Body, python: str, script: str, vers
         {"PYTHONPATH": str(scene.ROOT)},
         folder / "run.log",
     )
-    lines = [json.loads(line) for line in (folder / "curve.jsonl").read_text().splitlines()]
+    lines = [json.loads(line) for line in _left(curve).splitlines()]
     steps = [line for line in lines if "failed" not in line]
     done = np.cumsum([line["iterations"] for line in steps]).tolist()
     reason = "".join(line["failed"] for line in lines if "failed" in line)
@@ -176,6 +189,7 @@ def _script(rung: Rung, folder: Path, body: Body, python: str, script: str, vers
         wall=usage.wall,
         cpu=usage.cpu,
         memory=usage.memory,
+        load=usage.load,
         ended=_ended(usage, rung.limit, reason),
     )
 

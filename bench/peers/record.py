@@ -26,12 +26,14 @@ class Usage:
         wall: s.
         cpu: s, of all its threads.
         memory: greatest resident set, MB.
+        load: load average of the machine just before.
         code: it returned; None when it was ended at its limit of time.
     """
 
     wall: float
     cpu: float
     memory: float
+    load: float
     code: int | None
 
 
@@ -49,7 +51,7 @@ def run(
     """
     threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     with log.open("w", encoding="utf-8") as out:
-        start = time.perf_counter()
+        load, start = os.getloadavg()[0], time.perf_counter()
         process = subprocess.Popen(
             command,
             cwd=folder,
@@ -69,7 +71,7 @@ def run(
         process.returncode = os.waitstatus_to_exitcode(status)
         wall = time.perf_counter() - start
     code = None if late else process.returncode
-    return Usage(wall, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024, code)
+    return Usage(wall, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024, load, code)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -90,6 +92,7 @@ class Record:
         wall: s.
         cpu: s.
         memory: greatest resident set, MB.
+        load: load average of the machine just before.
         ended: how it came to its end, in words; empty when it reached the last goal.
     """
 
@@ -106,6 +109,7 @@ class Record:
     wall: float
     cpu: float
     memory: float
+    load: float
     ended: str
 
     @property

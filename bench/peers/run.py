@@ -20,12 +20,23 @@ from machine.origin import machine
 FOLDER = ROOT / "runs" / "peers"
 PAGE = ROOT / "docs" / "evidence" / "peers.md"
 RUNGS = (
-    Rung("fiberbend", 1, 16, 300, 6),
-    Rung("fiberbend", 1, 8, 300, 10),
-    Rung("fiberbend", 1, 4, 300, 20),
-    Rung("fiberbend", 2, 16, 300, 20),
-    Rung("fiberbend", 2, 8, 300, 40),
-    Rung("fiberbend", 3, 8, 600, 120),
+    Rung("fiberbend", 1, 16, 120, 7),
+    Rung("fiberbend", 1, 8, 120, 10),
+    Rung("fiberbend", 1, 4, 120, 16),
+    Rung("fiberbend", 2, 8, 240, 40),
+    Rung("fiberbend", 2, 4, 360, 80),
+    Rung("fiberbend", 2, 2, 600, 150),
+    Rung("calculix-c3d20r", 1, 16, 240, 40),
+    Rung("calculix-c3d20r", 1, 8, 240, 100),
+    Rung("calculix-c3d20r", 2, 8, 300, 300),
+    Rung("calculix-c3d20", 1, 16, 240, 70),
+    Rung("dolfinx-taylor-hood", 1, 16, 240, 60),
+    Rung("dolfinx-taylor-hood", 1, 8, 240, 110),
+    Rung("dolfinx-taylor-hood", 2, 8, 240, 240),
+    Rung("dolfinx-dpc1", 1, 16, 240, 60),
+    Rung("dolfinx-dpc1", 1, 8, 240, 110),
+    Rung("felupe", 1, 16, 240, 110),
+    Rung("felupe", 1, 8, 240, 200),
 )
 """Programs and meshes, in the order they are run."""
 

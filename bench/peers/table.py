@@ -32,6 +32,11 @@ The angle is that of the section z = L against z = 0, by least squares over its 
 program; a pressure at an angle is read off a cubic spline through all load steps. CPU time to an
 angle is the share of the iterations until then, start-up included.
 """
+IDLE = 1.5
+"""Load average above which a machine does something else too."""
+BUSY = """The machine was busy with other work (load average up to {load:.0f}). CPU times, which are
+compared, are somewhat longer for it; wall times say little, and limits of time ended runs early.
+"""
 OTHERWISE = """## What each model has otherwise
 
 - fiberbend: 27-node hexahedra with linear discontinuous pressures; hoops are a membrane on the
@@ -157,6 +162,9 @@ def page(records: Sequence[Record], machine: str, today: datetime.date) -> str:
         today: date of the run.
     """
     head = HEAD.format(machine=machine, today=f"{today:%d %B %Y}", goal=f"{GOALS[-1]:g}")
+    busy = max(record.load for record in records)
+    if busy > IDLE:
+        head += "\n" + BUSY.format(load=busy)
     return "\n".join([head, *_runs(records), *_equal(records), OTHERWISE])
 
 

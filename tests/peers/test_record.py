@@ -29,6 +29,7 @@ def record(program: str, unknowns: int, error: float, cpu: float, last: int = 6)
         wall=cpu,
         cpu=cpu,
         memory=100.0,
+        load=0.1,
         ended="" if last == len(ANGLES) else "time limit of 5 s",
     )
 
@@ -90,6 +91,9 @@ def test_what_was_not_reached_is_said() -> None:
     assert "time limit of 5 s" in row
     assert "- CalculiX, C3D20R: at least 60.0 times, as wanted (10 times)." in text
     assert f"bends to {GOALS[-1]:g}°" in text
+    assert "The machine was busy" not in text
+    busy = page([*OURS, dataclasses.replace(other, load=9.0)], "a machine", datetime.date.today())
+    assert "The machine was busy with other work (load average up to 9)" in busy
     slow = dataclasses.replace(other, cpu=10.0)
     text = page([*OURS, slow], "a machine", datetime.date(2026, 1, 1))
     assert "CalculiX, C3D20R: at least 5.0 times, not as wanted" in text
