@@ -213,7 +213,7 @@ def _equal(records: Sequence[Record]) -> Iterator[str]:
     yield ""
     yield "| program | mesh | " + " | ".join(f"at {goal:g}°" for goal in GOALS) + " |"
     yield "|---|---|" + "---|" * len(GOALS)
-    least: dict[str, float] = {}
+    found_at: dict[str, list[float]] = {name: [] for name in NAMES}
     for program in (name for name in NAMES if name != OURS):
         found = {goal: ratios(records, program, goal) for goal in GOALS}
         for record in sorted(records, key=lambda r: r.unknowns):
@@ -223,17 +223,22 @@ def _equal(records: Sequence[Record]) -> Iterator[str]:
             for goal in GOALS:
                 here = [ratio for other, ratio in found[goal] if other == record]
                 cells.append(f"{here[0]:.1f}" if here else "–")
-                least[program] = min([least.get(program, np.inf), *here])
+                found_at[program] += here
             name = f"{NAMES[program]} | {record.section} × {record.axial:g} mm"
             yield f"| {name} | {' | '.join(cells)} |"
     yield ""
     for program in _ASKED:
-        if np.isfinite(least.get(program, np.inf)):
-            verdict = "as wanted" if least[program] >= WANTED else "not as wanted"
-            yield (
-                f"- {NAMES[program]}: at least {least[program]:.1f} times, {verdict} "
-                f"({WANTED:g} times)."
-            )
-        else:
-            yield f"- {NAMES[program]}: no run that can be compared."
+        yield f"- {NAMES[program]}: {_verdict(found_at[program])}."
     yield ""
+
+
+def _verdict(found: Sequence[float]) -> str:
+    """Whether all ratios are what is wanted."""
+    if not found:
+        return "no run that can be compared"
+    wide = (
+        f"{min(found):.1f} to {max(found):.1f} times" if len(found) > 1 else f"{found[0]:.1f} times"
+    )
+    met = sum(ratio >= WANTED for ratio in found)
+    where = {len(found): "everywhere", 0: "nowhere"}.get(met, f"in {met} of {len(found)}")
+    return f"{wide}; {WANTED:g} times {where}"

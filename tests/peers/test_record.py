@@ -89,14 +89,21 @@ def test_what_was_not_reached_is_said() -> None:
     assert "| 91° |" in row
     assert "| – | – |" in row
     assert "time limit of 5 s" in row
-    assert "- CalculiX, C3D20R: at least 60.0 times, as wanted (10 times)." in text
+    assert "- CalculiX, C3D20R: 60.0 times; 10 times everywhere." in text
     assert f"bends to {GOALS[-1]:g}°" in text
     assert "The machine was busy" not in text
     busy = page([*OURS, dataclasses.replace(other, load=9.0)], "a machine", datetime.date.today())
     assert "The machine was busy with other work (load average up to 9)" in busy
     slow = dataclasses.replace(other, cpu=10.0)
     text = page([*OURS, slow], "a machine", datetime.date(2026, 1, 1))
-    assert "CalculiX, C3D20R: at least 5.0 times, not as wanted" in text
+    assert "CalculiX, C3D20R: 5.0 times; 10 times nowhere." in text
+
+
+def test_a_verdict_counts_runs_and_angles() -> None:
+    fast, slow = (record("dolfinx-dpc1", n, -0.02, cpu) for n, cpu in ((3000, 100.0), (2000, 10.0)))
+    text = page([*OURS, fast, slow], "a machine", datetime.date(2026, 1, 1))
+    assert "discontinuous: 2.5 to 25.0 times; 10 times in 2 of 4." in text
+    assert "plain dolfinx, Q2–Q1: no run that can be compared." in text
 
 
 def test_a_record_is_read_as_it_was_saved(tmp_path: Path) -> None:
