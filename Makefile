@@ -10,11 +10,8 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 
 .DEFAULT_GOAL := help
-.PHONY: browser notebook help setup tools demo sweep test verify hard survive speed calibration \
-    tables check format docs pictures schema accuracy clean
-
-.PHONY: browser notebook help setup tools demo sweep test verify hard survive speed knowledge calibration tables check format docs pictures schema \
-    clean
+.PHONY: help setup tools demo sweep test browser notebook verify hard survive tables speed accuracy \
+    calibration knowledge growth peers check format docs pictures schema clean
 
 help: ## list the commands
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -72,6 +69,10 @@ accuracy: setup ## what accuracy costs in time: two ladders, prices; an idle mac
 
 speed: setup ## measure what an answer costs in each model; four minutes on an idle machine
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/speed.py
+
+peers: setup ## bend the same actuator in CalculiX, felupe and plain dolfinx; half an hour
+	bench/peers/setup.sh
+	$(BIN)/python -m bench.peers.run
 
 check: tools ## lint, format, types, the order of the folders and dead code
 	$(BIN)/ruff check .

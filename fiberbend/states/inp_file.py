@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 TYPES = {"hexahedron27": ("C3D20", 20), "tetra10": ("C3D10", 10), "quad9": ("CPE8", 8)}
 """Element and number of its nodes, which are the first of VTK's."""
 TRUSS = "T3D2"
+_REDUCED = {"C3D20": "C3D20R", "CPE8": "CPE8R"}
+"""Elements of reduced integration, which do not lock where the volume hardly changes."""
 
 _FACES = {
     "C3D20": ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
@@ -97,7 +99,8 @@ def _remarks(parts: Named, mesh: MeshData, element: str, count: int) -> Iterator
             "*EMBEDDED ELEMENT ties them to the body"
         )
     yield (
-        f"incompressible rubber wants hybrid elements in Abaqus: {element}H in place of {element}"
+        f"incompressible rubber wants hybrid elements in Abaqus, {element}H in place of {element}; "
+        f"CalculiX has none: a bulk modulus, and {_REDUCED.get(element, element)}"
     )
 
 
