@@ -104,10 +104,14 @@ class Scene:
     def _compile(self, potentials: dict[str, Any]) -> None:
         body, mesh = self.body, self.domain.mesh
         whole = sum(potentials.values(), ufl.Form([]))
-        test = ufl.TestFunction(body.space)
+        test, trial = ufl.TestFunction(body.space), ufl.TrialFunction(body.space)
+        residual = ufl.derivative(whole, body.w, test)
         forms: dict[str, Any] = {
-            "residual": ufl.derivative(whole, body.w, test),
-            "tangent": upper_tangent(whole, body.w),
+            "residual": residual,
+            # frozen values, as Ogden's law has, take minutes to compile by components
+            "tangent": ufl.derivative(residual, body.w, trial)
+            if body.stand_ins
+            else upper_tangent(whole, body.w),
         }
         for key, form in potentials.items():
             forms[f"energy {key}"] = form
