@@ -106,13 +106,10 @@ class Scene:
         whole = sum(potentials.values(), ufl.Form([]))
         test, trial = ufl.TestFunction(body.space), ufl.TrialFunction(body.space)
         residual = ufl.derivative(whole, body.w, test)
-        forms: dict[str, Any] = {
-            "residual": residual,
-            # frozen values, as Ogden's law has, take minutes to compile by components
-            "tangent": ufl.derivative(residual, body.w, trial)
-            if body.stand_ins
-            else upper_tangent(whole, body.w),
-        }
+        # frozen values, as Ogden's law has, take minutes to compile by components
+        whole_tangent = ufl.derivative(residual, body.w, trial)
+        tangent = whole_tangent if body.stand_ins else upper_tangent(whole, body.w)
+        forms: dict[str, Any] = {"residual": residual, "tangent": tangent}
         for key, form in potentials.items():
             forms[f"energy {key}"] = form
             if self.effects[key].outside:
