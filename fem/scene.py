@@ -105,11 +105,12 @@ class Scene(OwnCode):
     def _compile(self, potentials: dict[str, Any]) -> None:
         body, mesh = self.body, self.domain.mesh
         whole = sum(potentials.values(), ufl.Form([]))
-        test = ufl.TestFunction(body.space)
-        forms: dict[str, Any] = {
-            "residual": ufl.derivative(whole, body.w, test),
-            "tangent": upper_tangent(whole, body.w),
-        }
+        test, trial = ufl.TestFunction(body.space), ufl.TrialFunction(body.space)
+        residual = ufl.derivative(whole, body.w, test)
+        # frozen values, as Ogden's law has, take minutes to compile by components
+        whole_tangent = ufl.derivative(residual, body.w, trial)
+        tangent = whole_tangent if body.stand_ins else upper_tangent(whole, body.w)
+        forms: dict[str, Any] = {"residual": residual, "tangent": tangent}
         for key, form in potentials.items():
             forms[f"energy {key}"] = form
             if self.effects[key].outside:
