@@ -70,6 +70,9 @@ accuracy: setup ## what accuracy costs in time: two ladders, prices; an idle mac
 speed: setup ## measure what an answer costs in each model; four minutes on an idle machine
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/speed.py
 
+growth: setup ## time and memory on finer and finer bodies, one and two ranks; an hour; resumable
+	$(BIN)/python -m bench.growth
+
 peers: setup ## bend the same actuator in CalculiX, felupe and plain dolfinx; half an hour
 	bench/peers/setup.sh
 	$(BIN)/python -m bench.peers.run
