@@ -129,5 +129,6 @@ class Calibrated:
             "digest": self.digest,
             "kept": self.kept,
             "seconds": 0.0 if self.kept else found.seconds,
+            "took_seconds": found.seconds,
             "text": self.line(),
         }

@@ -26,7 +26,7 @@ from tests.conftest import ROOT
 from tests.ladder.parts import CASE, record, truth
 
 SECTION = ROOT / "cases" / "section.yaml"
-ONLY = Options(only=("analytic", "section"))
+ONLY = Options(only=("analytic", "section-spread"))
 
 
 class Solver:
@@ -292,7 +292,7 @@ QUICK = ["--set", "effects.0.pressure.angle=20 deg", "--set", "output.at_angles=
 
 
 def command(out: Path, *more: str) -> list[str]:
-    only = ["--only", "analytic", "--only", "section"]
+    only = ["--only", "analytic", "--only", "section-spread"]
     program = [sys.executable, "-m", "fiberbend", "accuracy", str(SECTION)]
     return [*program, "--out", str(out), *only, *QUICK, *more]
 

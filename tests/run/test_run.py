@@ -157,7 +157,7 @@ def test_a_load_beyond_reach_fails_and_loses_nothing(tmp_path: Path) -> None:
     case = write_case(
         tmp_path,
         small(
-            effects=[{"pressure": {"to": "5 MPa"}}, small()["effects"][1]],
+            effects=[{"pressure": {"to": "50 MPa"}}, small()["effects"][1]],
             solver={"max_cutbacks": 2},
             output={},
         ),

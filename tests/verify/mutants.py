@@ -53,7 +53,7 @@ MUTANTS = (
     ),
     Mutant(
         "solver/newton.py",
-        "`fast`: `not self.tangents` → `not not …`",
+        "`fast` (now in solver/reuse.py): `not self.tangents` → `not not …`",
         "when a factor is used again",
         SPEED + ", now tested all the same: test_newton",
     ),
