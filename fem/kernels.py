@@ -38,6 +38,8 @@ COMPILER_FLAGS = [
 ]
 
 _SUM = ".sum"
+_MADE = (".c", ".c.cached", ".o", str(sysconfig.get_config_var("EXT_SUFFIX")))
+"""Endings of what the compiler makes: a folder of hundreds of kernels is slow to list."""
 
 for _name in ("FFCx", "ffcx", "UFL", "UFL_LEGACY"):
     logging.getLogger(_name).setLevel(logging.ERROR)
@@ -202,8 +204,8 @@ def _only_sound() -> Iterator[None]:
 
 def _files(folder: Path, name: str) -> tuple[list[Path], Path]:
     """What the compiler makes of a module, and the file with the sum of its library."""
-    record = folder / f"{name}{_SUM}"
-    return [file for file in folder.glob(f"{name}.*") if file != record], record
+    files = (folder / f"{name}{ending}" for ending in _MADE)
+    return [file for file in files if file.exists()], folder / f"{name}{_SUM}"
 
 
 def _sum(library: Path) -> str:

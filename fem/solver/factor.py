@@ -29,7 +29,7 @@ SMALL = 10_000
 """Unknowns below which a simple ordering is done sooner than a better one pays."""
 
 
-LAYERED = 10_000
+LAYERED = 1_500
 """Unknowns from which on a long body is factorised in layers."""
 
 

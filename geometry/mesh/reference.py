@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.special import roots_jacobi
 
 from geometry.mesh.data import (
     FACET_VERTICES,
@@ -67,6 +66,9 @@ def gauss(number: int) -> tuple[Floats, Floats]:
 
 def _simplex(d: int) -> tuple[Floats, Floats]:
     """Conical product rule of degree 5 on the unit triangle or tetrahedron."""
+    # slow to load, and most meshes have no triangles
+    from scipy.special import roots_jacobi
+
     points, weights = np.zeros((1, 0)), np.ones(1)
     for i in range(d):
         x, w = roots_jacobi(3, i, 0)
