@@ -28,7 +28,7 @@ REACHED = 1e-2
 OPERATIONS, RATE, GENERAL = 3.3, 2.7e10, 7.5e-8
 """Multiplications and additions of a plane of n unknowns by n³, 7/3 of them for itself; how many
 are done in a second; and seconds of a general solver for n unknowns in each of L layers by
-L n^1.75. Measured on one core, on sections refined once and twice."""
+L n^1.75. Measured on one core, on the body of cases/free_bending.yaml."""
 
 
 @dataclasses.dataclass(frozen=True)
