@@ -111,10 +111,11 @@ class Constraints:
         block /= np.linalg.norm(block, axis=1)[:, None] + 1e-300
         owner = np.repeat(pressures, graph.weight[pressures])
         while len(owner):
-            modes, values, _ = np.linalg.svd(block) if len(columns) else (np.eye(len(owner)), [], 0)
-            if len(values) == len(owner) and values[-1] > REACHED * values[0]:
+            # squares of singular values, rising: those of BBᵀ, which is small where B is wide
+            squares, modes = np.linalg.eigh(block @ block.T)
+            if squares[0] > REACHED**2 * squares[-1]:
                 break
-            vertex = int(owner[np.argmax(np.abs(modes[:, -1]))])
+            vertex = int(owner[np.argmax(np.abs(modes[:, 0]))])
             left.append(vertex)
             block, owner = block[owner != vertex], owner[owner != vertex]
         return left
