@@ -42,7 +42,8 @@ The error has two parts:
   extrapolation; Roache 1994, doi 10.1115/1.2910291).
 - The **modelling error** stays whatever the mesh. It is the distance between the limit of the
   family and the limit of the finest family, which is the body with every turn of the winding. A
-  section leaves out the caps and what rubber does between the turns. No mesh can show it.
+  section leaves out the caps, and unless its winding is calibrated what rubber does between the
+  turns. No mesh can show it.
 
 The two are added without their signs. A run in which they cancel is right by luck, and the next
 radius has other luck. Of several answers (such as the pressures at three angles) the worst one
@@ -52,7 +53,7 @@ told apart.
 The limits are those of equations, not of rubber: how far the model is from an experiment is on
 [the cross-check of every run](crosscheck.md). Half and whole body give the same answers; the
 whole one shows what the mirror plane saves. Times are those of one process on one core, with
-compiled kernels, without pictures and report.
+compiled kernels, with the calibration of a winding, without pictures and report.
 """
 OWN = """## For your own case
 

@@ -133,9 +133,12 @@ def table(points: Sequence[Point]) -> list[str]:
 
 def picture(points: Sequence[Point], fits: dict[str, Fit]) -> None:
     """Time of an iteration and memory against unknowns, with their powers."""
+    from matplotlib.ticker import LogLocator
+
     from fiberbend.drawing.page import figure, save
 
     page = figure((1300, 560))
+    page.subplots_adjust(left=0.06, right=0.985, bottom=0.1, top=0.97, wspace=0.14)
     left, right = page.subplots(1, 2)
     for ranks, color, mark in ((1, "#1f5a99", "o"), (2, "#c0392b", "s")):
         chosen = [p for p in points if p.ranks == ranks]
@@ -157,6 +160,10 @@ def picture(points: Sequence[Point], fits: dict[str, Fit]) -> None:
     for panel in (left, right):
         panel.set_xlabel("unknowns")
         panel.grid(True, which="both", alpha=0.25)
+        for axis in (panel.xaxis, panel.yaxis):
+            axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            axis.set_major_formatter("{x:g}")
+            axis.set_minor_formatter("")
         panel.legend()
     save(page, PICTURE)
 
@@ -184,10 +191,7 @@ def write(points: Sequence[Point], missing: Sequence[str]) -> None:
         *table(points),
         *(f"- {line}" for line in missing),
         "",
-        "## Powers",
-        "",
-        *powers(fits),
-        "",
+        *(["## Powers", "", *powers(fits), ""] if fits else []),
         "## On more ranks",
         "",
         *Scaling.of(points).text(),

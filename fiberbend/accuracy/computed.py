@@ -56,7 +56,7 @@ def estimated(
     phase("accuracy")
     calibration = entries.get("calibration") or {}
     found = _estimate(case, meshed(case), status, rows, calibration, solve)
-    return {"accuracy": entry(case.accuracy, found)}
+    return {"accuracy": entry(case, found)}
 
 
 def missed(run: Mapping[str, Any]) -> list[str]:

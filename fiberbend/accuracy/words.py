@@ -24,7 +24,7 @@ def expected_lines(case: Case) -> Iterator[str]:
     found = estimate(case, meshed(case))
     where = "" if found.angle is None else f" at {math.degrees(found.angle):.3g}°"
     verdict = "promised" if found.meets(case.accuracy) else MISSED
-    reason = "" if found.meets(case.accuracy) else f": {why_not(found, case.accuracy)}"
+    reason = "" if found.meets(case.accuracy) else f": {why_not(found, case)}"
     asked = show(case.accuracy, "accuracy")
     yield f"{asked} asked, about {found.short()} expected{where}: {verdict}{reason}"
     if picked(case):
@@ -69,29 +69,40 @@ def ways_differ(cases: Sequence[Case]) -> str:
     )
 
 
-def why_not(found: Estimate, asked: float) -> str:
-    """Why an accuracy cannot be promised."""
+def why_not(found: Estimate, case: Case) -> str:
+    """Why the accuracy that a case asks for cannot be promised."""
+    assert case.accuracy is not None
     reasons = list(found.unknown)
-    if found.total > asked:
+    if found.total > case.accuracy:
         part, value = max(found.parts.items(), key=lambda item: item[1])
         what = {
             MESH: "shorter or more elements lower it",
-            WINDING: "as: discrete has the turns",
+            WINDING: _more_turns(case),
             ENDS: "a body has the ends",
         }[part]
         reasons.append(f"{part} {percent(value)} % is the most of it ({what})")
     return "; ".join(reasons)
 
 
-def entry(asked: float, found: Estimate) -> dict[str, Any]:
+def _more_turns(case: Case) -> str:
+    """What lowers the winding's part."""
+    turns, resolved = case.turns, "a cell or a body with as: discrete has the turns"
+    if turns is not None and not turns.discrete and not turns.bulges:
+        return f"{resolved}, around a curved section as: calibrated has their bulges"
+    return resolved
+
+
+def entry(case: Case, found: Estimate) -> dict[str, Any]:
     """The block `accuracy` of run.json."""
+    asked = case.accuracy
+    assert asked is not None
     promised = found.meets(asked)
     return {
         "asked": asked,
         "estimated": round(found.total, 3),
         "parts": {name: round(value, 3) for name, value in found.parts.items()},
         "promised": promised,
-        "reason": "" if promised else why_not(found, asked),
+        "reason": "" if promised else why_not(found, case),
         "angle_deg": None if found.angle is None else round(math.degrees(found.angle), 3),
         "widened": round(found.widened, 3),
         "outside": list(found.outside),

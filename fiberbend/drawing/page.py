@@ -29,7 +29,8 @@ COLORS = {
 }
 """Colour of each region and of the fibers."""
 
-SMEARED = "winding smeared over its surface"
+SMEARED = "winding spread over its surface"
+"""Also of a calibrated one: there are no single turns to draw."""
 NAMES = {"layer": "strain-limiting layer", "fiber": "fibers", "winding": SMEARED}
 """Names in a legend that are not those of the regions."""
 WARN = "#b01818"

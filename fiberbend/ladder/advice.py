@@ -42,18 +42,21 @@ def advice(judgement: Judgement, goals: Sequence[float] = GOALS) -> str:
     best, known = pareto(judgement), judgement.known_to()
     if not best:
         return "No advice: no family of rungs has a limit to compare with."
-    parts = []
+    parts: list[str] = []
     for goal in goals:
         # a reference that is uncertain lends its uncertainty to every error
         able = [each for each in judgement.rungs if not each.flaw]
         fits = [each for each in able if each.worst() + known <= goal]
         fit = min(fits, key=lambda each: each.record.wall_s, default=None)
         if fit is not None:
-            parts.append(f"for {number(goal)} % take {take(fit)}")
+            same = any(take(fit) in part for part in parts)
+            parts.append(f"for {number(goal)} % {'the same' if same else f'take {take(fit)}'}")
             continue
         near = min(best, key=lambda each: (max(each.worst(), known), each.record.wall_s))
         why = (
             f"the reference itself is known to {percent(known)} only"
+            if known > goal
+            else f"no rung keeps within it together with the {percent(known)} of the reference"
             if known > goal / 2
             else "no rung of this ladder is known to be as exact"
         )

@@ -132,7 +132,7 @@ def _once(solved: Sequence[tuple[Rung, Record]]) -> Iterator[str]:
     if longest > 0:
         yield (
             f"Times include up to {longest:.1f} s of a calibration by the cell, which is done once "
-            "for a section and kept: `once_s` in the table."
+            "for a section and kept (`once_s` in accuracy.csv)."
         )
         yield ""
 

@@ -61,7 +61,11 @@ def lost_pressure(case: Case, model: ModelKind) -> Iterator[str]:
     if turns is None or case.inflation is None or case.straight or not model.elements():
         return
     if turns.bulges:
-        yield f"winding: calibrated, {_within(turns.pitch)} (docs/evidence/calibration.md)"
+        # numbers that a case gives may be those of another section
+        yield (
+            f"winding: with the bulges of its own cell {_within(turns.pitch)} "
+            "(docs/evidence/calibration.md)"
+        )
         return
     missing = 1 - model.resolved_bulging(case)
     if missing and turns.pitch > FARTHEST_PITCH:
