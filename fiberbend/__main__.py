@@ -15,7 +15,7 @@ def entry() -> NoReturn:
     """The command; signals are taken before anything slow is loaded."""
     signals.install()
     # imports and the derivation of forms make many objects that stay: looked at after every 700
-    # of them, Python's default, they take a tenth longer
+    # of them, Python's default, a run of a section takes 3 % longer
     gc.set_threshold(NEW_OBJECTS)
     from fiberbend.cli import entry as command
 
