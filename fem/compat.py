@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-import cffi
 import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
@@ -154,8 +153,12 @@ class Integral(NamedTuple):
     facets: npt.NDArray[np.int32]
 
 
-def integrals(form: Any) -> list[Integral]:
+def integrals(form: Any, ffi: Any) -> list[Integral]:
     """Integrals of a form over cells and boundary facets; bridges where FFCx and dolfinx list them.
+
+    Args:
+        form: compiled.
+        ffi: of a compiled module; a new one of cffi would load a parser of C.
 
     Raises:
         NotImplementedError: an integral or an element of another kind.
@@ -175,7 +178,7 @@ def integrals(form: Any) -> list[Integral]:
             number = ufcx.integral_ids(sides[kind])[i]
             rows = np.asarray(form.domains(kind, number), dtype=np.int32)
             cells, facets = rows.T if rows.ndim == 2 else (rows, np.zeros_like(rows))
-            address = cffi.FFI().cast("uintptr_t", own[i].tabulate_tensor_float64)
+            address = ffi.cast("uintptr_t", own[i].tabulate_tensor_float64)
             found.append(Integral(int(address), (kind, number), cells, facets))
     return found
 

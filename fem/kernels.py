@@ -26,6 +26,7 @@ import ufl
 from ffcx.codegeneration import jit
 from mpi4py import MPI
 from petsc4py import PETSc
+from ufl.corealg.traversal import traverse_unique_terminals
 
 from machine import folders
 from machine.folders import MachineError
@@ -236,9 +237,12 @@ def differentiate(form: Any, variable: Any) -> Any:
         form: with its algebra lowered.
         variable: q, a UFL variable.
     """
+    label = variable.label()
+    # UFL takes as long to find that an integrand without q has no derivative as to derive one
     parts = [
         integral.reconstruct(ufl.diff(integral.integrand(), variable))
         for integral in form.integrals()
+        if label in traverse_unique_terminals(integral.integrand())
     ]
     result = ufl.algorithms.apply_derivatives.apply_derivatives(ufl.Form(parts))
     return None if result.empty() else result
