@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from bench.knowledge import LINES, only_kept, solved
+from bench.knowledge import LINES, Unsolved, only_kept, solved
 from bench.tables import WINDING, table
 from fiberbend import run
 from fiberbend.accuracy.words import way_named
@@ -105,7 +105,7 @@ def _kept(case: dict[str, Any]) -> bool:
     """Whether the fine cell at the asked angles is kept."""
     try:
         true(case, list(ANGLES))
-    except LookupError:
+    except Unsolved:
         return False
     return True
 
@@ -134,7 +134,7 @@ def rows(name: str, bodies: bool) -> Iterator[list[str]]:
         angles = [m if m is not None else a for m, a in zip(middles, ANGLES, strict=True)]
         try:
             pressures = true(case, angles)
-        except LookupError:
+        except Unsolved:
             yield [name, model, way, "", "", "fine cell not solved yet"]
             continue
         found = max(

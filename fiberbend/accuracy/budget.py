@@ -6,8 +6,17 @@ import dataclasses
 import math
 from collections.abc import Iterator, Mapping, Sequence
 
-from fiberbend.accuracy.numbers import STIFF, curvature, numbers, radius
-from fiberbend.accuracy.table import BEYOND, Curve, Knowledge, Known, at, knowledge, outside
+from fiberbend.accuracy.numbers import PITCH, STIFF, curvature, numbers, radius
+from fiberbend.accuracy.table import (
+    BEYOND,
+    Curve,
+    Knowledge,
+    Known,
+    at,
+    knowledge,
+    outside,
+    reaches,
+)
 from fiberbend.case.case import Case
 from fiberbend.effects.effect import Turns
 from fiberbend.models.model import MeshedModel, Rung
@@ -125,7 +134,7 @@ def estimate(
         mesh = mesh_error(case, rung, here)
         if mesh is None:
             mesh = mesh_error(case, _finest(rung), here) or 0.0
-            unknown.append("nothing is known of meshes as coarse as this")
+            unknown.append("nothing is known of meshes as coarse as this, bent as far")
         if case.straight and model.ends:
             mesh = max(mesh, BLOCKED)
         if state.winding is None:
@@ -199,9 +208,13 @@ def mesh_error(case: Case, rung: Rung, state: float) -> float | None:
         known = [length for length in table.spread_body if length >= part * (1 - _END)]
         if not known:
             return None
-        return found + abs(at(table.body_curvatures, table.spread_body[min(known)], state))
+        # bodies were not bent as far as sections: beyond, what long elements cost goes on growing
+        further = max(1.0, state / table.body_curvatures[-1])
+        return found + further * abs(
+            at(table.body_curvatures, table.spread_body[min(known)], state)
+        )
     pitch = case.turns.pitch / radius(case) if case.turns is not None else 0.0
-    near = _up_to([known for known in entries if known.turns], "pitch", pitch)
+    near = _up_to([known for known in entries if known.turns], PITCH, pitch)
     values = [_of_turns(known, rung, table, state) for known in near]
     if not values or None in values:
         return None
@@ -228,7 +241,10 @@ def _of_turns(known: Known, rung: Rung, table: Knowledge, state: float) -> float
     """Error of the best rung of a cell that is nowhere finer, with what its finest rung may lack.
 
     Signs change along the curve: the greater of the two known curvatures beside the state counts.
+    None where the actuator was not bent as far.
     """
+    if not reaches(table.curvatures, known.turns[max(known.turns)], state):
+        return None
     coarser = [
         _beside(table.curvatures, values, state)
         for (section, layers), values in known.turns.items()
@@ -292,7 +308,7 @@ def winding_error(case: Case, state: float) -> float:
     entries = [k for k in table.of_section(case.actuator.section) if k.winding]
     entries = entries or [known for known in table.actuators if known.winding]
     nearest = min(entries, key=lambda known: _distance(known.numbers, here))
-    scale = (here["pitch"] / nearest.numbers["pitch"]) ** _EXPONENT
+    scale = (here[PITCH] / nearest.numbers[PITCH]) ** _EXPONENT
     return scale * abs(at(table.curvatures, nearest.winding, state))
 
 
@@ -317,8 +333,15 @@ def ends_error(case: Case, state: float) -> float:
     table = knowledge()
     known = [k for k in table.of_section(case.actuator.section) if k.ends[0]]
     near = _down_to(known, "floor", numbers(case)["floor"])
-    longer = max(abs(at(*k.ends, state)) for k in near) + table.ends_of_turns
+    longer = max(_longer(k.ends, state) for k in near) + table.ends_of_turns
     return 100 * longer * radius(case) / case.actuator.length
+
+
+def _longer(ends: tuple[Curve, Curve], state: float) -> float:
+    """By how many radii a body seems longer; the greatest of all where it was not bent as far."""
+    if state > ends[0][-1]:
+        return max(map(abs, ends[1]))
+    return abs(at(*ends, state))
 
 
 def _widening(
@@ -326,7 +349,7 @@ def _widening(
 ) -> tuple[float, tuple[str, ...], list[str]]:
     """Factor, reasons, and why nothing is known at all."""
     here, factor, reasons, beyond = numbers(case), 1.0, [], []
-    found = list(outside(entries, here))
+    found = list(outside(entries, here, case.turns is not None and case.turns.discrete))
     most = table.curvatures[-1]
     if not case.straight and furthest > most * (1 + _END):
         text = f"radius times curvature {furthest:.3g} (known: up to {most:.3g})"

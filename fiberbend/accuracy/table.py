@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from fiberbend.accuracy.numbers import SOFT
+from fiberbend.accuracy.numbers import PITCH, SOFT
 
 FILE = Path(__file__).parent / "knowledge.json"
 BEYOND = 2.0
@@ -119,6 +119,12 @@ def _curve(values: Sequence[float | None]) -> Curve:
     return tuple(known)
 
 
+def reaches(curvatures: Curve, values: Curve, curvature: float) -> bool:
+    """Whether a curve is known as far as a curvature; the table's last one counts as the end."""
+    last = min(len(curvatures), len(values)) - 1
+    return last == len(curvatures) - 1 or curvature <= curvatures[last] * (1 + 1e-3)
+
+
 def at(curvatures: Curve, values: Curve, curvature: float) -> float:
     """A curve at a curvature; held beyond its ends."""
     last = min(len(curvatures), len(values)) - 1
@@ -132,18 +138,24 @@ def at(curvatures: Curve, values: Curve, curvature: float) -> float:
     return values[last]
 
 
-def outside(known: Sequence[Known], numbers: Mapping[str, float]) -> Iterator[tuple[str, float]]:
+def outside(
+    known: Sequence[Known], numbers: Mapping[str, float], turns: bool = False
+) -> Iterator[tuple[str, float]]:
     """What lies outside of what is known.
 
     Args:
         known: the actuators of one shape.
         numbers: what the actuator at hand is like.
+        turns: whether every turn counts: only pitches are known then of which there are cells.
 
     Yields:
         A number in words and how many times it lies outside, above one.
     """
     for name, value in numbers.items():
-        there = [entry.numbers[name] for entry in known if name in entry.numbers]
+        with_it = [entry for entry in known if name in entry.numbers]
+        if turns and name == PITCH:
+            with_it = [entry for entry in with_it if entry.turns] or with_it
+        there = [entry.numbers[name] for entry in with_it]
         low, high = min(there), max(there)
         if low * (1 - 1e-6) <= value <= high * (1 + 1e-6) or (name == SOFT and value > low):
             continue
