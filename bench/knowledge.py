@@ -121,7 +121,7 @@ _only = {"kept": False}
 _missing: dict[str, str] = {}
 
 
-class Unsolved(LookupError):
+class UnsolvedError(LookupError):
     """A case whose solution is not kept, or was not reached: none of its numbers is used."""
 
 
@@ -141,7 +141,7 @@ def _unless_missing(what: str) -> Iterator[None]:
     """A part of the table that is left out, and named with the reason, where one is unsolved."""
     try:
         yield
-    except Unsolved as reason:
+    except UnsolvedError as reason:
         _missing[what] = str(reason)
 
 
@@ -152,19 +152,19 @@ def solved(case: dict[str, Any]) -> list[dict[str, float]]:
     take its file away to try it again.
 
     Raises:
-        Unsolved: it has not reached all its stops, or it is not kept and must be.
+        UnsolvedError: it has not reached all its stops, or it is not kept and must be.
     """
     text = json.dumps(case, sort_keys=True)
     path = KEPT / f"{hashlib.sha256(text.encode()).hexdigest()[:16]}.json"
     if not path.exists():
         if only_kept():
-            raise Unsolved("not solved yet")
+            raise UnsolvedError("not solved yet")
         _solve(case, path)
     kept = json.loads(path.read_text(encoding="utf-8"))
     rows: list[dict[str, float]] = kept["rows"]
     asked = len(case["output"]["at_angles"])
     if kept.get("status", "converged") != "converged" or len(rows) < asked:
-        raise Unsolved(f"{case['model']} {case['mesh']}: {kept.get('reason', 'ended early')}")
+        raise UnsolvedError(f"{case['model']} {case['mesh']}: {kept.get('reason', 'ended early')}")
     return rows
 
 
