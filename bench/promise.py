@@ -16,7 +16,7 @@ from typing import Any
 from bench.knowledge import LINES, UnsolvedError, only_kept, solved
 from bench.tables import WINDING, table
 from fiberbend import run
-from fiberbend.accuracy.budget import estimate
+from fiberbend.accuracy.budget import MESH, estimate
 from fiberbend.accuracy.words import way_named
 from fiberbend.models.choice import meshed
 from fiberbend.plan.plan import make_plan
@@ -185,26 +185,29 @@ def rows(name: str, bodies: bool) -> Iterator[list[str]]:
 def whole(name: str) -> list[str]:
     """A line of the chosen body beside one with every turn."""
     case = case_of(name, "auto")
-    chosen = _pressures(copy.deepcopy(case))
-    fine = copy.deepcopy(case)
-    del fine["accuracy"]
-    fine["model"] = "body"
-    fine["mesh"] = {"section": 1, "axial": f"{float(ACTUATORS[name][1].split()[0]) / 2} mm"}
-    fine["effects"][1]["winding"] |= {"as": "discrete"}
-    resolved = [row["pressure_kPa"] for row in solved(fine)]
-    off = [100 * (p / q - 1) for p, q in zip(chosen, resolved, strict=True)]
-    made, given = parse_case(case), parse_case(fine | {"accuracy": "1 %"})
+    made = parse_case(case)
+    assert made.turns is not None
+    way = "discrete" if made.turns.discrete else "calibrated" if made.turns.bulges else "smeared"
+    spelled = _spelled(case, made.mesh.section, made.mesh.axial, way)
+    resolved = _spelled(case, 1, float(ACTUATORS[name][1].split()[0]) / 2, "discrete")
+    pairs = zip(solved(spelled), solved(resolved), strict=True)
+    off = [100 * (one["pressure_kPa"] / two["pressure_kPa"] - 1) for one, two in pairs]
+    given = parse_case(resolved | {"accuracy": f"{ASKED} %"})
     found, rest = estimate(made, meshed(made)), estimate(given, meshed(given))
     word = "promised" if found.meets(ASKED) else "cannot promise"
     print(name, way_named(made), off, found.short(), rest.short(), flush=True)
     differences = ", ".join(f"{value:+.2f}" for value in off)
     estimated = f"{found.total:.2f}: {word}"
-    return [name, way_named(made), estimated, differences, f"{rest.parts['mesh']:.2f}"]
+    return [name, way_named(made), estimated, differences, f"{rest.parts[MESH]:.2f}"]
 
 
-def _pressures(case: dict[str, Any]) -> list[float]:
-    """P at the angles, kPa, of a run kept like a fine cell."""
-    return [row["pressure_kPa"] for row in solved(case)]
+def _spelled(case: dict[str, Any], section: int, axial: float, way: str) -> dict[str, Any]:
+    """The case as a body with a mesh and a winding instead of an accuracy."""
+    body = copy.deepcopy(case)
+    del body["accuracy"]
+    body |= {"model": "body", "mesh": {"section": section, "axial": f"{axial!r} mm"}}
+    body["effects"][1]["winding"] |= {"as": way}
+    return body
 
 
 def main() -> None:

@@ -18,6 +18,9 @@ BEYOND = 2.0
 ABSENT = 1.5
 """A part that is not there counts as a number that lies outside so many times."""
 
+_END = 1e-6
+"""Rounding of the numbers."""
+
 Curve = tuple[float, ...]
 """Percent at the curvatures of the table; ends early where an actuator does."""
 
@@ -61,6 +64,7 @@ class Knowledge:
             otherwise than a slice that repeats.
         ends_of_turns: by how many radii more than one with a spread winding and long elements a
             body with turns seems longer.
+        ends_of_short: by how many radii more a body of ten radii seems longer than one of twenty.
     """
 
     origin: Mapping[str, Any]
@@ -70,6 +74,7 @@ class Knowledge:
     spread_body: Mapping[float, Curve]
     turns_body: Mapping[float, float]
     ends_of_turns: float
+    ends_of_short: float
 
     def of_section(self, section: str) -> tuple[Known, ...]:
         """Actuators with a shape; all of them where there is none."""
@@ -89,6 +94,7 @@ def knowledge() -> Knowledge:
         {float(key): _curve(values) for key, values in data["spread body"].items()},
         {float(key): value for key, value in data["turns body"].items()},
         data["ends of turns"],
+        data["ends of short"],
     )
 
 
@@ -117,6 +123,18 @@ def _curve(values: Sequence[float | None]) -> Curve:
             break
         known.append(value)
     return tuple(known)
+
+
+def up_to(known: Sequence[Known], name: str, value: float) -> list[Known]:
+    """Actuators that have no more of a number than the next one to a value."""
+    above = [k.numbers[name] for k in known if k.numbers[name] >= value * (1 - _END)]
+    return [k for k in known if k.numbers[name] <= min(above, default=math.inf) * (1 + _END)]
+
+
+def down_to(known: Sequence[Known], name: str, value: float) -> list[Known]:
+    """Actuators that have no less of a number than the next one below a value."""
+    below = [k.numbers[name] for k in known if k.numbers[name] <= value * (1 + _END)]
+    return [k for k in known if k.numbers[name] >= max(below, default=0.0) * (1 - _END)]
 
 
 def reaches(curvatures: Curve, values: Curve, curvature: float) -> bool:

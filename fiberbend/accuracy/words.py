@@ -15,6 +15,11 @@ from fiberbend.schema.units import show
 
 PAGE = "docs/models.md"
 MISSED = "cannot be promised"
+_REMEDY = {
+    MESH: "shorter or more elements lower it",
+    WINDING: "a cell or a body with `as: discrete` has the turns",
+    ENDS: "a body has the ends",
+}
 
 
 def expected_lines(case: Case) -> Iterator[str]:
@@ -73,13 +78,15 @@ def why_not(found: Estimate, asked: float) -> str:
     """Why an accuracy cannot be promised."""
     reasons = list(found.unknown)
     if found.total > asked:
-        part, value = max(found.parts.items(), key=lambda item: item[1])
-        what = {
-            MESH: "shorter or more elements lower it",
-            WINDING: "as: discrete has the turns",
-            ENDS: "a body has the ends",
-        }[part]
-        reasons.append(f"{part} {percent(value)} % is the most of it ({what})")
+        # each part that is too much by itself, else the greatest
+        parts = {part: value for part, value in found.parts.items() if value > asked}
+        greatest = max(found.parts, key=lambda part: found.parts[part])
+        named = [f"{part} {percent(value)} % ({_REMEDY[part]})" for part, value in parts.items()]
+        if named:
+            reasons.append(f"{' and '.join(named)} {'is' if len(named) == 1 else 'are'} too much")
+        else:
+            value = found.parts[greatest]
+            reasons.append(f"{greatest} {percent(value)} % is the most of it ({_REMEDY[greatest]})")
     return "; ".join(reasons)
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from bench import knowledge as made
 from fiberbend.accuracy import budget
+from fiberbend.accuracy import ends as ends_module
 from fiberbend.accuracy.budget import mesh_error
 from fiberbend.accuracy.computed import _beside
 from fiberbend.accuracy.table import FILE, at, knowledge, outside, reaches
@@ -122,6 +123,6 @@ def test_the_section_beside_a_run_has_its_elements(n: int) -> None:
 def test_ends_beyond_the_bodies_that_are_known_are_the_greatest_known() -> None:
     table = knowledge()
     ends = next(known.ends for known in table.actuators if known.ends[0])
-    beyond = budget._longer(ends, 1.2 * ends[0][-1])
+    beyond = ends_module._longer(ends, 1.2 * ends[0][-1])
     assert beyond == max(abs(value) for value in ends[1])
-    assert budget._longer(ends, ends[0][1]) == abs(at(*ends, ends[0][1]))
+    assert ends_module._longer(ends, ends[0][1]) == abs(at(*ends, ends[0][1]))
