@@ -205,7 +205,10 @@ def whole(name: str) -> list[str]:
     way = "discrete" if made.turns.discrete else "calibrated" if made.turns.bulges else "smeared"
     spelled = _spelled(case, made.mesh.section, made.mesh.axial, way)
     resolved = _spelled(case, 1, float(ACTUATORS[name][1].split()[0]) / 2, "discrete")
-    pairs = zip(solved(spelled), solved(resolved), strict=True)
+    try:
+        pairs = list(zip(solved(spelled), solved(resolved), strict=True))
+    except UnsolvedError as reason:
+        return [name, way_named(made), "", str(reason), ""]
     off = [100 * (one["pressure_kPa"] / two["pressure_kPa"] - 1) for one, two in pairs]
     given = parse_case(resolved | {"accuracy": f"{ASKED} %"})
     found, rest = estimate(made, meshed(made)), estimate(given, meshed(given))
