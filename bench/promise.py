@@ -250,7 +250,7 @@ def main() -> None:
         "chosen",
         "estimated, %",
         "off at 45, 90, 180, 270°, %",
-        "lacking itself, %",
+        "its mesh in a cell, %",
     ]
     text += WHOLE + "\n".join(table(head, [whole(name) for name in RESOLVED]))
     PAGE.write_text(text.rstrip("\n") + "\n", encoding="utf-8")
