@@ -6,8 +6,20 @@ import dataclasses
 import math
 from collections.abc import Iterator, Mapping, Sequence
 
-from fiberbend.accuracy.numbers import STIFF, curvature, numbers, radius
-from fiberbend.accuracy.table import BEYOND, Curve, Knowledge, Known, at, knowledge, outside
+from fiberbend.accuracy.ends import ends_error, too_short
+from fiberbend.accuracy.numbers import PITCH, STIFF, curvature, numbers, radius
+from fiberbend.accuracy.table import (
+    BEYOND,
+    Curve,
+    Knowledge,
+    Known,
+    at,
+    down_to,
+    knowledge,
+    outside,
+    reaches,
+    up_to,
+)
 from fiberbend.case.case import Case
 from fiberbend.effects.effect import Turns
 from fiberbend.models.model import MeshedModel, Rung
@@ -21,8 +33,12 @@ CALIBRATED_SECTION = 2
 """Elements through each thickness of the section that is calibrated by it, see
 `fiberbend.calibration.digest`: their own error is within its numbers."""
 BLOCKED = 3.0
-"""Percent of the force of a blocked tip by which the mesh of a body moves it
-(docs/evidence/blocked.md)."""
+"""Percent of the force of a blocked tip that a spread winding and elements of half the radius cost
+(docs/evidence/blocked.md: 3.50 N with both, 3.60 N with turns and elements of 3/8)."""
+BLOCKED_IN_TURNS = 0.8
+"""The same of turns and elements of 3/8 of the radius or shorter: those of 1/4 give 0.4 % less, and
+are thought to lack as much again."""
+_SHORT_ENOUGH = 3 / 8
 MARGIN = 1.1
 """Widening of every error of turns, by which few actuators stand for all between them: the greatest
 found beyond was 4 % (docs/evidence/promise.md)."""
@@ -125,9 +141,9 @@ def estimate(
         mesh = mesh_error(case, rung, here)
         if mesh is None:
             mesh = mesh_error(case, _finest(rung), here) or 0.0
-            unknown.append("nothing is known of meshes as coarse as this")
+            unknown.append("nothing is known of meshes as coarse as this, bent as far")
         if case.straight and model.ends:
-            mesh = max(mesh, BLOCKED)
+            mesh = max(mesh, _blocked(case, rung))
         if state.winding is None:
             winding = factor * winding_error(case, here)
         else:
@@ -191,7 +207,7 @@ def mesh_error(case: Case, rung: Rung, state: float) -> float | None:
     entries = table.of_section(case.actuator.section)
     if not rung.layers:
         base = CALIBRATED_SECTION if case.turns is not None and case.turns.bulges else None
-        like = _down_to(entries, STIFF, numbers(case)[STIFF])
+        like = down_to(entries, STIFF, numbers(case)[STIFF])
         found = _worst((known.spread for known in like), rung.section, base, table, state)
         if found is None or not rung.axial:
             return found
@@ -199,9 +215,13 @@ def mesh_error(case: Case, rung: Rung, state: float) -> float | None:
         known = [length for length in table.spread_body if length >= part * (1 - _END)]
         if not known:
             return None
-        return found + abs(at(table.body_curvatures, table.spread_body[min(known)], state))
+        # bodies were not bent as far as sections: beyond, what long elements cost goes on growing
+        further = max(1.0, state / table.body_curvatures[-1])
+        return found + further * abs(
+            at(table.body_curvatures, table.spread_body[min(known)], state)
+        )
     pitch = case.turns.pitch / radius(case) if case.turns is not None else 0.0
-    near = _up_to([known for known in entries if known.turns], "pitch", pitch)
+    near = up_to([known for known in entries if known.turns], PITCH, pitch)
     values = [_of_turns(known, rung, table, state) for known in near]
     if not values or None in values:
         return None
@@ -212,23 +232,14 @@ def mesh_error(case: Case, rung: Rung, state: float) -> float | None:
     return worst + table.turns_body[max(fewer)] if fewer else None
 
 
-def _up_to(known: Sequence[Known], name: str, value: float) -> list[Known]:
-    """Actuators that have no more of a number than the next one to a value."""
-    above = [k.numbers[name] for k in known if k.numbers[name] >= value * (1 - _END)]
-    return [k for k in known if k.numbers[name] <= min(above, default=math.inf) * (1 + _END)]
-
-
-def _down_to(known: Sequence[Known], name: str, value: float) -> list[Known]:
-    """Actuators that have no less of a number than the next one below a value."""
-    below = [k.numbers[name] for k in known if k.numbers[name] <= value * (1 + _END)]
-    return [k for k in known if k.numbers[name] >= max(below, default=0.0) * (1 - _END)]
-
-
 def _of_turns(known: Known, rung: Rung, table: Knowledge, state: float) -> float | None:
     """Error of the best rung of a cell that is nowhere finer, with what its finest rung may lack.
 
     Signs change along the curve: the greater of the two known curvatures beside the state counts.
+    None where the actuator was not bent as far.
     """
+    if not reaches(table.curvatures, known.turns[max(known.turns)], state):
+        return None
     coarser = [
         _beside(table.curvatures, values, state)
         for (section, layers), values in known.turns.items()
@@ -246,6 +257,13 @@ def _of_turns(known: Known, rung: Rung, table: Knowledge, state: float) -> float
     # the reference has twice the layers: a third of their error is left in it, of order two
     rest = abs(at(table.curvatures, known.turns[max(known.turns)], state)) / 3
     return MARGIN * (min(coarser) + rest)
+
+
+def _blocked(case: Case, rung: Rung) -> float:
+    """Percent of the force of a blocked tip, whatever the angles' ladder says of the mesh."""
+    turns = case.turns is not None and case.turns.discrete
+    fine = case.mesh.axial <= _SHORT_ENOUGH * radius(case) * (1 + _END)
+    return BLOCKED_IN_TURNS if turns and fine and rung.layers else BLOCKED
 
 
 def _beside(curvatures: Curve, values: Curve, state: float) -> float:
@@ -292,7 +310,7 @@ def winding_error(case: Case, state: float) -> float:
     entries = [k for k in table.of_section(case.actuator.section) if k.winding]
     entries = entries or [known for known in table.actuators if known.winding]
     nearest = min(entries, key=lambda known: _distance(known.numbers, here))
-    scale = (here["pitch"] / nearest.numbers["pitch"]) ** _EXPONENT
+    scale = (here[PITCH] / nearest.numbers[PITCH]) ** _EXPONENT
     return scale * abs(at(table.curvatures, nearest.winding, state))
 
 
@@ -307,30 +325,17 @@ def lacking(case: Case, state: float) -> float:
     return mesh_error(case, FINE, state) or 0.0
 
 
-def ends_error(case: Case, state: float) -> float:
-    """Percent of P by which a body with caps bends further than its middle.
-
-    By so many radii it seems longer than it is, whatever its length: the ends are a matter of the
-    section and its curvature. A thin floor bends more across itself: only actuators count whose
-    floor is no thinner than the next one below the case's.
-    """
-    table = knowledge()
-    known = [k for k in table.of_section(case.actuator.section) if k.ends[0]]
-    near = _down_to(known, "floor", numbers(case)["floor"])
-    longer = max(abs(at(*k.ends, state)) for k in near) + table.ends_of_turns
-    return 100 * longer * radius(case) / case.actuator.length
-
-
 def _widening(
     case: Case, entries: Sequence[Known], furthest: float, table: Knowledge
 ) -> tuple[float, tuple[str, ...], list[str]]:
     """Factor, reasons, and why nothing is known at all."""
     here, factor, reasons, beyond = numbers(case), 1.0, [], []
-    found = list(outside(entries, here))
+    found = list(outside(entries, here, case.turns is not None and case.turns.discrete))
     most = table.curvatures[-1]
     if not case.straight and furthest > most * (1 + _END):
         text = f"radius times curvature {furthest:.3g} (known: up to {most:.3g})"
         found.append((text, furthest / most))
+    found += too_short(case)
     for text, times in found:
         reasons.append(text)
         if times > BEYOND:

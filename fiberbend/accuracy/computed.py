@@ -142,7 +142,8 @@ def _factor(rows: Sequence[dict[str, Any]], row: dict[str, Any]) -> float | None
 def _of_winding(case: Case, rows: Sequence[dict[str, Any]], solve: Solve) -> dict[int, float]:
     """Percent of P, or of the force, that a spread winding costs at rows, by their steps.
 
-    Section and cell have the same elements through each thickness, so that these do not count.
+    The section has the elements through each thickness that the case has: their error is part of
+    what is found, whatever of it the cell shares, and the table's comes on top.
     """
     spread = _beside(case, rows)
     cell = _in_turns(spread)
@@ -191,8 +192,8 @@ def _beside(case: Case, rows: Sequence[dict[str, Any]]) -> Case:
         angles = [math.radians(row[col.ANGLE]) for row in rows]
         section = as_section(case, inflate(angle=max(angles, key=abs)))
         effects, stops = section.effects, {"at_angles": tuple(angles)}
-    mesh = section.mesh.model_copy(update={"section": FINE.section})
     output = section.output.model_copy(update=stops)
+    mesh = section.mesh.model_copy(update={"section": case.mesh.section})
     return section.model_copy(update={"mesh": mesh, "effects": effects, "output": output})
 
 

@@ -9,6 +9,7 @@ from fiberbend.case.case import Case
 
 STIFF = "floor's modulus"
 """Of the stiffer of floor and layer."""
+PITCH = "pitch"
 SOFT = "thread"
 """The one number with a lower limit only: a stiffer thread is no other actuator."""
 
@@ -48,6 +49,6 @@ def numbers(case: Case) -> dict[str, float]:
     }
     turns = case.turns
     if turns is not None:
-        found["pitch"] = turns.pitch / r
+        found[PITCH] = turns.pitch / r
         found[SOFT] = turns.stiffness / (wall * turns.pitch * r)
     return {name: float(f"{value:.6g}") for name, value in found.items() if math.isfinite(value)}

@@ -10,13 +10,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from fiberbend.accuracy.numbers import SOFT
+from fiberbend.accuracy.numbers import PITCH, SOFT
 
 FILE = Path(__file__).parent / "knowledge.json"
 BEYOND = 2.0
 """Times a number may lie outside of those in the table: beyond, nothing is known."""
 ABSENT = 1.5
 """A part that is not there counts as a number that lies outside so many times."""
+
+_END = 1e-6
+"""Rounding of the numbers."""
 
 Curve = tuple[float, ...]
 """Percent at the curvatures of the table; ends early where an actuator does."""
@@ -61,6 +64,7 @@ class Knowledge:
             otherwise than a slice that repeats.
         ends_of_turns: by how many radii more than one with a spread winding and long elements a
             body with turns seems longer.
+        ends_of_short: by how many radii more a body of ten radii seems longer than one of twenty.
     """
 
     origin: Mapping[str, Any]
@@ -70,6 +74,7 @@ class Knowledge:
     spread_body: Mapping[float, Curve]
     turns_body: Mapping[float, float]
     ends_of_turns: float
+    ends_of_short: float
 
     def of_section(self, section: str) -> tuple[Known, ...]:
         """Actuators with a shape; all of them where there is none."""
@@ -89,6 +94,7 @@ def knowledge() -> Knowledge:
         {float(key): _curve(values) for key, values in data["spread body"].items()},
         {float(key): value for key, value in data["turns body"].items()},
         data["ends of turns"],
+        data["ends of short"],
     )
 
 
@@ -119,6 +125,24 @@ def _curve(values: Sequence[float | None]) -> Curve:
     return tuple(known)
 
 
+def up_to(known: Sequence[Known], name: str, value: float) -> list[Known]:
+    """Actuators that have no more of a number than the next one to a value."""
+    above = [k.numbers[name] for k in known if k.numbers[name] >= value * (1 - _END)]
+    return [k for k in known if k.numbers[name] <= min(above, default=math.inf) * (1 + _END)]
+
+
+def down_to(known: Sequence[Known], name: str, value: float) -> list[Known]:
+    """Actuators that have no less of a number than the next one below a value."""
+    below = [k.numbers[name] for k in known if k.numbers[name] <= value * (1 + _END)]
+    return [k for k in known if k.numbers[name] >= max(below, default=0.0) * (1 - _END)]
+
+
+def reaches(curvatures: Curve, values: Curve, curvature: float) -> bool:
+    """Whether a curve is known as far as a curvature; the table's last one counts as the end."""
+    last = min(len(curvatures), len(values)) - 1
+    return last == len(curvatures) - 1 or curvature <= curvatures[last] * (1 + 1e-3)
+
+
 def at(curvatures: Curve, values: Curve, curvature: float) -> float:
     """A curve at a curvature; held beyond its ends."""
     last = min(len(curvatures), len(values)) - 1
@@ -132,18 +156,24 @@ def at(curvatures: Curve, values: Curve, curvature: float) -> float:
     return values[last]
 
 
-def outside(known: Sequence[Known], numbers: Mapping[str, float]) -> Iterator[tuple[str, float]]:
+def outside(
+    known: Sequence[Known], numbers: Mapping[str, float], turns: bool = False
+) -> Iterator[tuple[str, float]]:
     """What lies outside of what is known.
 
     Args:
         known: the actuators of one shape.
         numbers: what the actuator at hand is like.
+        turns: whether every turn counts: only pitches are known then of which there are cells.
 
     Yields:
         A number in words and how many times it lies outside, above one.
     """
     for name, value in numbers.items():
-        there = [entry.numbers[name] for entry in known if name in entry.numbers]
+        with_it = [entry for entry in known if name in entry.numbers]
+        if turns and name == PITCH:
+            with_it = [entry for entry in with_it if entry.turns] or with_it
+        there = [entry.numbers[name] for entry in with_it]
         low, high = min(there), max(there)
         if low * (1 - 1e-6) <= value <= high * (1 + 1e-6) or (name == SOFT and value > low):
             continue

@@ -15,6 +15,11 @@ from fiberbend.schema.units import show
 
 PAGE = "docs/models.md"
 MISSED = "cannot be promised"
+_REMEDY = {
+    MESH: "shorter or more elements lower it",
+    WINDING: "a cell or a body with `as: discrete` has the turns",
+    ENDS: "a body has the ends",
+}
 
 
 def expected_lines(case: Case) -> Iterator[str]:
@@ -73,6 +78,7 @@ def why_not(found: Estimate, case: Case) -> str:
     """Why the accuracy that a case asks for cannot be promised."""
     assert case.accuracy is not None
     reasons = list(found.unknown)
+<<<<<<< HEAD
     if found.total > case.accuracy:
         part, value = max(found.parts.items(), key=lambda item: item[1])
         what = {
@@ -81,6 +87,18 @@ def why_not(found: Estimate, case: Case) -> str:
             ENDS: "a body has the ends",
         }[part]
         reasons.append(f"{part} {percent(value)} % is the most of it ({what})")
+=======
+    if found.total > asked:
+        # each part that is too much by itself, else the greatest
+        parts = {part: value for part, value in found.parts.items() if value > asked}
+        greatest = max(found.parts, key=lambda part: found.parts[part])
+        named = [f"{part} {percent(value)} % ({_REMEDY[part]})" for part, value in parts.items()]
+        if named:
+            reasons.append(f"{' and '.join(named)} {'is' if len(named) == 1 else 'are'} too much")
+        else:
+            value = found.parts[greatest]
+            reasons.append(f"{greatest} {percent(value)} % is the most of it ({_REMEDY[greatest]})")
+>>>>>>> know
     return "; ".join(reasons)
 
 
