@@ -15,11 +15,6 @@ from fiberbend.schema.units import show
 
 PAGE = "docs/models.md"
 MISSED = "cannot be promised"
-_REMEDY = {
-    MESH: "shorter or more elements lower it",
-    WINDING: "a cell or a body with `as: discrete` has the turns",
-    ENDS: "a body has the ends",
-}
 
 
 def expected_lines(case: Case) -> Iterator[str]:
@@ -76,29 +71,26 @@ def ways_differ(cases: Sequence[Case]) -> str:
 
 def why_not(found: Estimate, case: Case) -> str:
     """Why the accuracy that a case asks for cannot be promised."""
-    assert case.accuracy is not None
+    asked = case.accuracy
+    assert asked is not None
     reasons = list(found.unknown)
-<<<<<<< HEAD
-    if found.total > case.accuracy:
-        part, value = max(found.parts.items(), key=lambda item: item[1])
-        what = {
+    if found.total > asked:
+        remedies = {
             MESH: "shorter or more elements lower it",
             WINDING: _more_turns(case),
             ENDS: "a body has the ends",
-        }[part]
-        reasons.append(f"{part} {percent(value)} % is the most of it ({what})")
-=======
-    if found.total > asked:
+        }
+        named = {
+            part: f"{part} {percent(value)} % ({remedies[part]})"
+            for part, value in found.parts.items()
+        }
         # each part that is too much by itself, else the greatest
-        parts = {part: value for part, value in found.parts.items() if value > asked}
-        greatest = max(found.parts, key=lambda part: found.parts[part])
-        named = [f"{part} {percent(value)} % ({_REMEDY[part]})" for part, value in parts.items()]
-        if named:
-            reasons.append(f"{' and '.join(named)} {'is' if len(named) == 1 else 'are'} too much")
+        over = [named[part] for part, value in found.parts.items() if value > asked]
+        if over:
+            reasons.append(f"{' and '.join(over)} {'is' if len(over) == 1 else 'are'} too much")
         else:
-            value = found.parts[greatest]
-            reasons.append(f"{greatest} {percent(value)} % is the most of it ({_REMEDY[greatest]})")
->>>>>>> know
+            greatest = max(found.parts, key=lambda part: found.parts[part])
+            reasons.append(f"{named[greatest]} is the most of it")
     return "; ".join(reasons)
 
 
