@@ -116,7 +116,7 @@ def test_values_may_change_sign_between_factorisations() -> None:
 
 
 @pytest.mark.usefixtures("_all_in_layers")
-def test_a_singular_front_is_left_to_mumps_and_said(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_singular_front_is_left_to_mumps_and_said() -> None:
     # two unknowns between planes that meet nothing but a plane: pivots come only with that
     matrix, negative = chain(4)
     size = len(matrix)
@@ -133,8 +133,7 @@ def test_a_singular_front_is_left_to_mumps_and_said(capsys: pytest.CaptureFixtur
     (x,) = kept.solve_many([b])
     assert np.linalg.norm(whole @ x - b) < 1e-9 * np.linalg.norm(b)
     assert kept.negative_pivots == inertia(whole)
-    assert kept.left
-    assert "MUMPS goes on" in capsys.readouterr().err
+    assert "singular" in kept.left
 
 
 @pytest.mark.parametrize("pivot", [1e-6, 1e-10, 1e-15])
