@@ -156,7 +156,7 @@ def test_small_pivots_are_refined_or_refused(pivot: float) -> None:
         assert np.linalg.norm(whole @ x[0] - b[0]) < 1e-9 * np.linalg.norm(b)
 
 
-@pytest.mark.parametrize("bad", [np.nan, np.inf, 1e308])
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
 def test_what_is_no_number_is_refused_and_leaves_nothing_behind(bad: float) -> None:
     matrix, negative = chain(8)
     petsc = stored(matrix)
