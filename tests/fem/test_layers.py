@@ -166,9 +166,8 @@ def test_what_is_no_number_is_refused_and_leaves_nothing_behind(bad: float) -> N
     for row, column in np.argwhere(np.triu(matrix) != 0)[::9001]:
         petsc.setValue(int(row), int(column), bad)
         petsc.assemble()
-        with pytest.raises((ZeroDivisionError, InaccurateError)):
+        with pytest.raises(ZeroDivisionError):
             layers.renew()
-            layers.solve(np.ones((1, len(matrix))))
         petsc.setValue(int(row), int(column), matrix[row, column])
     petsc.assemble()
     layers.renew()
