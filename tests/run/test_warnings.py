@@ -11,7 +11,7 @@ import pytest
 
 from fem.solver.layers import InaccurateError, Layers
 from fiberbend import run
-from fiberbend.columns import ANGLE, MODES, PRESSURE
+from fiberbend.columns import ANGLE, ITERATIONS, PRESSURE
 from fiberbend.effects.effect import Effect
 from fiberbend.models.result import RunResult
 from fiberbend.plan import doubts as known
@@ -179,5 +179,5 @@ def test_a_body_left_to_mumps_midway_ends_the_same_and_says_so(
     assert not any("MUMPS" in line for line in small_run.run["warnings"])
     assert len(found.rows) == len(small_run.rows)
     for mine, theirs in zip(found.rows, small_run.rows, strict=True):
-        for key in (ANGLE, PRESSURE, MODES):
+        for key in (ANGLE, PRESSURE, ITERATIONS):
             assert mine[key] == pytest.approx(theirs[key], rel=1e-8, abs=1e-12)
