@@ -67,7 +67,8 @@ void pattern(int32_t rows, int32_t low, int32_t high, const int32_t *start, cons
   begin[rows] = end;
 }
 
-/* Offsets of entries with columns in [low, high) within their rows; 1 where one has no place.
+/* Offsets of entries with columns in [low, high) within their rows; 1 where one has no place, 2
+   where a row is too long.
 
    place: scratch, as many as dofs, −1. */
 int offsets(int32_t rows, int32_t low, int32_t high, const int32_t *start, const int32_t *slots,
@@ -76,7 +77,7 @@ int offsets(int32_t rows, int32_t low, int32_t high, const int32_t *start, const
   int64_t entries = (int64_t)width * (width + 1) / 2;
   for (int32_t row = 0; row < rows; row++) {
     int32_t from = begin[row], to = begin[row + 1];
-    if (to - from > UINT16_MAX) return 1;
+    if (to - from > UINT16_MAX) return 2;
     for (int32_t k = from; k < to; k++) place[columns[k]] = k - from;
     for (int32_t s = start[row]; s < start[row + 1]; s++) {
       int32_t a = slots[s] % width;
@@ -161,13 +162,13 @@ int add_cells(int32_t count, const integral *integrals, const double *constants,
   size_t size = (size_t)map->width * map->width;
   double *block = malloc((size + 3 * (size_t)nodes) * sizeof(double));
   int32_t *at = calloc(count + 1, sizeof(int32_t));
-  double *place = block + size;
-  const uint8_t unpermuted[2] = {0, 0};
   if (!block || !at) {
     free(block);
     free(at);
     return 1;
   }
+  double *place = block + size;
+  const uint8_t unpermuted[2] = {0, 0};
   for (int32_t cell = 0; cell < map->count; cell++) {
     int found = 0;
     for (int32_t i = 0; i < count; i++) {

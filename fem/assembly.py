@@ -22,8 +22,9 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 
 NO_ROOM = "no memory for an element matrix"
+NO_OFFSET = {1: "dofs that no cell couples", 2: "a row of the tangent has more than 65535 entries"}
 
-_SOURCE = Path(__file__).with_suffix(".c")
+_SOURCES = [Path(__file__).with_suffix(".c")]
 _DECLARATIONS = """
 typedef struct { uintptr_t kernel; int32_t count, stride; const int32_t *cell, *facet;
                  const double *values; } integral;
@@ -109,8 +110,13 @@ class Assembler:
     """
 
     def __init__(self, comm: MPI.Comm, form: Any, space: Any, ties: Ties) -> None:
+<<<<<<< HEAD
         self._code = kernels.library(comm, _SOURCE, _DECLARATIONS)
         self._form, self._integrals = form, compat.integrals(form, self._code.ffi)
+=======
+        self._code = kernels.library(comm, _SOURCES, _DECLARATIONS)
+        self._form, self._integrals = form, compat.integrals(form)
+>>>>>>> robust
         self._rising = [np.argsort(part.cells, kind="stable") for part in self._integrals]
         self._points, self._corners = compat.coordinates(space.mesh)
         ghosts = compat.ghost_numbers(space)
@@ -182,7 +188,7 @@ class Assembler:
         place = np.full(self._size, -1, dtype=np.int32)
         ints = [self._ints(array) for array in (slots.start, slots.slots, slots.dofs)]
         for part in (self._inner, self._outer):
-            missed = self._code.lib.offsets(
+            why = self._code.lib.offsets(
                 len(part.begin) - 1,
                 part.low,
                 part.high,
@@ -193,8 +199,8 @@ class Assembler:
                 self._ints(place),
                 self._pointer("uint16_t *", offset),
             )
-            if missed:
-                raise ValueError("dofs that no cell couples")
+            if why:
+                raise ValueError(NO_OFFSET[why])
         pointers = (
             ints[2],
             self._pointer("int16_t *", slots.order),

@@ -13,7 +13,7 @@ import platform
 import shutil
 import sys
 import sysconfig
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -135,19 +135,19 @@ def compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
         logging.disable(previous)
 
 
-def library(comm: MPI.Comm, source: Path, declarations: str) -> Any:
-    """A C file of ours as a cffi module with `lib` and `ffi`, kept beside the forms; collective.
+def library(comm: MPI.Comm, sources: Sequence[Path], declarations: str) -> Any:
+    """C files of ours as a cffi module with `lib` and `ffi`, kept beside the forms; collective.
 
     Args:
         comm: communicator.
-        source: the C file.
+        sources: the C files, compiled as one, in this order.
         declarations: of its functions and types, for cffi.
 
     Raises:
         MachineError: no C compiler, or it failed.
     """
-    text = source.read_text()
-    name = f"{source.stem}_{hashlib.sha1((declarations + text).encode()).hexdigest()}"
+    text = "\n".join(source.read_text() for source in sources)
+    name = f"{sources[-1].stem}_{hashlib.sha1((declarations + text).encode()).hexdigest()}"
 
     @dolfinx.jit.mpi_jit_decorator
     def load(options: dict[str, Any]) -> Any:

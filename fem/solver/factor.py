@@ -7,7 +7,6 @@ whose solutions the layers do not bring to round-off, from then on.
 from __future__ import annotations
 
 import contextlib
-import sys
 import time
 from collections.abc import Sequence
 
@@ -245,8 +244,6 @@ class Factor:
     def _leave(self, error: ArithmeticError) -> None:
         """Go over to MUMPS."""
         self.left, self._layers = str(error), None
-        if self._matrix.getComm().getRank() == 0:
-            print(f"fiberbend: MUMPS goes on: {self.left}", file=sys.stderr, flush=True)
         self._general.renew()
 
     @property

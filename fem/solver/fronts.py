@@ -30,7 +30,7 @@ KEPT = 64
 TINY = 1e-14
 """A pivot below this part of the greatest before in its block counts as one of another sign."""
 
-_SOURCE = Path(__file__).with_suffix(".c")
+_SOURCES = [Path(__file__).with_name(name) for name in ("tables.c", "fronts.c")]
 _BLAS = (
     *("dgemm_", "dsyrk_", "dtrsm_", "dgemv_", "dtrsv_"),
     *("dsytrf_", "dsyconv_"),
@@ -42,7 +42,7 @@ _DECLARATIONS = f"""
 typedef struct {{ ...; }} blas_t;
 typedef struct {{ int fronts; {_TABLES} }} plan_t;
 void bind(blas_t *, const uintptr_t *);
-void sums(int32_t, const int32_t *, const int32_t *, const int64_t *, int64_t *);
+void sums(int32_t, const int32_t *, const int32_t *, const uint64_t *, uint64_t *);
 int borders(int32_t, const int32_t *, const int32_t *, const int64_t *, const int32_t *,
             const int32_t *, const int32_t *, const int32_t *, int32_t *, int64_t *, int32_t *,
             int64_t);
@@ -62,10 +62,10 @@ void residual(int32_t, int32_t, const int32_t *, const int32_t *, const double *
 
 
 class Code:
-    """The compiled fronts.c, and the BLAS that PETSc uses; collective."""
+    """The compiled tables.c and fronts.c, and the BLAS that PETSc uses; collective."""
 
     def __init__(self, comm: MPI.Comm) -> None:
-        module = kernels.library(comm, _SOURCE, _DECLARATIONS)
+        module = kernels.library(comm, _SOURCES, _DECLARATIONS)
         self.ffi, self.lib = module.ffi, module.lib
         library = ctypes.CDLL(PETSc.__file__)
         found = [ctypes.cast(getattr(library, name), ctypes.c_void_p).value for name in _BLAS]
@@ -74,7 +74,7 @@ class Code:
 
     def pointer(self, array: npt.NDArray[Any]) -> Any:
         """An array's data for C."""
-        kind = {"f": "double *", "u": "uint8_t *"}.get(array.dtype.kind, f"{array.dtype}_t *")
+        kind = "double *" if array.dtype.kind == "f" else f"{array.dtype}_t *"
         return self.ffi.cast(kind, self.ffi.from_buffer(array, require_writable=False))
 
     def pointers(self, *arrays: npt.NDArray[Any]) -> list[Any]:
@@ -92,11 +92,14 @@ def matrix_graph(code: Code, begin: Ints, columns: Ints, negative: npt.NDArray[n
         negative: constraints.
     """
     size = len(begin) - 1
-    key = np.random.default_rng(0).integers(1, 2**62, size)
-    total = np.zeros(size, dtype=np.int64)
+    key = np.random.default_rng(0).integers(1, 2**62, size, dtype=np.uint64)
+    total = np.zeros(size, dtype=np.uint64)
     code.lib.sums(size, *code.pointers(begin, columns, key, total))
     _, first, group, weight = np.unique(
-        2 * total + negative, return_index=True, return_inverse=True, return_counts=True
+        2 * total + negative.astype(np.uint64),
+        return_index=True,
+        return_inverse=True,
+        return_counts=True,
     )
     group = group.astype(np.int32)
     kept = np.zeros(size, dtype=bool)

@@ -113,6 +113,8 @@ class Recording(Hook):
         self.warn(messages.remarks(report))
         if walls is not None and walls.passed is not None:
             self.warn([messages.walls_passed(walls.passed)])
+        if why := self._assembly.newton.factor.left:
+            self.warn([messages.left_to_mumps(why)])
 
     def warn(self, lines: Sequence[str], silent: bool = False) -> None:
         """Report each line once; `silent`: with the others at the end only."""

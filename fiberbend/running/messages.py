@@ -81,6 +81,15 @@ def remarks(report: Report) -> list[str]:
     return lines
 
 
+def left_to_mumps(why: str) -> str:
+    """A line on a body that is factorised in layers no more.
+
+    Args:
+        why: of the solver.
+    """
+    return f"MUMPS goes on, with the same results but slower: {why}"
+
+
 def _matters(point: Critical) -> bool:
     """Limits, lost stability, and stability regained; not one unstable mode less of several."""
     return point.kind == "limit" or point.after > point.before or point.after == 0

@@ -199,6 +199,7 @@ class _Run:
             recording.warn([messages.WHOLE])
         progress.phase("solve")
         report = assembly.march.run(assembly.ramps, [recording])
+        recording.remark(report)
         if report.reason == ACROSS and mesh.half and self.may_leave:
             progress.message(messages.WHOLE)
             raise _AcrossError

@@ -23,7 +23,7 @@ from tests.fem.parts import SHORT, Bender, Floats, bender
 
 def short(comm: MPI.Comm, rules: Rules | None = None) -> Bender:
     """The short actuator with caps and a sheath."""
-    mesh = hexahedral_body(SHORT, MeshSize(axial=6, section=1, half=True))
+    mesh = hexahedral_body(SHORT, MeshSize(axial=12, section=1, half=True))
     return bender(rules, domain=Domain(mesh, comm))
 
 

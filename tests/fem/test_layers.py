@@ -29,7 +29,7 @@ from tests.fem.parts import SHORT, law, perturb, stub, winding
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 
-PLANE, INNER, PRESSURES, COUNT = 7, 90, 20, 12
+PLANE, INNER, PRESSURES, COUNT = 7, 90, 20, 8
 """Unknowns of a plane, between planes, constraints between planes, and number of planes."""
 
 
@@ -116,7 +116,7 @@ def test_values_may_change_sign_between_factorisations() -> None:
 
 
 @pytest.mark.usefixtures("_all_in_layers")
-def test_a_singular_front_is_left_to_mumps_and_said(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_singular_front_is_left_to_mumps_and_said() -> None:
     # two unknowns between planes that meet nothing but a plane: pivots come only with that
     matrix, negative = chain(4)
     size = len(matrix)
@@ -133,8 +133,7 @@ def test_a_singular_front_is_left_to_mumps_and_said(capsys: pytest.CaptureFixtur
     (x,) = kept.solve_many([b])
     assert np.linalg.norm(whole @ x - b) < 1e-9 * np.linalg.norm(b)
     assert kept.negative_pivots == inertia(whole)
-    assert kept.left
-    assert "MUMPS goes on" in capsys.readouterr().err
+    assert "singular" in kept.left
 
 
 @pytest.mark.parametrize("pivot", [1e-6, 1e-10, 1e-15])
@@ -155,6 +154,26 @@ def test_small_pivots_are_refined_or_refused(pivot: float) -> None:
         assert pivot < 1e-8
     else:
         assert np.linalg.norm(whole @ x[0] - b[0]) < 1e-9 * np.linalg.norm(b)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_what_is_no_number_is_refused_and_leaves_nothing_behind(bad: float) -> None:
+    matrix, negative = chain(8)
+    petsc = stored(matrix)
+    layers = Layers(petsc, negative)
+    layers.renew()
+    before = layers.solve(np.ones((1, len(matrix))))
+    for row, column in np.argwhere(np.triu(matrix) != 0)[::9001]:
+        petsc.setValue(int(row), int(column), bad)
+        petsc.assemble()
+        with pytest.raises(ZeroDivisionError):
+            layers.renew()
+        petsc.setValue(int(row), int(column), matrix[row, column])
+    petsc.assemble()
+    layers.renew()
+    assert np.array_equal(layers.solve(np.ones((1, len(matrix)))), before)
+    with pytest.raises(InaccurateError):
+        layers.solve(np.full((1, len(matrix)), np.nan))
 
 
 def scene_of(half: bool, cell: str = "hexahedron") -> Scene:

@@ -9,8 +9,11 @@ from typing import Any
 
 import pytest
 
-from fiberbend.columns import ANGLE, PRESSURE
+from fem.solver.layers import InaccurateError, Layers
+from fiberbend import run
+from fiberbend.columns import ANGLE, ITERATIONS, PRESSURE
 from fiberbend.effects.effect import Effect
+from fiberbend.models.result import RunResult
 from fiberbend.plan import doubts as known
 from fiberbend.plan.doubts import doubts
 from fiberbend.plan.memory import Room
@@ -152,3 +155,29 @@ def test_a_run_without_doubts_says_nothing(tmp_path: Path) -> None:
     )
     assert run["warnings"] == []
     assert not any("warning" in line for line in printed)
+
+
+@pytest.mark.parametrize("where", ["renew", "solve"])
+def test_a_body_left_to_mumps_midway_ends_the_same_and_says_so(
+    where: str, small_run: RunResult, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    original, calls = getattr(Layers, where), 0
+    error = {"renew": ZeroDivisionError, "solve": InaccurateError}[where]
+
+    def fails_at_the_fourth(self: Layers, *args: Any) -> Any:
+        nonlocal calls
+        calls += 1
+        if calls == 4:
+            raise error("the fourth fails")
+        return original(self, *args)
+
+    monkeypatch.setattr(Layers, where, fails_at_the_fourth)
+    found = run(small(output={"at_angles": ["8 deg"], "at_pressures": ["30 kPa"]}))
+    assert calls == 4
+    told = [line for line in found.run["warnings"] if "MUMPS" in line]
+    assert told == ["MUMPS goes on, with the same results but slower: the fourth fails"]
+    assert not any("MUMPS" in line for line in small_run.run["warnings"])
+    assert len(found.rows) == len(small_run.rows)
+    for mine, theirs in zip(found.rows, small_run.rows, strict=True):
+        for key in (ANGLE, PRESSURE, ITERATIONS):
+            assert mine[key] == pytest.approx(theirs[key], rel=1e-8, abs=1e-12)
