@@ -110,13 +110,8 @@ class Assembler:
     """
 
     def __init__(self, comm: MPI.Comm, form: Any, space: Any, ties: Ties) -> None:
-<<<<<<< HEAD
-        self._code = kernels.library(comm, _SOURCE, _DECLARATIONS)
-        self._form, self._integrals = form, compat.integrals(form, self._code.ffi)
-=======
         self._code = kernels.library(comm, _SOURCES, _DECLARATIONS)
-        self._form, self._integrals = form, compat.integrals(form)
->>>>>>> robust
+        self._form, self._integrals = form, compat.integrals(form, self._code.ffi)
         self._rising = [np.argsort(part.cells, kind="stable") for part in self._integrals]
         self._points, self._corners = compat.coordinates(space.mesh)
         ghosts = compat.ghost_numbers(space)
