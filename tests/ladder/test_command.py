@@ -380,7 +380,7 @@ def test_a_signal_ends_it_in_order(tmp_path: Path) -> None:
         said.append(line)
         if line.startswith("[ 1/5]"):
             first.send_signal(signal.SIGINT)
-    assert first.wait(60) == 128 + signal.SIGINT
+    assert first.wait(60) == 128 + signal.SIGINT, "".join(said)
     assert "interrupted; the same command goes on where it was\n" in said
     assert list((out / "rungs").glob("*.json"))
 
