@@ -108,25 +108,18 @@ def measured(section: int, axial: float, ranks: int, most_s: float) -> Point | s
     )
 
 
-def per_iteration(point: Point) -> float:
-    """Seconds of a Newton iteration with a factorisation of its own."""
-    parts = point.seconds
-    each = (parts["factor"] + parts["tangent"]) / point.factorisations
-    return each + (point.seconds["all"] - parts["factor"] - parts["tangent"]) / point.iterations
-
-
 def table(points: Sequence[Point]) -> list[str]:
     """Rows of all runs."""
     lines = [
         "| mesh.section | mesh.axial, mm | unknowns | ranks | iterations | factorisations "
-        "| solve, s | factor | tangent | an iteration, s | memory, GB |",
-        "|---|---|---|---|---|---|---|---|---|---|---|",
+        "| solve, s | factor | tangent | memory, GB |",
+        "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for p in points:
         lines.append(
             f"| {p.section} | {p.axial:g} | {p.unknowns} | {p.ranks} | {p.iterations} "
             f"| {p.factorisations} | {p.seconds['all']:.1f} | {p.seconds['factor']:.1f} "
-            f"| {p.seconds['tangent']:.1f} | {per_iteration(p):.2f} | {p.memory_mb / 1000:.2f} |"
+            f"| {p.seconds['tangent']:.1f} | {p.memory_mb / 1000:.2f} |"
         )
     return lines
 
@@ -147,7 +140,7 @@ def picture(points: Sequence[Point], fits: dict[str, Fit]) -> None:
         n = np.array([p.unknowns for p in chosen])
         name = f"{ranks} rank{'s' * (ranks > 1)}"
         for panel, values, key in (
-            (left, [per_iteration(p) for p in chosen], f"time {ranks}"),
+            (left, [p.seconds["all"] for p in chosen], f"time {ranks}"),
             (right, [p.memory_mb / 1000 for p in chosen], f"memory {ranks}"),
         ):
             panel.loglog(n, values, mark, color=color, label=name)
@@ -155,7 +148,7 @@ def picture(points: Sequence[Point], fits: dict[str, Fit]) -> None:
                 line = np.geomspace(n.min(), n.max(), 50)
                 text = f"unknowns to the power {fits[key].exponent:.2f}"
                 panel.loglog(line, fits[key](line), "-", color=color, lw=1, label=text)
-    left.set_ylabel("a Newton iteration with a factorisation, s")
+    left.set_ylabel("solve to 45°, s")
     right.set_ylabel("greatest memory, GB")
     for panel in (left, right):
         panel.set_xlabel("unknowns")
@@ -176,15 +169,15 @@ def write(points: Sequence[Point], missing: Sequence[str]) -> None:
         if len(chosen) < 3:
             continue
         n = [p.unknowns for p in chosen]
-        fits[f"time {ranks}"] = fitted(n, [per_iteration(p) for p in chosen])
+        fits[f"time {ranks}"] = fitted(n, [p.seconds["all"] for p in chosen])
         fits[f"memory {ranks}"] = fitted(n, [p.memory_mb / 1000 for p in chosen])
     picture(points, fits)
     lines = [
         "# Growth of time and memory",
         "",
         f"Made by `make growth` on {points[0].machine}: the baseline's body, every turn of the "
-        "winding by itself, bent to 45°. An iteration is one of Newton's method with a tangent "
-        "and a factorisation of its own.",
+        "winding by itself, bent to 45°. Factorisations are those of Newton's method; `factor` has "
+        "those of the response at rest and of the stability at the end too.",
         "",
         "![Time and memory against unknowns](../images/growth.png)",
         "",
