@@ -372,7 +372,13 @@ def test_killed_it_goes_on_and_leaves_no_process(tmp_path: Path) -> None:
 def test_a_signal_ends_it_in_order(tmp_path: Path) -> None:
     out = tmp_path / "out"
     first = subprocess.Popen(
-        command(out), cwd=tmp_path, env=environment(), stdout=subprocess.PIPE, text=True
+        command(out),
+        cwd=tmp_path,
+        env=environment(),
+        stdout=subprocess.PIPE,
+        text=True,
+        # a shell's & and nohup ignore it, and so would the ladder
+        preexec_fn=functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
     )
     assert first.stdout is not None
     said = []
