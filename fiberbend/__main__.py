@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 from typing import NoReturn
 
 from fiberbend.process import signals
@@ -17,6 +18,8 @@ def entry() -> NoReturn:
     # imports and the derivation of forms make many objects that stay: looked at after every 700
     # of them, Python's default, a run of a section takes 3 % longer
     gc.set_threshold(NEW_OBJECTS)
+    # pydantic would look through every installed package for plugins, which nothing here uses
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     from fiberbend.cli import entry as command
 
     command()

@@ -5,7 +5,6 @@ Exit codes: 0 done, 1 wrong input, 2 a solution that failed, 128 and its number 
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -341,6 +340,8 @@ def sweep(
 )
 def schema() -> None:
     """Print the JSON schema of a case, for editors."""
+    import json
+
     from fiberbend.reader.json_schema import json_schema
 
     say(json.dumps(json_schema(), indent=2, ensure_ascii=False))

@@ -11,7 +11,6 @@ import contextlib
 import hashlib
 import json
 import os
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -125,6 +124,8 @@ def _own(flags: set[str]) -> str | None:
 
 
 def _asked() -> dict[str, Any] | None:
+    import subprocess
+
     root = str(Path(__file__).resolve().parent.parent)
     # mpirun's variables would make the process a rank
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_"))}

@@ -290,11 +290,11 @@ class Case(Spec):
     for it, and the run reports its estimated error beside its result."""
     compare: tuple[Literal["paper"], ...] = Field(default=(), strict=False)
     """What a run is put beside on top of the cheaper models: the figures of the paper."""
-    mesh: Mesh = Mesh()
+    mesh: Mesh = Mesh.model_construct()
     """Elements."""
-    solver: Solver = Solver()
+    solver: Solver = Solver.model_construct()
     """Steps and tolerance."""
-    output: Output = Output()
+    output: Output = Output.model_construct()
     """What the run leaves."""
 
     @field_serializer("effects")

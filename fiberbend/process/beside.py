@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import atexit
 import contextlib
-import ctypes
 import importlib
 import os
-import pickle
 import signal
-import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from typing import Any, Generic, TypeVar
@@ -31,6 +28,8 @@ class _Child:
     """
 
     def __init__(self, modules: Sequence[str] = ()) -> None:
+        import subprocess
+
         read, write = os.pipe()
         self.answer = os.fdopen(read, "rb")
         try:
@@ -108,6 +107,8 @@ class Beside(Generic[T]):
         self._child: _Child | None = None
         if not _Setting.enabled:
             return
+        import pickle
+
         task = pickle.dumps((function, arguments))
         child, _Setting.waiting = _Setting.waiting, None
         try:
@@ -124,6 +125,8 @@ class Beside(Generic[T]):
         """
         if self._child is None:
             return self._function(*self._arguments)
+        import pickle
+
         try:
             value, error = pickle.load(self._child.answer)
         except (EOFError, pickle.UnpicklingError):
@@ -151,6 +154,9 @@ def serve(target: int, parent: int, modules: Sequence[str]) -> None:
         parent: process that waits for it.
         modules: what is imported before the task is there.
     """
+    import ctypes
+    import pickle
+
     for number in (signal.SIGINT, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
     ctypes.CDLL(None).prctl(_DIE_WITH_PARENT, signal.SIGKILL)

@@ -16,7 +16,6 @@ from fiberbend.case.case import (
     Output,
     Solver,
 )
-from fiberbend.case.measured import what_is_wrong
 from fiberbend.effects.effect import (
     Draft,
     Effect,
@@ -341,6 +340,8 @@ def _output(parts: ValidParts) -> Iterator[Problem]:
     if pressure is not None and pressure.angle is not None:
         yield from _up_to(pressure.angle, output)
     if output.measured is not None:
+        from fiberbend.case.measured import what_is_wrong
+
         if pressure is None:
             wrong: str | None = "no effect without pressure, expected no value"
         else:

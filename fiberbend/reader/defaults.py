@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from fiberbend.accuracy import choice as accuracy
 from fiberbend.case.case import Case
 from fiberbend.models.choice import MODELS, choose_model
 
@@ -19,8 +18,11 @@ def complete(case: Case) -> Case:
     case = case.model_copy(update={"materials": case.materials.model_copy(update=plain)})
     named = MODELS.get(case.model)
     offers = None if named is None else named.offers
-    if case.accuracy is not None and (found := accuracy.complete(case)) is not None:
-        return found
+    if case.accuracy is not None:
+        from fiberbend.accuracy import choice as accuracy
+
+        if (found := accuracy.complete(case)) is not None:
+            return found
     effects = tuple(effect.completed(offers) for effect in case.effects)
     case = case.model_copy(update={"effects": effects})
     model, _ = choose_model(case)

@@ -9,7 +9,6 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from fiberbend.accuracy import choice as accuracy
 from fiberbend.case.case import (
     ActuatorSpec,
     Case,
@@ -139,7 +138,10 @@ def parse_case(data: Mapping[str, Any]) -> Case:
     problems += check(parts)
     if problems or case is None:
         raise CaseError(problems)
-    problems += [Problem(path, text) for path, text in accuracy.problems(case)]
+    if case.accuracy is not None:
+        from fiberbend.accuracy import choice as accuracy
+
+        problems += [Problem(path, text) for path, text in accuracy.problems(case)]
     if problems:
         raise CaseError(problems)
     case = complete(case)

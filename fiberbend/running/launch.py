@@ -6,7 +6,6 @@ import functools
 import os
 import sys
 import time
-import traceback
 from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
@@ -16,9 +15,7 @@ from fiberbend.process import beside, ranks
 from fiberbend.process.ranks import rank as rank
 from fiberbend.process.ranks import size as size
 from fiberbend.process.signals import Interrupted
-from machine import origin
 from machine.folders import settle
-from machine.kernel import settle_kernel, slow_kernel
 
 if TYPE_CHECKING:
     from fiberbend.case.case import Case
@@ -75,6 +72,8 @@ def start_mpi() -> None:
     What is set for it is taken back: an mpirun that is launched from here must not find it. An
     error that nobody catches ends all ranks from here on.
     """
+    from machine.kernel import settle_kernel
+
     settle_folders()
     settle_kernel()
     alone = not ranks.launched()
@@ -94,6 +93,9 @@ def start_mpi() -> None:
 @functools.cache
 def _say_slow_kernel() -> None:
     """Once, where a script has loaded numpy before this program could choose."""
+    from machine import origin
+    from machine.kernel import slow_kernel
+
     line = slow_kernel(origin.blas()) if "numpy" in sys.modules else ""
     if line and rank() == 0:
         say(f"fiberbend: {line}", sys.stderr)
@@ -207,6 +209,8 @@ def crash(error: BaseException, out: Path) -> int:
     Returns:
         The exit code, where all ranks end by themselves.
     """
+    import traceback
+
     log = out / f"error.rank{rank()}.log" if out.is_dir() else Path(f"fiberbend.rank{rank()}.log")
     what = traceback.format_exception_only(error)[-1].strip().splitlines()[0]
     try:
