@@ -10,6 +10,9 @@ import numpy as np
 from analytic.stress import Floats
 
 
+_NEXT, _LAST = [1, 2, 0], [2, 0, 1]
+
+
 def cross_matrix(vector: Floats) -> Floats:
     """The matrix of the cross product with a vector, [a×] x = a × x.
 
@@ -77,7 +80,7 @@ def centre_line(spin: Floats, stretch: complex, centre: Floats) -> tuple[Floats,
     Returns:
         |g|; ω on (d1, d2, t), (3,), rad/mm of z; the axes as columns d1, d2, t, (3, 3).
     """
-    carried = np.cross(spin, centre) + stretch * np.array([0.0, 0.0, 1.0])
+    carried = _product(spin, centre) + stretch * np.array([0.0, 0.0, 1.0])
     length = np.sqrt(np.sum(carried * carried))
     t = carried / length
     axes = np.eye(3, dtype=t.dtype)
@@ -102,8 +105,14 @@ def section_axes(a_x: Floats, a_y: Floats, along: Floats) -> Floats:
         Rotations with d1, d2 and t as columns, (..., 3, 3).
     """
     t = _unit(along)
-    d1 = _unit(a_x - np.sum(a_x * t, axis=-1, keepdims=True) * t + np.cross(a_y, t))
-    return np.stack([d1, np.cross(t, d1), t], axis=-1)
+    d1 = _unit(a_x - np.sum(a_x * t, axis=-1, keepdims=True) * t + _product(a_y, t))
+    return np.stack([d1, _product(t, d1), t], axis=-1)
+
+
+def _product(a: Floats, b: Floats) -> Floats:
+    """a × b, (..., 3); of few vectors numpy's own takes four times as long."""
+    product: Floats = a[..., _NEXT] * b[..., _LAST] - a[..., _LAST] * b[..., _NEXT]
+    return product
 
 
 def _unit(vectors: Floats) -> Floats:
@@ -149,7 +158,7 @@ class CentreLine:
             a_y: of its axis y.
         """
         stretch, rates, axes = centre_line(spin, carried, centre)
-        section = section_axes(a_x, a_y, np.cross(a_x, a_y))
+        section = section_axes(a_x, a_y, _product(a_x, a_y))
         return cls(spin, carried, centre, float(stretch), rates, axes, section)
 
     def advance(self, position: Floats) -> Floats:
@@ -161,7 +170,7 @@ class CentreLine:
         Returns:
             In the frame, (..., 3); its norm is the stretch of the point's line.
         """
-        along: Floats = np.cross(self.spin, position) + np.array([0.0, 0.0, self.carried])
+        along: Floats = _product(self.spin, position) + np.array([0.0, 0.0, self.carried])
         return along
 
     def turning(self, z: Floats) -> tuple[Floats, Floats]:

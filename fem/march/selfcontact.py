@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from typing import Protocol
 
 import numpy as np
@@ -40,6 +41,7 @@ class Pose:
     reach: Floats
 
 
+@functools.cache
 def directions() -> Floats:
     """Normals of a polygon's sides, (m, 2)."""
     angle = 2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
@@ -78,7 +80,7 @@ def clearance(pose: Pose, most: float = np.inf) -> float:
     """
     vertices = _vertices(pose.reach)
     size = float(np.ptp(vertices, axis=1).max())
-    turned = np.einsum("nab,nmb->nma", pose.rotation[:, :, :2], vertices)
+    turned = vertices @ pose.rotation[:, :, :2].swapaxes(1, 2)
     points = pose.centre[:, None] + turned
     radius = np.linalg.norm(vertices, axis=2).max()
     middles = points.mean(axis=1)

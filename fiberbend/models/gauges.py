@@ -7,6 +7,7 @@ from collections.abc import Collection
 import numpy as np
 import numpy.typing as npt
 
+from analytic.path import CentreLine as UniformLine
 from fem.kinematics.uniform import CURVATURE, STRETCH, Uniform
 from fem.march.records import State
 from fem.results.centre_line import CentreLine
@@ -109,17 +110,18 @@ class UniformGauge:
         self._crown = int(np.argmax(data.nodes[:, 1]))
         self._pin = data.points["pin"]
         self._per_length = body.symmetry_factor / actuator.length
+        self._read: tuple[State, UniformLine] | None = None
 
     def tip(self, state: State) -> tuple[float, float, float]:
         """Centroid of the tip cap's outer face, mm."""
         actuator, height = self._actuator, float(self._body.fit.rest[1])
-        axes, centre = self._body.centre_line().sections(np.array([actuator.length]))
+        axes, centre = self._line(state).sections(np.array([actuator.length]))
         x, y, z = centre[0] + axes[0] @ [0.0, actuator.face_height - height, actuator.cap]
         return float(x), height + float(y), float(z)
 
     def columns(self, state: State) -> dict[str, float]:
         """Side angle and twist where it twists, and stretches of three lines."""
-        line, length = self._body.centre_line(), self._actuator.length
+        line, length = self._line(state), self._actuator.length
         row = {}
         if self._body.twisted:
             row = _turns(length * line.rates)
@@ -132,6 +134,12 @@ class UniformGauge:
             col.FLOOR_STRETCH: floor,
             col.CROWN_STRETCH: crown,
         }
+
+    def _line(self, state: State) -> UniformLine:
+        """The centroids' line at a state, at which the body is; read once."""
+        if self._read is None or self._read[0] is not state:
+            self._read = state, self._body.centre_line()
+        return self._read[1]
 
     def _place(self, state: State, node: int) -> Floats:
         """Of a node in the turning frame, mm, (3,)."""
@@ -152,7 +160,7 @@ class UniformGauge:
         if not self._held:
             return {col.TIP_FORCE: moment / self._actuator.cap, col.MOMENT: moment}
         force = self._per_length * state.measures[f"conjugate {STRETCH}"]
-        moment -= force * float(self._body.centre_line().centre[1])
+        moment -= force * float(self._line(state).centre[1])
         return {
             col.TIP_FORCE: moment / self._actuator.cap,
             col.MOMENT: moment,
