@@ -11,7 +11,7 @@ export OMPI_MCA_rmaps_base_oversubscribe := 1
 
 .DEFAULT_GOAL := help
 .PHONY: help setup tools demo sweep test browser notebook verify hard survive tables speed accuracy \
-    calibration knowledge growth peers check format docs pictures schema clean
+    calibration knowledge growth times peers check format docs pictures schema clean
 
 help: ## list the commands
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -72,6 +72,9 @@ speed: setup ## measure what an answer costs in each model; four minutes on an i
 
 growth: setup ## time and memory on finer and finer bodies, one and two ranks; an hour; resumable
 	$(BIN)/python -m bench.growth
+
+times: setup ## fit the times and memory of `fiberbend plan` to runs; an idle machine, three minutes
+	$(BIN)/python -m bench.plan_times $(TIMES)
 
 peers: setup ## bend the same actuator in CalculiX, felupe and plain dolfinx; half an hour
 	bench/peers/setup.sh

@@ -9,7 +9,6 @@ import numpy as np
 
 from analytic.stress import Floats
 
-
 _NEXT, _LAST = [1, 2, 0], [2, 0, 1]
 
 

@@ -206,6 +206,6 @@ def _candidate(case: Case, model: MeshedModel) -> Candidate:
     steps = 2 + len(case.output.at_angles) + len(case.output.at_pressures)
     if not case.straight:
         steps += math.ceil(abs(angle) / turn)
-    seconds = model.start_s + steps * model.step_seconds(case, size)
+    seconds = model.start_seconds(size) + steps * model.step_seconds(case, size)
     seconds += expected.seconds(case) if waits(case) else 0.0
     return Candidate(case, model, seconds, model.memory_mb(size), estimate(case, model))

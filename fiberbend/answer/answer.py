@@ -10,13 +10,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from fiberbend import columns as col
-from fiberbend.accuracy.words import answered, verdict
 from fiberbend.answer.numbers import number, quantity
 from fiberbend.answer.touch import touches
 from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
 from fiberbend.models.model import ModelKind
-from fiberbend.plan.plan import errors
+from fiberbend.plan.doubts import errors
 
 WIDTH = 100
 """Columns of the printed answer."""
@@ -316,10 +315,13 @@ def _strain(run: Mapping[str, Any]) -> Iterator[Entry]:
 
 def _errors(case: Case, model: ModelKind, run: Mapping[str, Any]) -> Iterator[Entry]:
     """How far the model's answer is expected to be off, with the source."""
-    estimated = answered(run)
-    if estimated is not None:
-        yield Entry("estimated error", *estimated)
-        return
+    if run.get("accuracy"):
+        from fiberbend.accuracy.words import answered
+
+        estimated = answered(run)
+        if estimated is not None:
+            yield Entry("estimated error", *estimated)
+            return
     for index, line in enumerate(errors(case, model)):
         yield Entry("" if index else "expected error", line)
 
@@ -354,8 +356,12 @@ def _trust(run: Mapping[str, Any]) -> str:
     parts, warnings = [], run.get("warnings") or ()
     if run.get("status") != "converged":
         parts.append("the values up to the end of the run are valid")
-    if accuracy := verdict(run):
-        parts.append(accuracy)
+    accuracy = ""
+    if run.get("accuracy"):
+        from fiberbend.accuracy.words import verdict
+
+        accuracy = verdict(run)
+        parts += [accuracy] if accuracy else []
     beside = _beside(run, "section")
     text = beside.get("text")
     # what is not expected stands among the warnings

@@ -39,3 +39,8 @@ def as_section(case: Case, load: Effect) -> Case:
             "output": Output(pictures=False, fields=False),
         }
     )
+
+
+def section_guides(case: Case) -> bool:
+    """Whether a section bends as the body of a case does, between its ends."""
+    return case.inflation is not None and all(effect.follows_section() for effect in case.effects)

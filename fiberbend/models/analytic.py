@@ -20,7 +20,7 @@ class Analytic(ModelKind):
     line = lines.ZERO_FIT
     fills = ModelKind.fills | {MIDDLE}
     agreement = 11.0
-    start_s = 1.5
+    start_s = 0.6
     pictures_s = (1.0, 0.0)
 
     def limits(self, case: Case) -> Iterator[Objection]:

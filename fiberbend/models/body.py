@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.case.section_beside import section_guides
 from fiberbend.columns import BODY, MIDDLE
 from fiberbend.effects.effect import (
     CHAMBER,
@@ -33,7 +34,6 @@ from fiberbend.models.model import (
     count,
     found_pressure,
     pieces,
-    thread_mb,
 )
 
 if TYPE_CHECKING:
@@ -43,10 +43,9 @@ if TYPE_CHECKING:
     from geometry.mesh.data import MeshData
     from geometry.sections.size import MeshSize
 
-_ITERATIONS = 3.5
-"""Newton iterations in a step of free bending."""
 _TOUCHING_ITERATIONS = 6.0
-"""The same with roof and post, under which the sheath yields, and along obstacles."""
+"""Newton iterations in a step with roof and post, under which the sheath yields, and along
+obstacles."""
 _RESOLVED = ((0.5, 1.0), (2 / 3, 0.85), (4 / 3, 0.2))
 """Length of the elements over the pitch, and the part of the bulging between turns they give."""
 _END = 1 + 1e-9
@@ -67,9 +66,12 @@ class Body(MeshedModel):
     agreement = 2.0
     turn = math.radians(60)
     first_turn = math.radians(20)
+    guided_turn = math.radians(90)
+    guided_first = math.radians(20)
+    guided_growth = 3.0
     memory = 3
     straight_start = 1.0
-    start_s = 6.0
+    priced = "body"
     compile_s = 20.0
     pictures_s = (5.0, 2.0)
     fields_s = 1.0
@@ -148,16 +150,11 @@ class Body(MeshedModel):
         return ProblemSize(counts.cells, kind, unknowns, found_pressure(case), layers, segments)
 
     def step_seconds(self, case: Case, size: ProblemSize) -> float:
-        """Tangent by elements, factor by layers and by unknowns a layer.
-
-        As nested dissection of a long body has it, fitted to sections refined once and twice and to
-        elements of 2 to 6 mm.
-        """
-        tangent = (1.1e-4 if size.kind == "tetrahedra" else 5.3e-4) * size.elements
-        factor = 1.5e-7 * size.layers * (size.unknowns / size.layers) ** 1.75
-        iteration = 0.65 * (tangent + factor) + 2.8e-6 * size.unknowns
+        """More iterations where it touches."""
         touching = any(e.touches() or e.strips() is not None for e in case.effects)
-        return iteration * (_TOUCHING_ITERATIONS if touching else _ITERATIONS)
+        iterations = _TOUCHING_ITERATIONS if touching else None
+        counts = size.elements, size.unknowns, size.layers
+        return self.price(size).step_seconds(*counts, iterations)
 
     def ladder(self, case: Case) -> Iterator[dict[str, Any]]:
         """Long elements under a winding that is spread, parts of half a turn under turns."""
@@ -170,6 +167,11 @@ class Body(MeshedModel):
         for number, axial in itertools.product((1, 2), lengths):
             yield {"section": number, "axial": axial}
 
+    def largest_turn(self, case: Case) -> float:
+        """Longer steps where the section guides."""
+        usual = self.guided_turn if section_guides(case) else self.turn
+        return self.bounded_turn(case, case.solver.max_turn or usual)
+
     def rung(self, case: Case) -> Rung | None:
         """Nothing is known of tetrahedra."""
         if case.mesh.element == "tetrahedron":
@@ -177,11 +179,6 @@ class Body(MeshedModel):
         turns, axial = case.turns, case.mesh.axial
         layers = turns.pitch / 2 / axial if turns is not None and turns.discrete else 0.0
         return Rung(case.mesh.section, layers, axial)
-
-    def memory_mb(self, size: ProblemSize) -> float:
-        """Mostly the factor, and the thread's own matrices."""
-        factor = 1e-3 * size.unknowns * (size.unknowns / size.layers) ** 0.3
-        return 200 + factor + thread_mb(size.segments)
 
     def errors(self, case: Case) -> Iterator[str]:
         """Mesh, effects, ends."""

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from geometry.mesh.data import MeshData
     from geometry.sections.size import MeshSize
 
-_ITERATIONS = 3.3
-"""Newton iterations in a step."""
 _ERRORS = ((8, 0.3), (4, 0.5), (0, 1.9))
 """Layers a half pitch, and percent of the pressure for an angle from 5 to 360°
 (docs/evidence/uniform.md)."""
@@ -40,7 +38,7 @@ class Cell(UniformModel):
     turn = math.radians(45)
     first_turn = math.radians(10)
     memory = 4
-    start_s = 1.8
+    priced = "cell"
     compile_s = 20.0
     pictures_s = (5.0, 1.0)
     fields_s = 0.5
@@ -146,10 +144,6 @@ class Cell(UniformModel):
         """All slices of the length."""
         extent = self.slice(case, self.half(case)[0])[0]
         return size.elements * max(1.0, case.actuator.length / extent)
-
-    def step_seconds(self, case: Case, size: ProblemSize) -> float:
-        """By unknowns."""
-        return _ITERATIONS * 0.069 * (size.unknowns / 3285) ** 1.15
 
     def mesh_error(self, case: Case) -> float:
         """By layers a half pitch, and by the section."""

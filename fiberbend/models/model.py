@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 from fiberbend.case.case import Case, Mesh
 from fiberbend.columns import ELEMENTS, RUN
 from fiberbend.effects.effect import mirror_breakers
+from fiberbend.models.costs.price import Price, price
 
 if TYPE_CHECKING:
     from fem.effects.effect import Effect as Term
@@ -28,8 +29,8 @@ if TYPE_CHECKING:
     KinematicsFactory = Callable[[Domain, Iterable[str]], Kinematics]
 
 MACHINE = "two 2 GHz Xeon cores"
-"""Where seconds and memory of all models were measured: Debian 12, dolfinx 0.5, MUMPS with METIS,
-one BLAS thread a rank. Good to a factor of two."""
+"""Where seconds and memory of all models were measured, see docs/evidence/times.md: Debian 12,
+dolfinx 0.5, one BLAS thread a rank. Good to a factor of two."""
 ENDS_BEND = (
     "the whole body bends further than its middle, the baseline's by 0.6 to 1.4 % "
     "(docs/evidence/free.md)"
@@ -130,7 +131,7 @@ class ModelKind(ABC):
     """Percent of the pressure for an angle within which it agrees with the section model, apart
     from what rubber does between the turns of a winding."""
     start_s: ClassVar[float]
-    """Seconds to import, to mesh, to load compiled kernels, and for the section that guides it."""
+    """Seconds of a run without elements; see `MeshedModel.start_seconds`."""
     pictures_s: ClassVar[tuple[float, float]]
     """Seconds to draw: in all, and for each state that is asked for."""
     fields_s: ClassVar[float] = 0.0
@@ -227,10 +228,18 @@ class MeshedModel(ModelKind):
     """Greatest change of the angle in a step, rad: fine curves where steps are cheap."""
     first_turn: ClassVar[float]
     """The same for the first step."""
+    guided_turn: ClassVar[float]
+    """Greatest change of the angle in a step that the section's states guide, rad, of a body."""
+    guided_first: ClassVar[float]
+    """The same for the first step, from which the ends are learnt."""
+    guided_growth: ClassVar[float]
+    """Times that such a step may be longer than the one before."""
     memory: ClassVar[int]
     """States from which a step is extrapolated: more where steps are short."""
     straight_start: ClassVar[float]
     """Share of the load in the first step of an actuator that is kept straight."""
+    priced: ClassVar[str]
+    """The model whose prices are its own, see `fiberbend.models.costs.price`."""
     compile_s: ClassVar[float]
     """Seconds to compile a scene that is not in the cache."""
     layers_a_pitch: ClassVar[float] = 0.0
@@ -268,13 +277,25 @@ class MeshedModel(ModelKind):
     def size(self, case: Case) -> ProblemSize:
         """How large its problem is, from the block layout: neither gmsh nor a solver starts."""
 
-    @abstractmethod
+    def price(self, size: ProblemSize) -> Price:
+        """What a problem takes, as `make times` has measured."""
+        return price(self.priced, size.kind)
+
+    def start_seconds(self, size: ProblemSize) -> float:
+        """Seconds beside the steps, kernels compiled.
+
+        To import, to mesh, to load kernels, for the section that guides a body, and for the answer.
+        """
+        return self.price(size).start_seconds(size.elements, size.unknowns, size.layers)
+
     def step_seconds(self, case: Case, size: ProblemSize) -> float:
         """Seconds a step on one rank."""
+        return self.price(size).step_seconds(size.elements, size.unknowns, size.layers)
 
-    @abstractmethod
     def memory_mb(self, size: ProblemSize) -> float:
         """Greatest memory on one rank, MB."""
+        found = self.price(size).memory_mb(size.unknowns, size.layers)
+        return found + thread_mb(size.segments)
 
     def ladder(self, case: Case) -> Iterator[dict[str, Any]]:
         """Settings of `mesh` that an accuracy may choose among; none unless said."""

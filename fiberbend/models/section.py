@@ -38,7 +38,7 @@ class Section(UniformModel):
     turn = math.radians(10)
     first_turn = math.radians(10)
     memory = 5
-    start_s = 1.8
+    priced = "section"
     compile_s = 9.0
     pictures_s = (3.0, 0.4)
     fields_s = 0.3
@@ -110,10 +110,6 @@ class Section(UniformModel):
     def drawn(self, case: Case, size: ProblemSize) -> float:
         """The section along the whole length."""
         return float(size.elements * picture_layers(case))
-
-    def step_seconds(self, case: Case, size: ProblemSize) -> float:
-        """Two iterations."""
-        return 0.015 + 9e-6 * size.unknowns
 
     def mesh_error(self, case: Case) -> float:
         """By refinement."""

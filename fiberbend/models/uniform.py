@@ -14,9 +14,7 @@ from fiberbend.models.model import (
     MeshedModel,
     Objection,
     Observables,
-    ProblemSize,
     found_pressure,
-    thread_mb,
 )
 
 if TYPE_CHECKING:
@@ -56,10 +54,6 @@ class UniformModel(MeshedModel):
             lambda: UniformGauge(body, scene.natural, actuator),
             lambda: UniformRod(body, case.actuator.cap),
         )
-
-    def memory_mb(self, size: ProblemSize) -> float:
-        """Little beside the libraries."""
-        return 130 + 7e-3 * size.unknowns + thread_mb(size.segments)
 
     def scalars(self, case: Case) -> tuple[str, ...]:
         """Global unknowns: those of uniform bending that no effect fixes, and a pressure found."""

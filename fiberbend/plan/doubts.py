@@ -9,7 +9,7 @@ from fiberbend.case.case import Case
 from fiberbend.effects.effect import Effect, Turns
 from fiberbend.models.choice import choose_model
 from fiberbend.models.model import ModelKind
-from fiberbend.models.resolution import FARTHEST_PITCH, winding_remark
+from fiberbend.models.resolution import FARTHEST_PITCH, lost_pressure, winding_remark
 from fiberbend.plan.memory import gigabytes, needed_mb, room
 from fiberbend.schema.slips import LIMITS
 from fiberbend.schema.units import show
@@ -25,6 +25,20 @@ def doubts(case: Case) -> list[str]:
     """Every doubt that is known of a case's answer, before anything is solved."""
     model = choose_model(case)[0]
     return [*_model(case, model), *_winding(case, model), *_numbers(case)]
+
+
+def errors(case: Case, model: ModelKind) -> Iterator[str]:
+    """Expected errors of a run under a load of the chamber, each with its source.
+
+    Yields:
+        One line of text each.
+    """
+    if case.inflation is None:
+        return
+    yield from model.errors(case)
+    if case.mesh.element == "tetrahedron":
+        yield "tetrahedra: too stiff beside hexahedra of the same length; refine once to see it"
+    yield from lost_pressure(case, model)
 
 
 def _model(case: Case, model: ModelKind) -> Iterator[str]:

@@ -9,6 +9,7 @@ import dataclasses
 import math
 
 from fiberbend.case.case import Case
+from fiberbend.case.section_beside import section_guides
 from fiberbend.models import lines
 from fiberbend.models.model import MACHINE, MeshedModel, ModelKind, ProblemSize
 from fiberbend.plan.memory import RANK_MB, Room, gigabytes, needed_mb, room
@@ -26,7 +27,7 @@ class Cost:
     Attributes:
         steps: load steps; None where the bending angle at the end cannot be predicted.
         step_s: seconds a step on one rank.
-        start_s: seconds before the first step, kernels compiled.
+        start_s: seconds beside the steps, kernels compiled.
         compile_s: seconds more where they are not.
         memory_mb: greatest memory on one rank, MB.
         free: what there is, where that is known.
@@ -81,7 +82,7 @@ def cost_of(case: Case, model: MeshedModel, size: ProblemSize) -> Cost:
     return Cost(
         steps=steps_of(case, model),
         step_s=model.step_seconds(case, size),
-        start_s=model.start_s,
+        start_s=model.start_seconds(size),
         compile_s=model.compile_s,
         memory_mb=needed_mb(case),
         free=room(),
@@ -148,17 +149,21 @@ def steps_of(case: Case, model: MeshedModel) -> int | None:
     turn = model.largest_turn(case)
     goals = [angle for angle in output.at_angles if 0 < angle / end < 1]
     goals = [*map(abs, goals), abs(end)]
-    counted = count_steps(min(turn, model.first_turn), turn, goals)
+    first, growth = model.first_turn, _GROWTH
+    if model.ends and section_guides(case):
+        first, growth = case.solver.max_turn or model.guided_first, model.guided_growth
+    counted = count_steps(min(turn, first), turn, goals, growth)
     return steps + max(least, counted + len(output.at_pressures))
 
 
-def count_steps(first: float, most: float, goals: list[float]) -> int:
-    """Steps from zero through every goal, growing by half until they have their greatest size.
+def count_steps(first: float, most: float, goals: list[float], growth: float = _GROWTH) -> int:
+    """Steps from zero through every goal, growing until they have their greatest size.
 
     Args:
         first: size of the first step, in the unit of the goals.
         most: greatest size of a step.
         goals: values that are hit exactly, the last one the end.
+        growth: of a step over the one before.
     """
     here, size, steps = 0.0, first, 0
     for goal in sorted(goals):
@@ -170,7 +175,7 @@ def count_steps(first: float, most: float, goals: list[float]) -> int:
                 here = goal
                 break
             here = goal if here + size > goal - _NEAR * size else here + size
-            size *= _GROWTH
+            size *= growth
             steps += 1
     return steps
 

@@ -12,9 +12,9 @@ from fiberbend.calibration.expected import expected
 from fiberbend.case.case import Case
 from fiberbend.models.choice import MODELS, choose_model, objection
 from fiberbend.models.model import MeshedModel, ModelKind
-from fiberbend.models.resolution import lost_pressure, winding_remark
+from fiberbend.models.resolution import winding_remark
 from fiberbend.models.uniform import twists
-from fiberbend.plan.doubts import doubts
+from fiberbend.plan.doubts import doubts, errors
 from fiberbend.plan.memory import shortage
 
 WIDTH = 100
@@ -93,20 +93,6 @@ def make_plan(case: Case) -> Plan:
     if elements is None:
         return Plan(model.name, _rows(head | _closed_form(case, model) | tail))
     return _finite_elements(case, elements, head, tail)
-
-
-def errors(case: Case, model: ModelKind) -> Iterator[str]:
-    """Expected errors of a run under a load of the chamber, each with its source.
-
-    Yields:
-        One line of text each.
-    """
-    if case.inflation is None:
-        return
-    yield from model.errors(case)
-    if case.mesh.element == "tetrahedron":
-        yield "tetrahedra: too stiff beside hexahedra of the same length; refine once to see it"
-    yield from lost_pressure(case, model)
 
 
 def _finite_elements(

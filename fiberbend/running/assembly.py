@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Callable
 
 from mpi4py import MPI
@@ -24,11 +23,6 @@ from fiberbend.models.parts import SceneParts, build
 from fiberbend.running.approach import Approach
 from fiberbend.states.snapshot import ModelMesh
 from geometry.mesh.data import MeshData
-
-GUIDED_TURN = math.radians(90)
-"""Greatest change of the angle in a step guided by the section, by default."""
-GUIDED_FIRST = math.radians(20)
-GUIDED_GROWTH = 3.0
 
 GuideFactory = Callable[[Scene, Frames], Guide | None]
 """Makes the guide of a body's march; None where there is none."""
@@ -121,7 +115,7 @@ def rules(case: Case, model: MeshedModel, guided: bool) -> Rules:
     """
     turn, first, given = model.turn, model.first_turn, case.solver.max_turn
     if guided:
-        turn, first = GUIDED_TURN, given or GUIDED_FIRST
+        turn, first = model.guided_turn, given or model.guided_first
     turn = model.bounded_turn(case, given or turn)
     found = Rules(
         cutbacks=case.solver.max_cutbacks,
@@ -130,7 +124,7 @@ def rules(case: Case, model: MeshedModel, guided: bool) -> Rules:
         memory=model.memory,
     )
     if guided:
-        found = dataclasses.replace(found, grow=GUIDED_GROWTH)
+        found = dataclasses.replace(found, grow=model.guided_growth)
     for effect in case.effects:
         found = effect.rules(found, case.straight)
     return found

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from fiberbend.calibration.calibrate import calibrate, known, waits, with_bulging
-from fiberbend.calibration.record import Calibrated, named, words
 from fiberbend.case.case import Case
 from fiberbend.reader.reader import read_case
 from fiberbend.results.folder import CASE_FILE
 from fiberbend.running.launch import on_rank_0
 from fiberbend.running.progress import Progress
 from fiberbend.schema.problems import CaseError
-from materials.bulging import Bulging
+
+if TYPE_CHECKING:
+    from fiberbend.calibration.record import Calibrated
+    from materials.bulging import Bulging
 
 
 @dataclasses.dataclass(frozen=True)
@@ -48,9 +49,11 @@ def calibrated(case: Case, comm: Any, progress: Progress, resumed: Path | None) 
     Raises:
         CaseError: the winding cannot be calibrated.
     """
-    if not waits(case):
+    if not any(effect.uncalibrated() for effect in case.effects):
         numbers = next((n for e in case.effects if (n := e.bulges()) is not None), None)
         return case, Own() if numbers is None else _given(numbers)
+    from fiberbend.calibration.calibrate import with_bulging
+
     progress.phase("calibration")
     before, found = on_rank_0(comm, lambda: _numbers(case, progress, resumed))
     if found is None:
@@ -66,6 +69,8 @@ def _numbers(
     case: Case, progress: Progress, resumed: Path | None
 ) -> tuple[Bulging | None, Calibrated | None]:
     """Those of a run that goes on, or of a calibration; a run keeps the ones it began with."""
+    from fiberbend.calibration.calibrate import calibrate, known
+
     before = None if resumed is None else _before(resumed)
     if before is None:
         return None, calibrate(case, tell=progress.message)
@@ -84,6 +89,8 @@ def _before(folder: Path) -> Bulging | None:
 
 
 def _given(numbers: Bulging) -> Own:
+    from fiberbend.calibration.record import named, words
+
     text = f"winding: rubber bulges between its turns as the case says ({words(numbers)})"
     entry = {**named(numbers), "text": text}
     return Own({"calibration": entry}, (), (text,))

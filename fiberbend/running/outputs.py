@@ -10,15 +10,14 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from fiberbend.case.case import Case
-from fiberbend.compare.check import Check
 from fiberbend.process.beside import Beside
-from fiberbend.results.fields import write_fields
 from fiberbend.results.folder import RunFolder
 from fiberbend.results.states import States
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.mesh.data import Floats
 
 if TYPE_CHECKING:
+    from fiberbend.compare.check import Check
     from fiberbend.drawing.overlay import Overlay
     from fiberbend.drawing.renderer import Renderer
     from fiberbend.drawing.space.obstacles import Scenery
@@ -68,6 +67,8 @@ def draw(
         )
     try:
         if output.fields and (flat is None or own is None):
+            from fiberbend.results.fields import write_fields
+
             write_fields(folder, case, model_mesh, snapshots, rows, say)
         if output.pictures or output.animation:
             _draw_states(folder, case, model_mesh, snapshots, rows, say)
@@ -112,6 +113,8 @@ def _draw_flat(
                 scenery(case, rows),
             )
     if case.output.fields:
+        from fiberbend.results.fields import write_fields
+
         write_fields(folder, case, own, snapshots or (), rows, lines.append)
     return lines
 

@@ -6,21 +6,24 @@ import platform
 import resource
 import shlex
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fiberbend import columns as col
 from fiberbend.answer.strain import greatest_strain
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.compare.check import Check
 from fiberbend.models.resolution import winding_remark
+from fiberbend.models.result import RunResult
 from fiberbend.running import messages
 from fiberbend.running.assembly import Assembly
 from fiberbend.states.snapshot import Snapshot
 from fiberbend.version import __version__
 from machine import origin
+
+if TYPE_CHECKING:
+    from fiberbend.compare.check import Check
 
 
 def versions(*libraries: Mapping[str, str]) -> dict[str, str]:
@@ -159,6 +162,32 @@ def doubts(case: Case, rows: Sequence[col.Row]) -> list[str]:
     """What the effects of a case find doubtful in its history, a line each."""
     site = convert.site(case)
     return [line for effect in case.effects for line in effect.doubts(site, rows)]
+
+
+def accuracy(
+    case: Case,
+    status: str,
+    rows: Sequence[dict[str, Any]],
+    entries: Mapping[str, Any],
+    solve: Callable[[Case], RunResult],
+    phase: Callable[[str], None],
+) -> tuple[dict[str, Any], list[str]]:
+    """The entry 'accuracy' and a warning of one that is missed, where a case asks for one.
+
+    Args:
+        case: the case; see `fiberbend.accuracy.computed.estimated`, also of the others.
+        status: of the run.
+        rows: its history.
+        entries: of run.json so far.
+        solve: solves a case on this rank alone.
+        phase: takes the name of the phase that begins.
+    """
+    if case.accuracy is None:
+        return {}, []
+    from fiberbend.accuracy.computed import estimated, missed
+
+    found = estimated(case, status, rows, entries, solve, phase)
+    return found, missed(found)
 
 
 def beside(check: Check | None) -> dict[str, Any]:

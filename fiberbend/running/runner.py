@@ -7,7 +7,7 @@ import shutil
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mpi4py import MPI
 
@@ -18,10 +18,9 @@ from fem.march.march import ACROSS
 from fem.results.checkpoint import Archive
 from fem.scene import Scene
 from fiberbend import columns as col
-from fiberbend.accuracy.computed import estimated, missed
 from fiberbend.answer.answer import answer
 from fiberbend.case.case import Case
-from fiberbend.compare.check import Check
+from fiberbend.case.section_beside import section_guides
 from fiberbend.models.choice import choose_model, meshed
 from fiberbend.models.model import MeshedModel
 from fiberbend.models.result import RunResult
@@ -38,8 +37,11 @@ from fiberbend.running.hooks import Recording, ended, shows_states, unmet
 from fiberbend.running.launch import on_rank_0
 from fiberbend.running.outputs import draw, write_page
 from fiberbend.running.progress import Progress
-from fiberbend.running.warm import SectionStates, section_guides, section_states
+from fiberbend.running.warm import SectionStates, section_states
 from geometry.mesh.data import MeshData
+
+if TYPE_CHECKING:
+    from fiberbend.compare.check import Check
 
 GMSH_FILE = "actuator.msh"
 
@@ -209,8 +211,8 @@ class _Run:
         check = self._cross_check(recorder.rows, section)
         recording.warn([] if check is None else check.doubts(), silent=True)
         given = (status, recorder.rows, self.own.entries, _solve_beside, progress.phase)
-        error = on_rank_0(self.comm, lambda: estimated(case, *given))
-        recording.warn(missed(error), silent=True)
+        error, lacking = on_rank_0(self.comm, lambda: record.accuracy(case, *given))
+        recording.warn(lacking, silent=True)
         progress.phase("output")
         recording.keep(LAST)
         rows = check.beside(recorder.rows) if check else recorder.rows

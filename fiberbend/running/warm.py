@@ -73,16 +73,11 @@ class SectionStates:
         )
 
 
-def section_guides(case: Case) -> bool:
-    """Whether a section bends as the body of a case does, between its ends."""
-    return case.inflation is not None and all(effect.follows_section() for effect in case.effects)
-
-
 def section_states(case: Case) -> SectionStates | None:
     """March the section of a case through the case's load; on one rank.
 
     Args:
-        case: a case for which `section_guides` is true.
+        case: a case for which `fiberbend.case.section_beside.section_guides` is true.
 
     Returns:
         The states; None where the section has too few converged steps.

@@ -16,7 +16,7 @@ from fiberbend.sweep.points import Point, Sweep
 from fiberbend.sweep.store import MARK, Store
 from fiberbend.sweep.table import aligned
 
-IMPORTS_S = 1.5
+IMPORTS_S = 0.6
 """Seconds of a model's start that a process spends once, on imports."""
 _CLOSED_FORM_S = 0.05
 
@@ -89,8 +89,9 @@ def _seconds(case: Case) -> float | None:
     steps = steps_of(case, elements)
     if steps is None:
         return None
-    step = elements.step_seconds(case, elements.size(case))
-    return max(model.start_s - IMPORTS_S, 0.0) + steps * step + drawing
+    size = elements.size(case)
+    step = elements.step_seconds(case, size)
+    return max(elements.start_seconds(size) - IMPORTS_S, 0.0) + steps * step + drawing
 
 
 def _memory(point: Point) -> float:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from fiberbend.case.case import Case
-from fiberbend.case.section_beside import as_section
+from fiberbend.case.section_beside import as_section, section_guides
 from fiberbend.control.command import left_out
 from fiberbend.effects.effect import Effect
 from fiberbend.effects.pressure import inflate
@@ -18,7 +18,6 @@ from fiberbend.plan.plan import make_plan
 from fiberbend.reader.checks import ValidParts, check
 from fiberbend.reader.defaults import complete
 from fiberbend.reader.reader import read_case
-from fiberbend.running.warm import section_guides
 
 ROOT = Path(__file__).resolve().parents[2]
 PATH = "effects.2.tip-load"

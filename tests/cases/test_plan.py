@@ -96,7 +96,7 @@ def test_global_unknowns_are_named() -> None:
         ("circle", [], 19),
         ("single_helix", [], 20),
         ("straight", [], 7),
-        ("free_bending_smeared", [], 8),
+        ("free_bending_smeared", [], 5),
         ("section", ["solver.max_turn=5 deg"], 72),
     ],
 )
