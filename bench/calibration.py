@@ -1,7 +1,8 @@
 """Tables of calibrated windings: section beside a fine cell, coarse body beside a resolved one.
 
 Writes docs/evidence/calibration.md, row by row. Names on the command line, of parts (bent,
-straight, bodies, meshes) and of geometries, renew only these rows, as in `bodies "radius 6 mm"`.
+straight, bodies, meshes, phases) and of geometries, renew only these rows, as in `bodies "radius
+6 mm"`.
 Minutes for sections and cells, an hour for the bodies; every number in the tables comes from here.
 Times are those of whole processes: the machine should be idle.
 """
@@ -41,13 +42,20 @@ GEOMETRIES: dict[str, dict[str, str]] = {
     "pitch 1.5 mm": {f"{WINDING}.pitch": "1.5 mm"},
     "pitch 4.5 mm": {f"{WINDING}.pitch": "4.5 mm"},
     "pitch 6 mm": {f"{WINDING}.pitch": "6 mm"},
+    "radius 9, pitch 2.5 mm": {"actuator.radius": "9 mm", f"{WINDING}.pitch": "2.5 mm"},
 }
 """Radius 8, wall 2, pitch 3 mm but for what is named."""
+SECTIONS = tuple(GEOMETRIES)[:8]
+"""Those whose sections are put beside fine cells."""
 BLOCKED = ("baseline", "radius 6 mm", "pitch 4.5 mm")
 """Those whose tips are blocked too."""
 COARSE = "8 mm"
+LENGTH = 160.0
+"""Of the bodies, mm."""
 RESOLVED = 4
 """Layers along half a pitch of the body in turns: one is too stiff, see `meshes`."""
+PHASES = ("48 mm", "48.75 mm", "49.5 mm")
+"""Lengths of short bodies: a pitch is 3 mm."""
 HEAD = """# A calibrated winding beside every turn by itself
 
 P in kPa of the baseline of Polygerinos et al. 2015 (radius 8, length 160, wall 2, floor 2, sheath
@@ -251,16 +259,37 @@ def meshes(name: str) -> Iterator[str]:
     """Bodies of a winding and a length of elements, beside the resolved one."""
     for kind in (FREE, TIP):
         change = GEOMETRIES[name] | kind.change
-        fine = Run(kind.case, change | layered(name, RESOLVED))
-        reference = fine.at(*kind.goals)
-        made = {f"{layers} a half pitch, in turns": layered(name, layers) for layers in (1, 2)} | {
-            f"{axial}, calibrated": {"mesh.axial": axial, f"{WINDING}.as": "calibrated"}
-            for axial in (COARSE, "4 mm", "2 mm")
-        }
+        made = {f"{layers} a half pitch, in turns": layered(name, layers) for layers in (4, 2, 1)}
+        for axial in (COARSE, "4 mm", "2 mm"):
+            made[f"{axial}, calibrated"] = {"mesh.axial": axial, f"{WINDING}.as": "calibrated"}
+        reference: list[float | None] = []
         for label, mesh in made.items():
             run = Run(kind.case, change | mesh)
-            off = percent(run.at(*kind.goals), reference)
-            yield f"| {name} | {kind.label} | {label} | {run.run['unknowns']} | {off} |"
+            values = run.at(*kind.goals)
+            reference = reference or values
+            yield (
+                f"| {name} | {kind.label} | {label} | {run.run['unknowns']} | "
+                f"{percent(values, reference)} | {longer(name, run) if kind is FREE else '–'} |"
+            )
+
+
+def longer(name: str, run: Run) -> str:
+    """By how many radii a body seems longer than one that bends like its middle, at the angles."""
+    radii = LENGTH / parse(GEOMETRIES[name].get("actuator.radius", "8 mm"), "length")
+    middle = run.at("angle_deg", ANGLES, "uniform_angle_deg")
+    pairs = zip(ANGLES, middle, strict=True)
+    return " / ".join("–" if m is None else f"{radii * (a / m - 1):.3f}" for a, m in pairs)
+
+
+def phases(name: str) -> Iterator[str]:
+    """Tip forces of short bodies on one mesh, by where in a pitch the last turn ends."""
+    for length in PHASES:
+        change = GEOMETRIES[name] | TIP.change | {"actuator.length": length}
+        change |= layered(name, RESOLVED)
+        fine = Run(TIP.case, change)
+        own = Run(TIP.case, change | {f"{WINDING}.as": "calibrated"})
+        values, reference = (run.at(*TIP.goals) for run in (own, fine))
+        yield f"| {name} | {length} | {shown(reference)} | {percent(values, reference)} |"
 
 
 PARTS: dict[str, Part] = {
@@ -269,12 +298,14 @@ PARTS: dict[str, Part] = {
         "| geometry | K0, MPa/mm | a1 | a2 | left, % | fine cell: P at 90 / 180 / 270 / 360° | "
         "calibrated section, % | smeared section, % | s, calibration and all | s, kept |",
         bent,
+        SECTIONS,
     ),
     "straight": Part(
         "Kept straight",
         "| geometry | fine cell: M in N mm at 25 / 50 / 75 / 100 kPa | calibrated, for a case kept "
         "straight, % | with the numbers of free bending, % | smeared, % |",
         straight,
+        SECTIONS,
     ),
     "bodies": Part(
         f"Body of elements {COARSE} long",
@@ -285,8 +316,15 @@ PARTS: dict[str, Part] = {
     ),
     "meshes": Part(
         "What the elements of a body cost",
-        f"| geometry | what | elements | unknowns | beside {RESOLVED} layers a half pitch, % |",
+        f"| geometry | what | elements | unknowns | beside {RESOLVED} layers a half pitch, % | "
+        "seems longer at 90 / 180 / 270 / 360°, radii |",
         meshes,
+        ("baseline",),
+    ),
+    "phases": Part(
+        "Where the last turn ends",
+        "| geometry | length | in turns: F at 25 / 50 / 75 / 100 kPa | calibrated, same mesh, % |",
+        phases,
         ("baseline",),
     ),
 }
