@@ -64,7 +64,7 @@ OLD: dict[str, Actuator] = {
 }
 """By these the margins were set."""
 ACTUATORS = NEW | OLD
-RESOLVED = ("wall 1.5, length 100", "radius 9, pitch 2.5")
+RESOLVED = ("radius 9, pitch 2.5",)
 """Those whose chosen body is put beside one with every turn."""
 LAYERS = 4
 """Of that one, a half pitch: with one and two it is too stiff (docs/evidence/calibration.md)."""
