@@ -33,16 +33,21 @@ CALIBRATED_SECTION = 2
 """Elements through each thickness of the section that is calibrated by it, see
 `fiberbend.calibration.digest`: their own error is within its numbers."""
 BLOCKED = 3.0
-"""Percent of the force of a blocked tip that a spread winding and elements of half the radius cost
-(docs/evidence/blocked.md: 3.50 N with both, 3.60 N with turns and elements of 3/8)."""
-BLOCKED_IN_TURNS = 0.8
-"""The same of turns and elements of 3/8 of the radius or shorter: those of 1/4 give 0.4 % less, and
-are thought to lack as much again."""
+"""Percent of the force of a blocked tip that a spread winding costs: 2.2 to 2.6 % less than four
+layers a half pitch (docs/accuracy.md, docs/evidence/calibration.md)."""
+BLOCKED_CALIBRATED = 2.0
+"""The same of a winding whose bulges are calibrated: up to 1.8 % less than turns on one mesh, by
+where the last turn lies."""
+BLOCKED_IN_TURNS = 2.0
+"""The same of turns and elements of 3/8 of the radius or shorter: one layer a half pitch gives
+1.9 % more than four."""
+BLOCKED_IN_LAYERS = 0.8
+"""The same of two layers a half pitch or more: 0.2 % from four, and those are no limit."""
 _SHORT_ENOUGH = 3 / 8
-BULGES_IN_A_BODY = 0.7
-"""Percent more that a calibrated winding costs in a body, where its cell does not see it: with a
-radius of 9 mm and a pitch of 2.5 mm 1.11 % at 270° against turns in two layers a half pitch, where
-0.49 % was estimated (docs/evidence/promise.md)."""
+BULGES_AT_ENDS = 0.12
+"""Pitches by which a body with turns seems longer than one whose winding is calibrated, which its
+cell does not see: 0.05 found with a pitch of 3/8 of the radius, 0.1 with one of 3/4
+(docs/evidence/calibration.md)."""
 MARGIN = 1.1
 """Widening of every error of turns, by which few actuators stand for all between them: the greatest
 found beyond was 4 % (docs/evidence/promise.md)."""
@@ -153,7 +158,7 @@ def estimate(
         else:
             winding = state.winding + factor * lacking(case, here)
         if model.ends and case.turns is not None and case.turns.bulges:
-            winding += factor * BULGES_IN_A_BODY
+            winding += factor * 100 * BULGES_AT_ENDS * case.turns.pitch / case.actuator.length
         parts = {
             MESH: factor * mesh,
             WINDING: winding,
@@ -267,9 +272,13 @@ def _of_turns(known: Known, rung: Rung, table: Knowledge, state: float) -> float
 
 def _blocked(case: Case, rung: Rung) -> float:
     """Percent of the force of a blocked tip, whatever the angles' ladder says of the mesh."""
-    turns = case.turns is not None and case.turns.discrete
+    turns = case.turns
+    if turns is not None and turns.bulges:
+        return BLOCKED_CALIBRATED
     fine = case.mesh.axial <= _SHORT_ENOUGH * radius(case) * (1 + _END)
-    return BLOCKED_IN_TURNS if turns and fine and rung.layers else BLOCKED
+    if turns is None or not turns.discrete or not fine:
+        return BLOCKED
+    return BLOCKED_IN_LAYERS if rung.layers >= 2 * (1 - _END) else BLOCKED_IN_TURNS
 
 
 def _beside(curvatures: Curve, values: Curve, state: float) -> float:

@@ -43,6 +43,9 @@ class Stations:
     origin: int = 0
 
 
+_BESIDE_POST = 3.0
+"""Greatest length of the cap's elements over that of a post beside them: twice as long, they bend
+with its edge and raise the tip force of a blocked baseline by up to 0.7 %."""
 _EVERYWHERE = frozenset({"symmetry", "outer"})
 _CHAMBER = _EVERYWHERE | {"chamber", "winding", "roof"}
 
@@ -56,16 +59,19 @@ def body_stations(actuator: Actuator, size: MeshSize, strips: Strips | None = No
 
     Args:
         actuator: dimensions.
-        size: length of the elements along z.
+        size: length of the elements along z; beside a post they may be shorter.
         strips: length of the post; without it there is none.
     """
     length, cap = actuator.length, actuator.cap
     end = length + cap
-    post = end - strips.post_length if strips else end
+    post, beside = end, size.axial
+    if strips:
+        post = end - strips.post_length
+        beside = min(beside, _BESIDE_POST * strips.post_length)
     segments = [
         Segment(-cap, 0.0, divisions(cap, size.axial), _EVERYWHERE, True),
         Segment(0.0, length, divisions(length, size.axial), _CHAMBER, False),
-        Segment(length, post, divisions(post - length, size.axial), _EVERYWHERE, True),
+        Segment(length, post, divisions(post - length, beside), _EVERYWHERE, True),
     ]
     planes: list[tuple[str | None, str | None]] = [
         ("clamp", "clamp"),

@@ -141,3 +141,23 @@ _VERTICES = [0, 2, 6, 8, 18, 20, 24, 26]
 
 def _as_set(points: np.ndarray) -> set[tuple[float, ...]]:
     return set(map(tuple, (points.round(9) + 0.0).tolist()))
+
+
+@pytest.mark.parametrize(("post", "longest"), [(2.0, 13 / 3), (1.0, 14 / 5), (4.0, 11 / 2)])
+def test_long_elements_are_shorter_beside_a_post_alone(post: float, longest: float) -> None:
+    # as long as the rest they bend with its edge, and the tip force comes out too great
+    def levels(strips: Strips | None, axial: float) -> np.ndarray:
+        mesh = hexahedral_body(BASELINE, MeshSize(axial=axial), strips)
+        return np.unique(mesh.nodes[:, 2])[::2]
+
+    strips = Strips(2.0, post)
+    made = levels(strips, 8.0)
+    end = BASELINE.length + BASELINE.cap - post
+    beside = made[(made >= BASELINE.length - 1e-9) & (made <= end + 1e-9)]
+    np.testing.assert_allclose(np.diff(beside), longest, rtol=1e-9)
+    # everything else is as without a post, and short elements are short enough
+    chamber = levels(None, 8.0)
+    np.testing.assert_array_equal(
+        made[made <= BASELINE.length], chamber[chamber <= BASELINE.length]
+    )
+    assert np.diff(levels(strips, 1.5)).max() <= 1.5 + 1e-9
