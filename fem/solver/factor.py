@@ -205,6 +205,9 @@ class Factor:
         left: why a long body is left to MUMPS after it was factorised in layers; empty: it is not.
     """
 
+    counts = True
+    iterations = 0
+
     def __init__(
         self,
         matrix: PETSc.Mat,
