@@ -10,7 +10,6 @@ from petsc4py import PETSc
 from fem.matrix import stored_values, upper_triangle
 from fem.solver.factor import Mumps
 from fem.solver.layers import Rows
-from fem.solver.problem import RefusedError
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -87,6 +86,7 @@ class Block:
         self._matrix = upper_triangle(
             MPI.COMM_SELF, begin.astype(np.int32), local[inside].astype(np.int32)
         )
+        self._b, self._x = self._matrix.createVecs()
         self._factor = Mumps(self._matrix, True, volumetric[at], free[at])
 
     def renew(self, values: Floats) -> None:
@@ -96,14 +96,15 @@ class Block:
         self._factor.renew()
 
     def solve(self, b: Floats) -> Floats:
-        """Its answer to (unknowns,) or (unknowns, columns)."""
-        found = self._factor.solve_many(list(np.atleast_2d(b.T)))
-        return np.array(found).T.reshape(b.shape)
+        """Its answer, (unknowns,)."""
+        self._b.array_w[:] = b
+        self._factor.solve(self._b, self._x)
+        return self._x.array_r.copy()
 
-    def destroy(self) -> None:
-        """Free matrix and factor."""
-        self._factor.destroy()
-        self._matrix.destroy()
+    @property
+    def memory_mb(self) -> float:
+        """Memory of the factor, MB."""
+        return self._factor.memory_mb
 
 
 class Cuts:
@@ -129,11 +130,10 @@ class Cuts:
         parts = np.linspace(0, 1, self.slabs + 1)[1:-1]
         cuts = np.searchsorted(ends, np.quantile(z, parts))
         # no slab thinner than what overlaps it from both sides, and a layer
-        least = 2 * over + 1
-        for k in range(len(cuts)):
-            cuts[k] = max(cuts[k], (cuts[k - 1] if k else 0) + least)
-        if len(cuts) and cuts[-1] > layers - least:
-            raise RefusedError(f"{layers} layers of elements are too few for {self.slabs} slabs")
+        least, before = 2 * over + 1, 0
+        for k, cut in enumerate(cuts):
+            latest = layers - (len(cuts) - k) * least
+            before = cuts[k] = min(max(cut, before + least), latest)
         self.low = np.r_[-np.inf, ends[cuts - over]]
         self.high = np.r_[ends[cuts + over], np.inf]
         self.strips = np.stack([ends[cuts - over], ends[cuts + over]], axis=1)

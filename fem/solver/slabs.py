@@ -103,7 +103,9 @@ class Slabs:
         self._blocks = [block(chosen) for chosen in inside]
         self._strips = {
             cut: block(within(*cuts.strips[cut]))
-            for cut in sorted({c for k in self._mine for c in (k - 1, k) if 0 <= c < self.slabs - 1})
+            for cut in sorted(
+                {c for k in self._mine for c in (k - 1, k) if 0 <= c < self.slabs - 1}
+            )
         }
         owner = cuts.owner[wanted]
         self._counted = [
@@ -173,6 +175,11 @@ class Slabs:
         self._coarsen(place, values)
         self.seconds["factor"] += time.perf_counter() - start
 
+    @property
+    def memory_mb(self) -> float:
+        """Memory of all factors of this rank, MB."""
+        return sum(block.memory_mb for block in (*self._blocks, *self._strips.values()))
+
     def _coarsen(self, place: Place, values: Floats) -> None:
         """How each slab moves as a rigid body, and the matrix of all these motions."""
         rigid = np.array([self._gather(column) for column in place.rigid.T]).T
@@ -185,7 +192,7 @@ class Slabs:
                 moved[strip.at] = 0.0
             pull = rows @ moved
             for strip in strips:
-                moved[strip.at] = -strip.solve(pull[strip.at])
+                moved[strip.at] = -np.array([strip.solve(b) for b in pull[strip.at].T]).T
             self._moves.append(np.linalg.qr(moved[block.at])[0])
         whole = np.zeros((self.slabs * MOVES,) * 2)
         for colour in range(COLOURS):
@@ -258,6 +265,8 @@ class Slabs:
         size = np.sqrt(float(total(comm, r @ r)))
         if size == 0.0:
             return np.zeros_like(b)
+        if not np.isfinite(size):
+            raise RefusedError("a right side that is no number")
         basis, answers = np.zeros((MOST + 1, len(b))), list[Floats]()
         basis[0] = r / size
         h, left = np.zeros((MOST + 1, MOST)), 1.0
@@ -269,14 +278,14 @@ class Slabs:
                 v -= parts @ basis[: j + 1]
                 h[: j + 1, j] += parts
             h[j + 1, j] = np.sqrt(float(total(comm, v @ v)))
+            if not np.isfinite(h[j + 1, j]):
+                raise RefusedError("a preconditioner that gives no number")
             side = np.eye(j + 2, 1)[:, 0]
             shares = np.linalg.lstsq(h[: j + 2, : j + 1], side, rcond=None)[0]
             left = float(np.linalg.norm(side - h[: j + 2, : j + 1] @ shares))
             self.iterations += 1
             if left <= ENOUGH:
                 return np.asarray(size * sum(s * a for s, a in zip(shares, answers, strict=True)))
-            if not np.isfinite(left):
-                break
             basis[j + 1] = v / h[j + 1, j]
         raise RefusedError(f"no convergence in {MOST} iterations: a residual of {left:.1e}")
 
