@@ -1,4 +1,4 @@
-"""Iterative solvers beside the direct one: docs/evidence/iterative.md, `python bench/iterative.py`.
+"""Iterative solvers beside the direct one: docs/evidence/iterative.md, `python -m bench.iterative`.
 
 Tangents of the baseline's body at rest, at 45° and at 180°, solved for the response to the pressure
 by a block preconditioner, by multigrid and by slabs. Seconds are of the processor, of one process.

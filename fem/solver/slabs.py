@@ -82,7 +82,7 @@ class Slabs:
         )
         ends = np.unique(np.concatenate(comm.allgather(place.ends)))
         number = self._asked or max(2, comm.size, size // UNKNOWNS)
-        self._cuts = cuts = Cuts(ends, (low + high) / 2, number)
+        cuts = Cuts(ends, (low + high) / 2, number)
         self.slabs = cuts.slabs
         self._mine = np.flatnonzero(np.arange(cuts.slabs) * comm.size // cuts.slabs == comm.rank)
 
