@@ -26,7 +26,7 @@ own count. *Error* is that of the displacements against the direct solution.
   overlapped by its neighbours, is factorised by MUMPS with displacements and pressures; a coarse
   system has six rigid motions a slab; GMRES. All slabs on this one rank.
 - **augmented Lagrangian**: A + γ Bᵀ W⁻¹ B factorised exactly, block triangular with the pressures.
-- **A alone**: conjugate gradients for A x = f, without pressures, at most 10 s and 400 iterations.
+- **A alone**: conjugate gradients for A x = f, without pressures, at most 5 s and 400 iterations.
   A solver of the whole system would do this in every iteration.
 """
 

@@ -23,7 +23,7 @@ from fem.solver.layers import Rows
 Floats = npt.NDArray[np.float64]
 Row = dict[str, Any]
 
-ENOUGH, MOST, MOST_S = 1e-8, 400, 10.0
+ENOUGH, MOST, MOST_S = 1e-8, 400, 5.0
 """Residual, relative; iterations; seconds of the processor of a solve."""
 GAMMAS = (0.0, 1.0, 100.0)
 LEVELS = {
@@ -33,7 +33,10 @@ LEVELS = {
 AGGREGATION = {"pc_type": "gamg", "pc_gamg_agg_nsmooths": "1", "mg_coarse_pc_type": "svd"}
 HYPRE = {"pc_type": "hypre", "pc_hypre_type": "boomeramg"}
 MULTIGRID = {
-    "GAMG, Chebyshev and SOR": AGGREGATION | LEVELS | {"mg_levels_pc_type": "sor"},
+    "GAMG, Chebyshev and SOR": AGGREGATION
+    | LEVELS
+    # coarse unknowns of aggregates with fewer than six free motions have no diagonal
+    | {"mg_levels_pc_type": "sor", "mg_levels_pc_sor_diagonal_shift": "1e-6"},
     "GAMG, Chebyshev and Jacobi": AGGREGATION | LEVELS | {"mg_levels_pc_type": "jacobi"},
     "hypre by unknowns": HYPRE,
     "hypre by nodes": HYPRE
