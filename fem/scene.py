@@ -18,6 +18,7 @@ from fem.kernels import compiling, differentiate, upper_tangent
 from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
 from fem.kinematics.kinematics import Kinematics
+from fem.kinematics.place import Place, place
 from fem.matrix import may_free
 from fem.own_code import OwnCode
 from fem.ranks import total
@@ -168,6 +169,10 @@ class Scene(OwnCode):
             p = body.dofs(body.pressure_field)
             self.volumetric[p[p < body.owned]] = True
         """Owned dofs of the pressure field."""
+
+    def place(self) -> Place:
+        """Where the unknowns lie, at the present state."""
+        return place(self.body, self.free)
 
     def fix(self, dofs: npt.NDArray[np.int32], values: Floats) -> None:
         """Fix further local dofs at given values, in mm (prescribed boundary displacement)."""

@@ -127,7 +127,7 @@ class Attempts:
         if kind == "value" and self._jumped(position.states, scalar, aim, new):
             return JUMPED
         # a path without a critical point may have kinks: threads that go slack
-        critical = bool(position.report.critical) or new.measures[MODES] > 0
+        critical = bool(position.report.critical) or new.measures.get(MODES, 0) > 0
         if kind == "conjugate" and position.path_following and critical:
             strayed = self._equilibrium.strayed(new, position.states)
             return JUMPED if strayed > STRAY else ""

@@ -15,6 +15,7 @@ from fem.scene import Scene
 from fem.solver.bordered import SideCondition
 from fem.solver.modes import opposite_modes, softest_opposite
 from fem.solver.newton import Newton, Outcome
+from fem.solver.problem import RefusedError
 from fem.solver.side_conditions import Functional, GivenConjugate, GivenFunctional, Stationary
 
 Floats = npt.NDArray[np.float64]
@@ -175,7 +176,8 @@ class Equilibrium:
         Unstable modes are the negative eigenvalues of the Hessian of the potential in all fields
         and natural scalars, with the loads at given values, whatever was given when the state
         was found. d conjugate / d value is negative beyond a limit point; there, one of the modes
-        is gone where the conjugate is given instead.
+        is gone where the conjugate is given instead. A solver that counts no negative pivots
+        leaves no count of modes.
 
         Args:
             state: the present state, found by the last solve.
@@ -183,13 +185,20 @@ class Equilibrium:
             scalar: the load that is driven.
             exactly: by the tangent at the state; else by the last one of Newton's method, unless
                 that tells a change.
+
+        Raises:
+            RefusedError: the load has turned, and the solver counts no negative pivots.
         """
         rate, kinds = measure("rate", scalar), [measure(k, scalar) for k in ("conjugate", "value")]
         state.measures[rate] = before.measures.get(rate, 1.0)
-        modes = self._modes()
         conjugate, value = (state.measures[name] - before.measures[name] for name in kinds)
         # where the load has turned and another mode is lost, the count stays as it is
         turned = conjugate * value * state.measures[rate] < 0
+        if not self.newton.factor.counts:
+            if turned:
+                raise RefusedError(f"a limit point of {scalar}, where negative pivots must be told")
+            return
+        modes = self._modes()
         if exactly or turned or modes != before.measures.get(MODES, 0):
             # not by an old factor, nor with forces that were predicted
             near = self.perturbed(state, scalar)
@@ -204,7 +213,7 @@ class Equilibrium:
         Those of the opposite symmetry, with the loads at given values. A round body may turn its
         buckles about its axis at no cost: what costs less than the mesh knows is no instability.
         """
-        if self.scene.free_opposite is None:
+        if self.scene.free_opposite is None or not self.newton.factor.counts:
             return 0
         self.restore(state)
         modes = opposite_modes(self.newton) - self._volumetric

@@ -157,7 +157,7 @@ def critical(states: Sequence[State], scalar: str) -> list[Critical]:
         scalar: the load that is driven.
     """
     old, new = states[-2].measures, states[-1].measures
-    before, after = int(old.get(MODES, 0)), int(new[MODES])
+    before, after = int(old.get(MODES, 0)), int(new.get(MODES, 0))
     rate = new[measure("rate", scalar)]
     found = []
     if _turned(states, scalar):

@@ -150,6 +150,12 @@ class Mumps:
         assert self._ksp is not None, "renew first"
         return int(self._ksp.getPC().getFactorMatrix().getMumpsInfog(12))
 
+    @property
+    def memory_mb(self) -> float:
+        """Memory that MUMPS takes for the factor and to find it, all ranks, MB."""
+        assert self._ksp is not None, "renew first"
+        return float(self._ksp.getPC().getFactorMatrix().getMumpsInfog(22))
+
     def solve(self, b: PETSc.Vec, x: PETSc.Vec) -> None:
         """Solve K x = b with the last factor."""
         assert self._ksp is not None, "renew first"
@@ -204,6 +210,9 @@ class Factor:
         seconds: wall time spent in factorisations and solves.
         left: why a long body is left to MUMPS after it was factorised in layers; empty: it is not.
     """
+
+    counts = True
+    iterations = 0
 
     def __init__(
         self,

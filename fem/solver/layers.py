@@ -30,7 +30,7 @@ class InaccurateError(ArithmeticError):
     """No refinement brings a solution to where its residual is round-off."""
 
 
-class _Rows:
+class Rows:
     """The upper triangle that this rank stores, row by row.
 
     Attributes:
@@ -97,7 +97,7 @@ class Layers:
         self._comm = comm = matrix.getComm().tompi4py()
         if comm.size > 2:
             raise UnsuitableError("two ranks at most")
-        self._rows = _Rows(matrix)
+        self._rows = Rows(matrix)
         values = self._rows.values()
         self._offsets = np.r_[0, np.cumsum(comm.allgather(len(negative)))]
         begin, columns = self._rows.begin, self._rows.columns

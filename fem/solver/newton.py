@@ -13,8 +13,9 @@ from petsc4py import PETSc
 
 from fem.solver.bordered import BorderedSystem, SideCondition
 from fem.solver.factor import Factor
-from fem.solver.problem import Problem
+from fem.solver.problem import LinearSolver, Problem
 from fem.solver.reuse import LARGE, Reuse
+from fem.solver.slabs import Slabs
 
 Floats = npt.NDArray[np.float64]
 
@@ -39,6 +40,7 @@ class Settings:
         reuse: take the last factor again where it converges fast; a solve costs a twentieth of
             a factorisation.
         large: unknowns from which on the first factor is to serve the whole solve.
+        iterative: solve linear systems by iteration, without a count of negative pivots.
     """
 
     tolerance: float = 1e-8
@@ -46,6 +48,7 @@ class Settings:
     hybrid: bool = True
     reuse: bool = True
     large: int = LARGE
+    iterative: bool = False
 
 
 @dataclasses.dataclass(frozen=True)
@@ -100,9 +103,12 @@ class Newton:
         self.comm = comm
         self.settings = settings
         owned = len(problem.volumetric)
-        self.factor = Factor(
-            problem.matrix, volumetric=problem.volumetric, free=problem.free[:owned]
-        )
+        free = problem.free[:owned]
+        self.factor: LinearSolver
+        if settings.iterative:
+            self.factor = Slabs(problem.matrix, problem.volumetric, free, problem.place)
+        else:
+            self.factor = Factor(problem.matrix, volumetric=problem.volumetric, free=free)
         self._assembly = {"residual": 0.0, "tangent": 0.0}
         self._b = problem.matrix.createVecRight()
         self._x = problem.matrix.createVecRight()

@@ -1,13 +1,15 @@
-"""What Newton's method needs of a scene."""
+"""What Newton's method needs of a scene, and of a linear solver."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 from petsc4py import PETSc
+
+from fem.kinematics.place import Place
 
 Floats = npt.NDArray[np.float64]
 
@@ -63,6 +65,9 @@ class Problem(Protocol):
     ) -> None:
         """Take the last correction, owned part, which the next tangent may use; None: none yet."""
 
+    def place(self) -> Place:
+        """Where the unknowns lie, at the present state."""
+
     @property
     def mixed(self) -> bool:
         """Whether steps with an old tangent lack nothing but `lag`."""
@@ -82,3 +87,36 @@ class Problem(Protocol):
 
     def raise_force_floor(self, floor: float) -> None:
         """Measure forces by no less than this from now on, N."""
+
+
+class RefusedError(Exception):
+    """An iterative solver cannot answer; a direct one may."""
+
+
+class LinearSolver(Protocol):
+    """Solves K x = b with the matrix as it was when last renewed; all calls are collective.
+
+    Attributes:
+        seconds: wall time spent in "factor" and in "solve".
+        counts: whether it tells negative pivots, and with them stability.
+        left: why it goes on as another solver than it began; empty: it does not.
+        iterations: of an iterative solver, in all solves; 0 of a direct one.
+    """
+
+    seconds: dict[str, float]
+    counts: bool
+    left: str
+    iterations: int
+
+    def renew(self) -> None:
+        """Take the matrix as it is now."""
+
+    @property
+    def negative_pivots(self) -> int:
+        """Number of negative eigenvalues of the matrix (Sylvester's inertia)."""
+
+    def solve(self, b: PETSc.Vec, x: PETSc.Vec) -> None:
+        """Solve K x = b."""
+
+    def solve_many(self, columns: Sequence[Floats]) -> list[Floats]:
+        """Solve K x = b for owned parts of several right sides."""

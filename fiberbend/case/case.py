@@ -188,6 +188,9 @@ class Solver(Spec):
     """How often in a row a step is cut before the run gives up."""
     tolerance: float = Field(default=1e-8, gt=0, le=1e-2)
     """Residual forces and volumes, each in units of its own internal force."""
+    linear: Literal["direct", "iterative"] = "direct"
+    """How linear systems of a body are solved: iterative shares a long body of hexahedra out over
+    more than two ranks, but tells no stability, and refuses where it does not converge."""
 
 
 class MeasuredSpec(Spec):

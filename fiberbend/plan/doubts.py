@@ -86,6 +86,11 @@ def _thread(case: Case, turns: Turns) -> Iterator[str]:
 def _numbers(case: Case) -> Iterator[str]:
     if choose_model(case)[0].elements() is None:
         return
+    if case.solver.linear == "iterative" and choose_model(case)[0].ends:
+        yield (
+            "solver.linear iterative: no stability is told, an instability may be passed unseen; "
+            "only direct counts unstable modes"
+        )
     if case.solver.tolerance > _LOOSE:
         yield (
             f"solver.tolerance {case.solver.tolerance:g}: forces balance to that part only, "

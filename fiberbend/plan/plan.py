@@ -160,6 +160,8 @@ def unused(case: Case, model: ModelKind) -> Iterator[str]:
         yield from (f"{part}.{name}" for name in sorted(names))
     if model.elements() and case.straight and "max_turn" in case.solver.model_fields_set:
         yield "solver.max_turn"
+    if model.elements() and not model.ends and case.solver.linear == "iterative":
+        yield "solver.linear"
     if not model.ends and "support" in case.model_fields_set:
         yield "support"
     if case.compare and case.actuator.section != PAPER_SHAPE:

@@ -285,7 +285,10 @@ def size_problems(
 
 
 def _solver(parts: ValidParts) -> Iterator[Problem]:
-    pressure = parts.inflation
+    pressure, mesh = parts.inflation, parts.mesh
+    if parts.solver and parts.solver.linear != "direct" and mesh and mesh.element == "tetrahedron":
+        text = '"iterative", expected direct: pressures of tetrahedra couple layers'
+        yield Problem("solver.linear", text)
     if parts.solver is None or parts.broken_effects:
         return
     given = {key: getattr(parts.solver, key) for key in ("first_step", "max_step")}

@@ -82,7 +82,11 @@ def assemble(
     parts = build(case, mesh, model)
     scene = Scene(Domain(mesh, comm), parts.effects, model.kinematics(case))
     observables = model.observables(case, scene)
-    settings = Settings(tolerance=case.solver.tolerance)
+    settings = Settings(
+        tolerance=case.solver.tolerance,
+        # sections and cells are too small to be shared
+        iterative=model.shared and case.solver.linear == "iterative",
+    )
     for effect in case.effects:
         settings = effect.settings(settings)
     newton = Newton(scene, comm, settings)

@@ -106,7 +106,8 @@ class Recorder:
             row[load.value] = load.shown * state.scalars[name]
             row[load.conjugate] = self._factor * loads[name]
         if outcome is not None:
-            row[col.MODES] = int(state.measures[MODES])
+            if MODES in state.measures:
+                row[col.MODES] = int(state.measures[MODES])
             row |= self._gauge.last_columns(state)
         row |= col.read(self._model, scene, state)
         col.check(row, self._model)

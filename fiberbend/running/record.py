@@ -16,8 +16,10 @@ from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.models.resolution import winding_remark
 from fiberbend.models.result import RunResult
-from fiberbend.running import messages
+from fiberbend.results.folder import RunFolder
+from fiberbend.running import launch, messages
 from fiberbend.running.assembly import Assembly
+from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.states.snapshot import Snapshot
 from fiberbend.version import __version__
 from machine import origin
@@ -129,6 +131,24 @@ def unfinished(
         "versions": versions(),
         **provenance(),
     }
+
+
+def refused(
+    folder: RunFolder | None, model: str, rows: Sequence[col.Row], error: Exception
+) -> CaseError:
+    """What a run says that the iterative solver refuses; run.json says it too, on one rank.
+
+    Args:
+        folder: of the run, or None.
+        model: name of the model.
+        rows: of the history so far.
+        error: why.
+    """
+    problem = Problem("solver.linear", f'"iterative", expected direct: {error}')
+    if folder is not None:
+        entries = unfinished("failed", str(problem), model, rows, {}, launch.size())
+        folder.write_run(**entries)
+    return CaseError([problem])
 
 
 def counted(assembly: Assembly, warnings: Sequence[str]) -> dict[str, Any]:

@@ -17,6 +17,7 @@ from fem.march.guide import Guide
 from fem.march.march import ACROSS
 from fem.results.checkpoint import Archive
 from fem.scene import Scene
+from fem.solver.problem import RefusedError
 from fiberbend import columns as col
 from fiberbend.answer.answer import answer
 from fiberbend.case.case import Case
@@ -165,8 +166,7 @@ class _Run:
         may_leave: bool = False,
     ) -> None:
         self.case, self.model, self.folder = case, model, folder
-        self.states = folder or scratch
-        self.progress, self.comm = progress, comm
+        self.states, self.progress, self.comm = folder or scratch, progress, comm
         self.own, self.may_leave = own or Own(), may_leave
         self.recording: Recording | None = None
         self.solved = False
@@ -252,6 +252,9 @@ class _Run:
         except KeyboardInterrupt as error:
             self._stopped(stop := stop_of(error))
             raise stop from None
+        except RefusedError as error:
+            rows = self.recording.rows if self.recording else []
+            raise record.refused(self.folder, self.model.name, rows, error) from None
 
     def _stopped(self, stop: Interrupted) -> None:
         """Say what is kept, and leave it in run.json: by the rank that still can."""

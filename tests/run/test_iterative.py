@@ -1,0 +1,99 @@
+"""`solver.linear: iterative`: the same states as the direct solver, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fem.solver import slabs
+from fiberbend import run
+from fiberbend.models.choice import choose_model
+from fiberbend.plan.plan import unused
+from fiberbend.reader.reader import as_case
+from fiberbend.results.reading import read_history
+from fiberbend.schema.problems import CaseError
+from tests.conftest import MpiRun
+from tests.run.conftest import small, write_case
+
+MODES = "unstable_modes"
+QUIET = {"at_angles": ["8 deg"], "fields": False, "pictures": False, "report": False}
+CASE = small(output=QUIET, mesh={"axial": "2 mm"})
+ITERATIVE = CASE | {"solver": {"linear": "iterative"}}
+COLUMNS = ("pressure_kPa", "angle_deg", "chamber_mm3", "fiber_max_N", "stored_mJ")
+
+
+@pytest.fixture(scope="module")
+def direct() -> list[dict[str, Any]]:
+    """Rows by the direct solver."""
+    return run(CASE).rows
+
+
+def _same(rows: list[dict[str, Any]], known: list[dict[str, Any]]) -> None:
+    assert len(rows) == len(known)
+    for row, other in zip(rows[1:], known[1:], strict=True):
+        assert MODES not in row or row[MODES] is None
+        assert other[MODES] == 0
+        for name in COLUMNS:
+            assert row[name] == pytest.approx(other[name], rel=1e-6), name
+
+
+def test_the_same_states(direct: list[dict[str, Any]]) -> None:
+    """Without a count of unstable modes, and with a warning of that."""
+    result = run(ITERATIVE)
+    assert result.status == "converged"
+    _same(result.rows, direct)
+    assert any("no stability is told" in line for line in result.run["warnings"])
+
+
+@pytest.mark.mpi
+def test_two_ranks_find_the_same(
+    direct: list[dict[str, Any]], mpirun: MpiRun, tmp_path: Path
+) -> None:
+    case = write_case(tmp_path, ITERATIVE)
+    done = mpirun(2, ["-m", "fiberbend", "run", case, "--out", tmp_path / "run"])
+    assert done.returncode == 0, done.stderr
+    _same(read_history(tmp_path / "run" / "history.csv"), direct)
+
+
+def test_no_convergence_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Nothing else solves it instead."""
+    monkeypatch.setattr(slabs, "MOST", 3)
+    with pytest.raises(CaseError) as caught:
+        run(ITERATIVE, tmp_path / "run")
+    (problem,) = caught.value.problems
+    text = str(problem)
+    assert text.startswith('solver.linear: "iterative", expected direct: no convergence in 3 it')
+    record = json.loads((tmp_path / "run" / "run.json").read_text(encoding="utf-8"))
+    assert (record["status"], record["reason"]) == ("failed", text)
+
+
+def test_a_limit_point_is_refused() -> None:
+    """Beyond it the body may be unstable, which is not told."""
+    soft = small(
+        output=QUIET | {"at_angles": []},
+        effects=[{"pressure": {"volume": "12 mL"}}],
+        materials={
+            "wall": {"law": "neo-hooke", "mu": "0.22 MPa"},
+            "floor": {"law": "neo-hooke", "mu": "0.5 MPa"},
+        },
+        solver={"linear": "iterative"},
+    )
+    del soft["actuator"]["sheath"]
+    with pytest.raises(CaseError, match=r"solver.linear.*a limit point of pressure"):
+        run(soft)
+
+
+def test_tetrahedra_are_refused() -> None:
+    case = ITERATIVE | {"mesh": {"axial": "4 mm", "element": "tetrahedron"}}
+    with pytest.raises(CaseError, match="expected direct: pressures of tetrahedra couple layers"):
+        as_case(case)
+
+
+def test_a_section_has_no_use_for_it() -> None:
+    case = as_case(ITERATIVE | {"model": "section"})
+    assert "solver.linear" in list(unused(case, choose_model(case)[0]))
+    case = as_case(ITERATIVE)
+    assert "solver.linear" not in list(unused(case, choose_model(case)[0]))
