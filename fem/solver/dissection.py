@@ -10,7 +10,8 @@ other, are halved along their own level sets until they are small.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -138,6 +139,13 @@ class _Layers:
             self.parent[child] = front
         return front
 
+    def join(self, tree: Tree) -> int:
+        """Take the fronts of one end, of which the last one is left."""
+        start = len(self.own)
+        self.own += tree.own
+        self.parent += [-1 if parent < 0 else parent + start for parent in tree.parent]
+        return len(self.own) - 1
+
     def between(self, part: list[int]) -> tuple[list[int], list[int]]:
         """Fronts of what lies between two planes, and the vertices that are left to a plane."""
         graph, inside = self.graph, set(part)
@@ -253,8 +261,21 @@ def body_levels(graph: Graph) -> tuple[list[list[int]], list[list[int]], list[in
     return planes, between, alone.tolist()
 
 
-def long_body(graph: Graph, constraints: Constraints) -> Tree:
+def _all(ends: Sequence[Callable[[], Tree]]) -> list[Tree]:
+    return [end() for end in ends]
+
+
+def long_body(
+    graph: Graph,
+    constraints: Constraints,
+    share: Callable[[Sequence[Callable[[], Tree]]], list[Tree]] = _all,
+) -> Tree:
     """Fronts that eliminate a long body from both ends; the last but one is the middle plane.
+
+    Args:
+        graph: of its matrix.
+        constraints: couplings of its constraints.
+        share: makes the fronts of both ends, as ranks may do between them.
 
     Raises:
         UnsuitableError: few levels or wide ones, several bodies, or constraints in a plane.
@@ -267,22 +288,23 @@ def long_body(graph: Graph, constraints: Constraints) -> Tree:
     wide = sum(float(graph.weight[plane].sum()) ** 3 for plane in planes)
     if OPERATIONS * wide / RATE > GENERAL * len(planes) * unknowns**1.75:
         raise UnsuitableError("its planes are wide")
-    layers = _Layers(graph, constraints)
     middle = last // 2
 
-    def chain(order: Iterable[tuple[list[int], list[int]]]) -> list[int]:
+    def chain(order: Iterable[tuple[list[int], list[int]]]) -> Tree:
+        layers = _Layers(graph, constraints)
         before: list[int] = []
         for inside, plane in order:
             tops, left = layers.between(inside)
             before = [layers.add([*left, *plane], [*tops, *before])]
-        return before
+        return Tree(layers.own, layers.parent)
 
     up = [(between[k + 1], planes[k]) for k in range(middle)]
     up[0] = (between[0] + up[0][0], planes[0])
     down = [(between[k], planes[k]) for k in range(last - 1, middle, -1)]
     down[0] = (between[last] + down[0][0], planes[last - 1])
-    ends = chain(up) + chain(down)
-    layers.add(planes[middle], ends)
+    layers = _Layers(graph, constraints)
+    tops = [layers.join(tree) for tree in share([partial(chain, up), partial(chain, down)])]
+    layers.add(planes[middle], tops)
     for first in range(0, len(alone), PART):
         layers.add(alone[first : first + PART], ())
     return Tree(layers.own, layers.parent)
