@@ -258,11 +258,12 @@ class Product:
 
     def __init__(self, code: Code, rows: Rows) -> None:
         self._code, self._rows = code, rows
-        first = rows.first
-        # ghosts: columns of other ranks that rows here have, and what the other rank has of ours
-        self._ghosts, self._column = np.unique(rows.outer[1], return_inverse=True)
-        self._row = rows.outer[0] - first
-        self._sent = np.unique(rows.theirs[1]) - first
+        # ghosts: columns of another rank that rows here have, and what it has of ours
+        ghosts, row = np.unique(rows.outer[1], return_inverse=True)
+        self._order = np.argsort(row, kind="stable")
+        self._begin = np.r_[0, np.cumsum(np.bincount(row, minlength=len(ghosts)))].astype(np.int32)
+        self._columns = (rows.outer[0] - rows.first)[self._order].astype(np.int32)
+        self._sent = np.unique(rows.theirs[1]) - rows.first
 
     def residual(self, values: Floats, outer: Floats, b: Floats, x: Floats) -> tuple[Floats, Floats]:
         """b − K x, and |K| |x| + |b|, owned parts, (columns, owned); collective.
@@ -273,24 +274,24 @@ class Product:
             b: right sides, owned parts.
             x: solutions, owned parts.
         """
-        code, rows = self._code, self._rows
-        r, bound = b.copy(), np.abs(b)
-        for column, rest, total in zip(x, r, bound, strict=True):
-            arrays = (rows.begin, rows.columns, values, column, rest, total)
-            code.lib.residual(len(rows.begin) - 1, 0, *code.pointers(*arrays))
-        if rows.comm.size == 1:
-            return r, bound
-        count, ghosts = len(b), len(self._ghosts)
-        beyond = swap(rows.comm, x[:, self._sent], count * ghosts).reshape(count, ghosts)
-        passed = np.zeros((2, count, ghosts))
-        for k in range(count):
-            terms = outer * beyond[k][self._column]
-            np.subtract.at(r[k], self._row, terms)
-            np.add.at(bound[k], self._row, np.abs(terms))
-            terms = outer * x[k][self._row]
-            np.subtract.at(passed[0, k], self._column, terms)
-            np.add.at(passed[1, k], self._column, np.abs(terms))
-        back = swap(rows.comm, passed, 2 * count * len(self._sent)).reshape(2, count, -1)
-        r[:, self._sent] += back[0]
-        bound[:, self._sent] += back[1]
-        return r, bound
+        comm, (count, owned) = self._rows.comm, b.shape
+        ghosts = len(self._begin) - 1
+        more = np.zeros((count, ghosts))
+        if comm.size > 1:
+            more = swap(comm, x[:, self._sent], more.size).reshape(more.shape)
+        r, bound = (np.concatenate([part, 0 * more], axis=1) for part in (b, np.abs(b)))
+        outer = outer[self._order]
+        for arrays in zip(np.concatenate([x, more], axis=1), r, bound, strict=True):
+            self._lose(0, self._rows.begin, self._rows.columns, values, *arrays)
+            self._lose(owned, self._begin, self._columns, outer, *arrays)
+        if comm.size > 1:
+            passed = np.array([r[:, owned:], bound[:, owned:]])
+            back = swap(comm, passed, 2 * count * len(self._sent)).reshape(2, count, -1)
+            r[:, self._sent] += back[0]
+            bound[:, self._sent] += back[1]
+        return r[:, :owned], bound[:, :owned]
+
+    def _lose(self, first: int, begin: Ints, columns: Ints, *arrays: Floats) -> None:
+        """Take the product of some rows, first, first + 1, ..., off a residual."""
+        pointers = self._code.pointers(begin, columns, *arrays)
+        self._code.lib.residual(len(begin) - 1, first, *pointers)
