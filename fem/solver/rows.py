@@ -107,9 +107,8 @@ class Rows:
     def _pairs(self, kept: Bools, group: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
         """Vertices that are coupled, each pair once, (2, e); collective."""
         here = kept[self.first : self.end]
-        counts = np.diff(self.begin)
-        rows = np.repeat(np.flatnonzero(here), counts[here])
-        columns = self.columns[np.repeat(here, counts)]
+        rows, places = self._entries(np.flatnonzero(here))
+        columns = self.columns[places]
         both = here[columns] & (columns != rows)
         beyond = self.outer[:, kept[self.outer].all(axis=0)]
         pairs = np.array([rows[both], columns[both]]) + self.first
@@ -118,6 +117,19 @@ class Rows:
             pairs = np.concatenate(self.comm.allgather(pairs.astype(np.int32)), axis=1)
         return pairs
 
+    def _entries(
+        self, rows: npt.NDArray[np.int64]
+    ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+        """Row and place of every entry of some rows beside columns of this rank."""
+        starts, counts = self.begin[rows].astype(np.int64), np.diff(self.begin)[rows]
+        before = np.cumsum(counts) - counts
+        return np.repeat(rows, counts), np.arange(counts.sum()) + np.repeat(starts - before, counts)
+
+    def _beside(self, negative: Bools) -> npt.NDArray[np.int64]:
+        """Places of entries in columns of constraints here, not in their rows."""
+        places = np.flatnonzero(negative[self.columns])
+        return places[~negative[np.searchsorted(self.begin, places, side="right") - 1]]
+
     def constraints(self, graph: Graph, negative: Bools) -> Constraints:
         """Couplings of all constraints; collective.
 
@@ -125,19 +137,30 @@ class Rows:
             graph: of the whole matrix.
             negative: constraints, (size,).
         """
-        here = negative[self.first : self.end]
-        rows = np.repeat(np.arange(len(here), dtype=np.int32), np.diff(self.begin))
-        mixed = np.flatnonzero(here[rows] != here[self.columns])
-        beyond = np.flatnonzero(negative[self.outer[0]] != negative[self.outer[1]])
-        rows = np.r_[rows[mixed] + self.first, self.outer[0, beyond]]
-        columns = np.r_[self.columns[mixed] + self.first, self.outer[1, beyond]]
-        values = np.r_[self.inner_values()[mixed], self.outer_values()[beyond]]
+        here, first = negative[self.first : self.end], self.first
+        rows, places = self._entries(np.flatnonzero(here))
+        within = ~here[self.columns[places]]
+        beside = self._beside(here)
+        others = np.searchsorted(self.begin, beside, side="right") - 1
+        # an entry beside the other rank goes to the one that has the constraint
+        outer, theirs = self.outer, self.theirs
+        kept, gone = np.flatnonzero(negative[outer[0]]), np.flatnonzero(negative[outer[1]])
+        found = theirs[:, negative[theirs[1]]]
+        row = np.r_[rows[within], self.columns[beside], outer[0, kept] - first, found[1] - first]
+        other = np.r_[self.columns[places[within]] + first, others + first, outer[1, kept], found[0]]
+        places = np.r_[places[within], beside]
+        values, outer_values = self.inner_values()[places], self.outer_values()
+        received = np.zeros(0)
         if self.comm.size > 1:
-            found = zip(*self.comm.allgather((rows, columns, values)), strict=True)
-            rows, columns, values = map(np.concatenate, found)
-        order = np.argsort(rows, kind="stable")
-        begin = np.searchsorted(rows[order], np.arange(self.size + 1)).astype(np.int32)
-        return Constraints(begin, columns[order], values[order], graph)
+            received = swap(self.comm, outer_values[gone], found.shape[1])
+        order = np.argsort(row, kind="stable")
+        counts = np.bincount(row, minlength=len(here))
+        other = other[order].astype(np.int32)
+        values = np.r_[values, outer_values[kept], received][order]
+        if self.comm.size > 1:
+            parts = zip(*self.comm.allgather((counts, other, values)), strict=True)
+            counts, other, values = map(np.concatenate, parts)
+        return Constraints(np.r_[0, np.cumsum(counts)], other, values, graph)
 
 
 def _graph(
@@ -146,12 +169,15 @@ def _graph(
     weight: npt.NDArray[np.int64],
     negative: Bools,
 ) -> Graph:
-    rows, others = pairs.astype(np.int32)
-    rows, others = np.r_[rows, others], np.r_[others, rows]
-    order = np.lexsort((others, rows))
-    starts = np.r_[0, np.cumsum(np.bincount(rows, minlength=len(weight)))].astype(np.int32)
+    from scipy import sparse
+
+    both = np.concatenate([pairs, pairs[::-1]], axis=1)
+    shape, ones = (len(weight), len(weight)), np.ones(both.shape[1], dtype=np.int8)
+    # by columns and then by rows: those of a row rise
+    found = sparse.csc_matrix((ones, both), shape=shape).tocsr()
+    starts, others = found.indptr.astype(np.int32), found.indices.astype(np.int32)
     groups, weights = group.astype(np.int32), weight.astype(np.int32)
-    return Graph(starts, others[order], groups, weights, negative)
+    return Graph(starts, others, groups, weights, negative)
 
 
 class Taken:
