@@ -184,7 +184,9 @@ class Assembler:
             part = slice(inner.begin[row], inner.begin[row + 1])
             kept[part] = False
             own.append(np.column_stack([np.full(counts[row], row), inner.columns[part] + first]))
-        rows, columns = np.divmod(np.unique(np.concatenate([*own, added]) @ [ends[-1], 1]), ends[-1])
+        rows, columns = np.divmod(
+            np.unique(np.concatenate([*own, added]) @ [ends[-1], 1]), ends[-1]
+        )
         counts[touched] = np.bincount(rows, minlength=self._owned)[touched]
         begin = np.r_[0, np.cumsum(counts)].astype(np.int32)
         whole = np.empty(begin[-1], dtype=np.int32)

@@ -66,17 +66,17 @@ class Layers:
         front_of = np.empty(len(graph.weight), dtype=np.int32)
         for front, own in enumerate(tree.own):
             front_of[own] = front
-        front = front_of[graph.group]
+        eliminated = front_of[graph.group]
         far = np.zeros(len(tree.own), dtype=bool)
         far[self._turn : self._middle] = True
-        self._last = self._at_last(far[front])
+        self._last = self._at_last(far[eliminated])
         mine = self._mine(far)
-        self._taken = taken = Taken(rows, front, mine)
+        self._taken = taken = Taken(rows, eliminated, mine)
         self._fronts = Fronts(code, taken.begin, taken.columns, taken.numbers, graph, tree, mine)
         taken.place(self._fronts)
         self._product = Product(code, rows)
         self._outer = np.zeros(0)
-        self._share(far[front])
+        self._share(far[eliminated])
         self.negative_pivots = self.pivoted = 0
 
     def _ends(self, ends: Sequence[Callable[[], Tree]]) -> list[Tree]:

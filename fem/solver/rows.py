@@ -147,7 +147,9 @@ class Rows:
         kept, gone = np.flatnonzero(negative[outer[0]]), np.flatnonzero(negative[outer[1]])
         found = theirs[:, negative[theirs[1]]]
         row = np.r_[rows[within], self.columns[beside], outer[0, kept] - first, found[1] - first]
-        other = np.r_[self.columns[places[within]] + first, others + first, outer[1, kept], found[0]]
+        other = np.r_[
+            self.columns[places[within]] + first, others + first, outer[1, kept], found[0]
+        ]
         places = np.r_[places[within], beside]
         values, outer_values = self.inner_values()[places], self.outer_values()
         received = np.zeros(0)
@@ -291,7 +293,9 @@ class Product:
         self._columns = (rows.outer[0] - rows.first)[self._order].astype(np.int32)
         self._sent = np.unique(rows.theirs[1]) - rows.first
 
-    def residual(self, values: Floats, outer: Floats, b: Floats, x: Floats) -> tuple[Floats, Floats]:
+    def residual(
+        self, values: Floats, outer: Floats, b: Floats, x: Floats
+    ) -> tuple[Floats, Floats]:
         """b − K x, and |K| |x| + |b|, owned parts, (columns, owned); collective.
 
         Args:

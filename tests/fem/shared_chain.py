@@ -49,7 +49,9 @@ def measure(comm: MPI.Comm, order: str, definite: bool) -> dict[str, float]:
     for _ in range(2):
         layers.renew()
         x = np.concatenate(comm.allgather(layers.solve(b[:, first:end])), axis=1)
-        error = max(error, float(np.abs(x - np.linalg.solve(matrix, b.T).T).max() / np.abs(x).max()))
+        error = max(
+            error, float(np.abs(x - np.linalg.solve(matrix, b.T).T).max() / np.abs(x).max())
+        )
     return {"error": error, "pivots": layers.negative_pivots - inertia(matrix)}
 
 
