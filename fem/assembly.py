@@ -16,7 +16,7 @@ import numpy.typing as npt
 from mpi4py import MPI
 
 from fem import compat, kernels
-from fem.matrix import Ties, stored_values, upper_triangle
+from fem.matrix import Ties, stored_rows, stored_values, upper_triangle
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -150,7 +150,15 @@ class Assembler:
     def _create(self, comm: MPI.Comm, inner: _Rows, ghosts: npt.NDArray[np.int64]) -> Any:
         """Matrix, and the part of it that this rank owns, which other ranks' cells may add to."""
         if comm.size == 1:
-            return inner, upper_triangle(comm, inner.begin, inner.columns)
+            matrix = upper_triangle(comm, inner.begin, inner.columns)
+        else:
+            matrix = upper_triangle(comm, *self._owned_rows(comm, inner, ghosts))
+        return _Rows(0, self._owned, *stored_rows(matrix)), matrix
+
+    def _owned_rows(
+        self, comm: MPI.Comm, inner: _Rows, ghosts: npt.NDArray[np.int64]
+    ) -> tuple[Ints, Ints]:
+        """Where the rows that this rank owns start, and their global columns; collective."""
         ends = np.cumsum(comm.allgather(self._owned))
         first = int(ends[comm.rank]) - self._owned
         numbers = np.r_[first + np.arange(self._owned), ghosts]
@@ -167,15 +175,27 @@ class Assembler:
         ]
         owner = np.searchsorted(ends, pairs[:, 0], side="right")
         theirs = comm.alltoall([pairs[owner == rank] for rank in range(comm.size)])
-        own = np.column_stack([_row_numbers(inner), inner.columns]) + first
-        keys = np.unique(np.concatenate([own, *theirs]) @ [ends[-1], 1])
-        rows, columns = np.divmod(keys, ends[-1])
-        begin = np.searchsorted(rows, first + np.arange(self._owned + 1)).astype(np.int32)
-        matrix = upper_triangle(comm, begin, columns.astype(np.int32))
-        here = columns < ends[comm.rank]
-        begin = np.searchsorted(rows[here], first + np.arange(self._owned + 1)).astype(np.int32)
-        kept = (columns[here] - first).astype(np.int32)
-        return _Rows(0, self._owned, begin, kept), matrix
+        # only rows of these entries may have others than the cells of this rank give
+        added = np.concatenate(theirs) - [first, 0]
+        touched = np.unique(added[:, 0])
+        kept, counts = np.ones(len(inner.columns), dtype=bool), np.diff(inner.begin)
+        own = []
+        for row in touched:
+            part = slice(inner.begin[row], inner.begin[row + 1])
+            kept[part] = False
+            own.append(np.column_stack([np.full(counts[row], row), inner.columns[part] + first]))
+        rows, columns = np.divmod(
+            np.unique(np.concatenate([*own, added]) @ [ends[-1], 1]), ends[-1]
+        )
+        counts[touched] = np.bincount(rows, minlength=self._owned)[touched]
+        begin = np.r_[0, np.cumsum(counts)].astype(np.int32)
+        whole = np.empty(begin[-1], dtype=np.int32)
+        fresh = np.zeros(self._owned, dtype=bool)
+        fresh[touched] = True
+        fresh = np.repeat(fresh, counts)
+        whole[fresh] = columns
+        whole[~fresh] = inner.columns[kept] + first
+        return begin, whole
 
     def _blocks(self, slots: _Slots, last: Ints) -> Blocks:
         count, width = slots.dofs.shape

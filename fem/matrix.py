@@ -13,6 +13,7 @@ Ties = tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]
 """Local dofs that follow others, (n,), and those that they follow, (n,); on one rank only."""
 
 _petsc = ctypes.CDLL(PETSc.__file__)
+_OUTER = "rows with columns of other ranks"
 
 
 def upper_triangle(
@@ -30,18 +31,50 @@ def upper_triangle(
     matrix.setSizes(((owned, PETSc.DETERMINE),) * 2)
     matrix.setType(PETSc.Mat.Type.SBAIJ)
     first = sum(comm.allgather(owned)[: comm.rank])
-    rows = np.repeat(np.arange(owned), np.diff(begin))
-    here = columns < first + owned
-    counts = [np.bincount(rows[part], minlength=owned) for part in (here, ~here)]
+    beyond = np.flatnonzero(columns >= first + owned)
+    rows = np.searchsorted(begin, beyond, side="right") - 1
+    outer = np.bincount(rows, minlength=owned)
+    counts = (np.diff(begin) - outer, outer)
     matrix.setPreallocationNNZ(tuple(count.astype(PETSc.IntType) for count in counts))
     matrix.setOption(PETSc.Mat.Option.IGNORE_LOWER_TRIANGULAR, True)
     matrix.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, True)
     matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)
-    matrix.setValuesCSR(
-        begin.astype(PETSc.IntType), columns.astype(PETSc.IntType), np.zeros(len(columns))
-    )
+    given = (np.asarray(array, dtype=PETSc.IntType) for array in (begin, columns))
+    matrix.setValuesCSR(*given, np.zeros(len(columns)))
     matrix.assemble()
+    matrix.setAttr(_OUTER, np.flatnonzero(outer).astype(np.int32))
     return matrix
+
+
+def outer_rows(matrix: PETSc.Mat) -> npt.NDArray[np.int32]:
+    """Rows on this rank with columns of another, by local number, rising.
+
+    Raises:
+        ValueError: a matrix of several ranks that `upper_triangle` has not made.
+    """
+    rows: npt.NDArray[np.int32] | None = matrix.getAttr(_OUTER)
+    if rows is None and matrix.getComm().size > 1:
+        raise ValueError("which rows have columns of other ranks is not known")
+    return np.zeros(0, dtype=np.int32) if rows is None else rows
+
+
+def stored_rows(
+    matrix: PETSc.Mat,
+) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]:
+    """Where the rows that this rank owns start, and their columns that it owns; views.
+
+    All in local numbers: (owned + 1,), and (entries,), rising within a row.
+    """
+    handle = ctypes.c_void_p(matrix.getDiagonalBlock().handle)
+    count, done = ctypes.c_int(), ctypes.c_int()
+    begin, columns = (ctypes.POINTER(ctypes.c_int32)() for _ in range(2))
+    found = (ctypes.byref(item) for item in (count, begin, columns, done))
+    if _petsc.MatGetRowIJ(handle, 0, 0, 0, *found) or not done:
+        raise RuntimeError("PETSc gives no rows of its matrix")
+    starts = np.ctypeslib.as_array(begin, (count.value + 1,))
+    if not starts[-1]:
+        return starts, np.zeros(0, dtype=np.int32)
+    return starts, np.ctypeslib.as_array(columns, (int(starts[-1]),))
 
 
 def stored_values(matrix: PETSc.Mat, count: int) -> npt.NDArray[np.float64]:

@@ -58,6 +58,8 @@ class Frames:
         section = self._nodes.copy()
         section[:, 2] = 0.0
         self._section = section
+        # nodes of a swept body lie in a few planes, which turn as wholes
+        self._planes, self._plane = np.unique(self._nodes[:, 2], return_inverse=True)
 
     def _station_sums(self, values: Floats) -> Floats:
         """Hat-weighted sums over all ranks of nodal values (n, m), (stations, m)."""
@@ -74,9 +76,10 @@ class Frames:
         from scipy.interpolate import CubicSpline
         from scipy.spatial.transform import Rotation, Slerp
 
-        z = self._nodes[:, 2]
+        z = self._planes
         spin = Slerp(self.z, Rotation.from_matrix(rotation))
-        return spin(np.clip(z, self.z[0], self.z[-1])).as_matrix(), CubicSpline(self.z, centre)(z)
+        turned = spin(np.clip(z, self.z[0], self.z[-1])).as_matrix()
+        return turned[self._plane], CubicSpline(self.z, centre)(z)[self._plane]
 
     def fit(self, displacement: Floats) -> Shape:
         """Best-fit rotation (Kabsch) and centre of every station; the rest is warp.

@@ -132,6 +132,8 @@ class BodyRod:
 
     def __init__(self, body: Kinematics, frames: Frames) -> None:
         self._body, self._frames = body, frames
+        self._known: tuple[Floats, Floats] | None = None
+        """The last warp and its reach: all between two states have one."""
 
     def pose(self, old: State, new: State, share: float) -> Pose:
         """Bent station by station."""
@@ -143,6 +145,11 @@ class BodyRod:
         return Pose(self._frames.z, shape.centre, shape.rotation, self._reach(shape))
 
     def _reach(self, shape: Shape) -> Floats:
+        if self._known is None or self._known[0] is not shape.warp:
+            self._known = (shape.warp, self._found(shape))
+        return self._known[1]
+
+    def _found(self, shape: Shape) -> Floats:
         normal, body = directions(), self._body
         reach = self._frames.greatest(shape, normal)
         if body.domain.data.half:

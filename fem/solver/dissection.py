@@ -10,13 +10,15 @@ other, are halved along their own level sets until they are small.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
+Longs = npt.NDArray[np.int64]
 
 PART = 60
 """Unknowns of a part between two planes that is not halved any more."""
@@ -71,23 +73,15 @@ class Constraints:
     """Couplings of constraints with unknowns of positive sign.
 
     Args:
-        begin: rows of the upper triangle of the matrix.
-        columns: their columns, rising.
+        begin: where those of each unknown start, of constraints alone, (unknowns + 1,).
+        columns: unknowns of positive sign that they are coupled with.
         values: their entries.
-        graph: its graph.
+        graph: the matrix's graph.
     """
 
-    def __init__(self, begin: Ints, columns: Ints, values: Floats, graph: Graph) -> None:
-        from scipy import sparse
-
-        size = len(begin) - 1
-        negative = graph.negative[graph.group]
-        rows = np.repeat(np.arange(size, dtype=np.int32), np.diff(begin))
-        mixed = np.flatnonzero(negative[rows] != negative[columns])
-        rows, others, entries = rows[mixed], columns[mixed], values[mixed]
-        swap = ~negative[rows]
-        rows, others = np.where(swap, others, rows), np.where(swap, rows, others)
-        self._rows = sparse.csr_matrix((entries, (rows, others)), shape=(size, size))
+    def __init__(self, begin: Longs, columns: Ints, values: Floats, graph: Graph) -> None:
+        self._begin, self._columns, self._values = begin, columns, values
+        self._place = np.full(len(begin) - 1, -1, dtype=np.int32)
         self._members = np.argsort(graph.group, kind="stable")
         self._start = np.r_[0, np.cumsum(graph.weight)]
         self._graph = graph
@@ -96,6 +90,19 @@ class Constraints:
         """Unknowns of some vertices."""
         parts = [self._members[self._start[v] : self._start[v + 1]] for v in vertices]
         return np.concatenate([np.zeros(0, dtype=np.int64), *parts])
+
+    def _block(
+        self, rows: npt.NDArray[np.int64], columns: npt.NDArray[np.int64]
+    ) -> npt.NDArray[np.float64]:
+        """Couplings of some constraints with some unknowns of positive sign."""
+        block = np.zeros((len(rows), len(columns)))
+        self._place[columns] = np.arange(len(columns))
+        for line, row in zip(block, rows.tolist(), strict=True):
+            part = slice(self._begin[row], self._begin[row + 1])
+            place = self._place[self._columns[part]]
+            line[place[place >= 0]] = self._values[part][place >= 0]
+        self._place[columns] = -1
+        return block
 
     def unreached(self, part: set[int]) -> list[int]:
         """Vertices of constraints that the unknowns of a part cannot meet by themselves.
@@ -107,7 +114,7 @@ class Constraints:
         pressures = sorted(v for v in part if graph.negative[v])
         left = []
         columns = self.unknowns(v for v in part if not graph.negative[v])
-        block = self._rows[self.unknowns(pressures)][:, columns].toarray()
+        block = self._block(self.unknowns(pressures), columns)
         block /= np.linalg.norm(block, axis=1)[:, None] + 1e-300
         owner = np.repeat(pressures, graph.weight[pressures])
         while len(owner):
@@ -137,6 +144,13 @@ class _Layers:
         for child in children:
             self.parent[child] = front
         return front
+
+    def join(self, tree: Tree) -> int:
+        """Take the fronts of one end, of which the last one is left."""
+        start = len(self.own)
+        self.own += tree.own
+        self.parent += [-1 if parent < 0 else parent + start for parent in tree.parent]
+        return len(self.own) - 1
 
     def between(self, part: list[int]) -> tuple[list[int], list[int]]:
         """Fronts of what lies between two planes, and the vertices that are left to a plane."""
@@ -222,6 +236,7 @@ def body_levels(graph: Graph) -> tuple[list[list[int]], list[list[int]], list[in
     rows = np.repeat(np.arange(count, dtype=np.int32), np.diff(begin))
     alone = np.flatnonzero(np.diff(begin) == 0)
     coupled = np.flatnonzero(np.diff(begin) > 0)
+    degree = np.diff(begin)
 
     def distances(level: npt.NDArray[np.int64]) -> Ints:
         result = np.full(count, -1, dtype=np.int32)
@@ -229,9 +244,11 @@ def body_levels(graph: Graph) -> tuple[list[list[int]], list[list[int]], list[in
         while len(level):
             result[level] = distance
             distance += 1
-            ranges = [neighbours[begin[v] : begin[v + 1]] for v in level]
-            found = np.unique(np.concatenate(ranges))
-            level = found[result[found] < 0]
+            counts = degree[level]
+            before = np.cumsum(counts) - counts
+            near = neighbours[np.arange(counts.sum()) + np.repeat(begin[level] - before, counts)]
+            result[near[result[near] < 0]] = distance
+            level = np.flatnonzero(result == distance)
         return result
 
     if not len(coupled):
@@ -253,8 +270,21 @@ def body_levels(graph: Graph) -> tuple[list[list[int]], list[list[int]], list[in
     return planes, between, alone.tolist()
 
 
-def long_body(graph: Graph, constraints: Constraints) -> Tree:
+def _all(ends: Sequence[Callable[[], Tree]]) -> list[Tree]:
+    return [end() for end in ends]
+
+
+def long_body(
+    graph: Graph,
+    constraints: Constraints,
+    share: Callable[[Sequence[Callable[[], Tree]]], list[Tree]] = _all,
+) -> Tree:
     """Fronts that eliminate a long body from both ends; the last but one is the middle plane.
+
+    Args:
+        graph: of its matrix.
+        constraints: couplings of its constraints.
+        share: makes the fronts of both ends, as ranks may do between them.
 
     Raises:
         UnsuitableError: few levels or wide ones, several bodies, or constraints in a plane.
@@ -267,22 +297,23 @@ def long_body(graph: Graph, constraints: Constraints) -> Tree:
     wide = sum(float(graph.weight[plane].sum()) ** 3 for plane in planes)
     if OPERATIONS * wide / RATE > GENERAL * len(planes) * unknowns**1.75:
         raise UnsuitableError("its planes are wide")
-    layers = _Layers(graph, constraints)
     middle = last // 2
 
-    def chain(order: Iterable[tuple[list[int], list[int]]]) -> list[int]:
+    def chain(order: Iterable[tuple[list[int], list[int]]]) -> Tree:
+        layers = _Layers(graph, constraints)
         before: list[int] = []
         for inside, plane in order:
             tops, left = layers.between(inside)
             before = [layers.add([*left, *plane], [*tops, *before])]
-        return before
+        return Tree(layers.own, layers.parent)
 
     up = [(between[k + 1], planes[k]) for k in range(middle)]
     up[0] = (between[0] + up[0][0], planes[0])
     down = [(between[k], planes[k]) for k in range(last - 1, middle, -1)]
     down[0] = (between[last] + down[0][0], planes[last - 1])
-    ends = chain(up) + chain(down)
-    layers.add(planes[middle], ends)
+    layers = _Layers(graph, constraints)
+    tops = [layers.join(tree) for tree in share([partial(chain, up), partial(chain, down)])]
+    layers.add(planes[middle], tops)
     for first in range(0, len(alone), PART):
         layers.add(alone[first : first + PART], ())
     return Tree(layers.own, layers.parent)

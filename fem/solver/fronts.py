@@ -82,39 +82,6 @@ class Code:
         return [self.pointer(array) for array in arrays]
 
 
-def matrix_graph(code: Code, begin: Ints, columns: Ints, negative: npt.NDArray[np.bool_]) -> Graph:
-    """Unknowns with the same couplings and sign as one vertex.
-
-    Args:
-        code: compiled.
-        begin: rows of the upper triangle of the matrix.
-        columns: their columns, rising, the diagonal first.
-        negative: constraints.
-    """
-    size = len(begin) - 1
-    key = np.random.default_rng(0).integers(1, 2**62, size, dtype=np.uint64)
-    total = np.zeros(size, dtype=np.uint64)
-    code.lib.sums(size, *code.pointers(begin, columns, key, total))
-    _, first, group, weight = np.unique(
-        2 * total + negative.astype(np.uint64),
-        return_index=True,
-        return_inverse=True,
-        return_counts=True,
-    )
-    group = group.astype(np.int32)
-    kept = np.zeros(size, dtype=bool)
-    kept[first] = True
-    rows = np.repeat(np.flatnonzero(kept), np.diff(begin)[kept])
-    others = columns[np.repeat(kept, np.diff(begin))]
-    both = kept[others] & (others != rows)
-    rows, others = group[rows[both]], group[others[both]]
-    rows, others = np.r_[rows, others], np.r_[others, rows]
-    order = np.lexsort((others, rows))
-    starts = np.r_[0, np.cumsum(np.bincount(rows, minlength=len(first)))].astype(np.int32)
-    weights = weight.astype(np.int32)
-    return Graph(starts, others[order], group, weights, negative[first])
-
-
 def _cut(array: Ints, size: int) -> Ints:
     """The first entries of an array, the rest of its memory freed."""
     return array if size == len(array) else array[:size].copy()
@@ -125,8 +92,9 @@ class Fronts:
 
     Args:
         code: compiled.
-        begin: rows of the upper triangle of the whole matrix.
-        columns: their columns.
+        begin: where rows of the matrix start that this rank knows, each entry once.
+        columns: their columns, by the numbers of these rows.
+        numbers: of these rows in the whole matrix.
         graph: its graph.
         tree: its fronts.
         mine: fronts whose numbers this rank needs.
@@ -135,6 +103,7 @@ class Fronts:
         unknowns: unknown of every place in the order of elimination.
         source: entries of the matrix that this rank's fronts take, in the order of use; whoever
             renumbers them gives `take` other values.
+        entry_at: where those of each front start, (fronts + 1,).
     """
 
     def __init__(
@@ -142,6 +111,7 @@ class Fronts:
         code: Code,
         begin: Ints,
         columns: Ints,
+        numbers: npt.NDArray[np.int64],
         graph: Graph,
         tree: Tree,
         mine: npt.NDArray[np.bool_],
@@ -153,7 +123,7 @@ class Fronts:
         self._order(graph, tree)
         self._set_borders(graph, tree)
         self._set_runs()
-        self.source = self._set_entries(begin, columns, mine)
+        self.source = self._set_entries(begin, columns, numbers, mine)
         self._reserve(mine)
 
     def _set(self, name: str, array: npt.NDArray[Any], kind: str = "int32") -> npt.NDArray[Any]:
@@ -221,18 +191,25 @@ class Fronts:
         run = self._set("run", np.zeros(3 * count))
         self._code.lib.runs(self._plan, *pointers, self._code.pointer(run))
 
-    def _set_entries(self, begin: Ints, columns: Ints, mine: npt.NDArray[np.bool_]) -> Ints:
+    def _set_entries(
+        self,
+        begin: Ints,
+        columns: Ints,
+        numbers: npt.NDArray[np.int64],
+        mine: npt.NDArray[np.bool_],
+    ) -> Ints:
         front = np.repeat(np.arange(self.fronts, dtype=np.int32), self.own)
         needed = mine.astype(np.uint8)
         source, target, high = (np.zeros(len(columns), dtype=np.int32) for _ in range(3))
         at = np.zeros(self.fronts + 2, dtype=np.int64)
-        arrays = (begin, columns, self._position, front, needed, high, at, source, target)
+        position = self._position[numbers]
+        arrays = (begin, columns, position, front, needed, high, at, source, target)
         size = len(begin) - 1
         self._code.lib.entries(self._plan, size, *self._code.pointers(*arrays))
-        at = self._set("entry_at", at[:-1], "int64")
+        self.entry_at = at = self._set("entry_at", at[:-1], "int64")
         source, target = (_cut(array, int(at[-1])) for array in (source, target))
         self._set("target", target)
-        where = np.zeros(size, dtype=np.int32)
+        where = np.zeros(len(self._position), dtype=np.int32)
         self._code.lib.locate(self._plan, *self._code.pointers(high, where, target))
         return source
 

@@ -9,16 +9,18 @@ is fixed, pivots are taken within a front only, so that a solution is checked by
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 import numpy.typing as npt
 from petsc4py import PETSc
 
-from fem.matrix import stored_values
-from fem.solver.dissection import Constraints, UnsuitableError, long_body
-from fem.solver.fronts import Code, Fronts, matrix_graph
+from fem.ranks import total
+from fem.solver.dissection import Tree, UnsuitableError, long_body
+from fem.solver.fronts import Code, Fronts
+from fem.solver.rows import Product, Rows, Taken, swap
 
 Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int32]
 
 ENOUGH = 1e-13
 """Residual of a solve, as a part of its terms, that is not improved any more."""
@@ -28,53 +30,6 @@ REFINEMENTS = 3
 
 class InaccurateError(ArithmeticError):
     """No refinement brings a solution to where its residual is round-off."""
-
-
-class Rows:
-    """The upper triangle that this rank stores, row by row.
-
-    Attributes:
-        begin: where each row starts, (owned + 1,).
-        columns: their columns, rising, the diagonal first.
-    """
-
-    def __init__(self, matrix: PETSc.Mat) -> None:
-        self._matrix = matrix
-        first, end = matrix.getOwnershipRange()
-        begin, columns = matrix.getDiagonalBlock().getRowIJ()
-        self._inner, self._outer = len(columns), list[tuple[int, int, int]]()
-        if matrix.getComm().size > 1:
-            matrix.setOption(PETSc.Mat.Option.GETROW_UPPERTRIANGULAR, True)
-            starts, within = np.diff(begin), np.split(columns, begin[1:-1])
-            parts = []
-            for row, inner in zip(range(first, end), within, strict=True):
-                whole = matrix.getRow(row)[0]
-                parts += [inner + first, whole[len(inner) :]]
-                if len(whole) > len(inner):
-                    self._outer.append((row, len(inner), len(whole)))
-            columns = np.concatenate([np.zeros(0, dtype=np.int32), *parts])
-            for row, _, length in self._outer:
-                starts[row - first] = length
-            begin = np.r_[0, np.cumsum(starts)]
-        self.begin = np.ascontiguousarray(begin, dtype=np.int32)
-        self.columns = np.ascontiguousarray(columns, dtype=np.int32)
-        self._first = first
-
-    def values(self) -> Floats:
-        """Entries now; a view where no row has columns of another rank."""
-        inner = stored_values(self._matrix, self._inner)
-        if not self._outer:
-            return inner
-        values = np.empty(len(self.columns))
-        taken = done = 0
-        for row, here, whole in self._outer:
-            start = int(self.begin[row - self._first])
-            count = start + here - done
-            values[done : start + here] = inner[taken : taken + count]
-            values[start + here : start + whole] = self._matrix.getRow(row)[1][here:]
-            taken, done = taken + count, start + whole
-        values[done:] = inner[taken:]
-        return values
 
 
 class Layers:
@@ -93,62 +48,72 @@ class Layers:
     """
 
     def __init__(self, matrix: PETSc.Mat, negative: npt.NDArray[np.bool_]) -> None:
-        self._matrix = matrix
         self._comm = comm = matrix.getComm().tompi4py()
         if comm.size > 2:
             raise UnsuitableError("two ranks at most")
-        self._rows = Rows(matrix)
-        values = self._rows.values()
-        self._offsets = np.r_[0, np.cumsum(comm.allgather(len(negative)))]
-        begin, columns = self._rows.begin, self._rows.columns
-        counts = [len(columns)]
-        if comm.size > 1:
-            counts = comm.allgather(len(columns))
-            begin = np.r_[0, np.cumsum(np.concatenate(comm.allgather(np.diff(begin))))]
-            begin = begin.astype(np.int32)
-            columns = np.concatenate(comm.allgather(columns))
-            values = np.concatenate(comm.allgather(values))
-            negative = np.concatenate(comm.allgather(negative))
+        self._rows = rows = Rows(matrix)
         self._code = code = Code(comm)
         self._negative = negative
-        graph = matrix_graph(code, begin, columns, negative)
-        tree = long_body(graph, Constraints(begin, columns, values, graph))
+        if comm.size > 1:
+            negative = np.concatenate(comm.allgather(negative))
+        graph = rows.graph(code, negative)
+        tree = long_body(graph, rows.constraints(graph, negative), self._ends)
         # fronts [0, turn) from one end, [turn, middle) from the other, then the middle plane
         roots = [front for front, parent in enumerate(tree.parent) if parent == -1]
         self._middle = roots[0]
         tops = [front for front, parent in enumerate(tree.parent) if parent == self._middle]
         self._turn, self._top = tops[0] + 1, tops[-1]
-        fronts = np.arange(len(tree.own))
-        far = (fronts >= self._turn) & (fronts < self._middle)
-        owner = np.where(far, comm.size - 1, 0)
-        self._fronts = Fronts(code, begin, columns, graph, tree, owner == comm.rank)
-        self._exchange(np.repeat(np.arange(comm.size), counts))
+        front_of = np.empty(len(graph.weight), dtype=np.int32)
+        for front, own in enumerate(tree.own):
+            front_of[own] = front
+        eliminated = front_of[graph.group]
+        far = np.zeros(len(tree.own), dtype=bool)
+        far[self._turn : self._middle] = True
+        self._last = self._at_last(far[eliminated])
+        mine = self._mine(far)
+        self._taken = taken = Taken(rows, eliminated, mine)
+        self._fronts = Fronts(code, taken.begin, taken.columns, taken.numbers, graph, tree, mine)
+        taken.place(self._fronts)
+        self._product = Product(code, rows)
+        self._outer = np.zeros(0)
+        self._share(far[eliminated])
         self.negative_pivots = self.pivoted = 0
 
-    def _exchange(self, owner: Ints) -> None:
-        """Which of the values on other ranks this one needs."""
-        source = self._fronts.source
-        self._sent = np.zeros(0, dtype=np.int64)
+    def _ends(self, ends: Sequence[Callable[[], Tree]]) -> list[Tree]:
+        """Trees of both ends, one made by each of two ranks."""
         if self._comm.size == 1:
-            self._fronts.take(source)
-            return
-        starts = np.searchsorted(owner, np.arange(self._comm.size))
-        here = owner[source] == self._comm.rank
-        wanted = source[~here]
-        other = 1 - self._comm.rank
-        asked = self._comm.sendrecv(wanted, other, source=other)
-        self._sent = asked - starts[self._comm.rank]
-        local = np.empty(len(source), dtype=np.int32)
-        local[here] = source[here] - starts[self._comm.rank]
-        local[~here] = len(self._rows.columns) + np.arange(len(wanted))
-        self._fronts.take(local)
+            return [end() for end in ends]
+        found: list[Tree] = self._comm.allgather(ends[self._comm.rank]())
+        return found
 
-    def _values(self) -> Floats:
-        values = self._rows.values()
+    def _at_last(self, far: npt.NDArray[np.bool_]) -> bool:
+        """Whether this rank takes the first end and the middle plane: by whose rows they are."""
         if self._comm.size == 1:
-            return values
-        other = 1 - self._comm.rank
-        return np.r_[values, self._comm.sendrecv(values[self._sent], other, source=other)]
+            return True
+        here = far[: self._rows.first] if self._comm.rank else far[: self._rows.end]
+        first = 2 * int((~here).sum()) >= len(here)
+        return first == (self._comm.rank == 0)
+
+    def _mine(self, far: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+        """What of all is eliminated here, by what is eliminated from the second end; a copy."""
+        if self._comm.size == 1:
+            return np.ones_like(far)
+        return ~far if self._last else far.copy()
+
+    def _share(self, far: npt.NDArray[np.bool_]) -> None:
+        """Places of unknowns in the order of elimination, by who has their rows.
+
+        Args:
+            far: whether an unknown is eliminated from the second end, (size,).
+        """
+        rows = self._rows
+        place = np.empty(rows.size, dtype=np.int64)
+        place[self._fronts.unknowns] = np.arange(rows.size)
+        mine = self._mine(far)
+        own, self._here = slice(rows.first, rows.end), mine[rows.first : rows.end].copy()
+        self._own_place = place[own][self._here]
+        mine[own] = False
+        self._other_place = place[mine]
 
     def renew(self) -> None:
         """Factorise the matrix as it is now; collective.
@@ -156,82 +121,81 @@ class Layers:
         Raises:
             ZeroDivisionError: the own unknowns of a front are singular.
         """
-        values = self._values()
+        self._outer = self._rows.outer_values()
+        values = self._taken.values(self._outer)
         failed, counts = False, np.zeros(2, dtype=np.int64)
         fronts, comm = self._fronts, self._comm
 
         def do(first: int, end: int) -> None:
             nonlocal failed, counts
-            if failed:
-                return
-            try:
-                counts = counts + fronts.factorise(first, end, values)
-            except ZeroDivisionError:
-                failed = True
+            turn = min(max(self._taken.turn, first), end)
+            for start, stop, given in zip((first, turn), (turn, end), values, strict=True):
+                if failed or start == stop:
+                    continue
+                try:
+                    counts = counts + fronts.factorise(start, stop, given)
+                except ZeroDivisionError:
+                    failed = True
 
         if comm.size == 1:
             do(0, fronts.fronts)
-        elif comm.rank == 1:
+        elif not self._last:
             do(self._turn, self._middle)
-            comm.Send(fronts.left(self._top), 0)
+            comm.Send(fronts.left(self._top), 1 - comm.rank)
         else:
             do(0, self._turn)
-            comm.Recv(fronts.left(self._top), 1)
+            comm.Recv(fronts.left(self._top), 1 - comm.rank)
             do(self._middle, fronts.fronts)
-        if comm.allreduce(failed):
+        if total(comm, int(failed)):
             raise ZeroDivisionError("the own unknowns of a front are singular")
-        self.negative_pivots, self.pivoted = map(int, comm.allreduce(counts))
+        self.negative_pivots, self.pivoted = map(int, total(comm, counts))
 
     def _solve(self, b: Floats) -> Floats:
-        """One solve without refinement, whole vectors on every rank, (columns, unknowns)."""
-        comm, fronts = self._comm, self._fronts
-        x = np.ascontiguousarray(b[:, fronts.unknowns])
+        """One solve without refinement, owned parts, (columns, owned)."""
+        comm, fronts, here = self._comm, self._fronts, self._here
+        count = len(b)
+        x = np.zeros((count, self._rows.size))
+        x[:, self._own_place] = b[:, here]
         if comm.size == 1:
             fronts.forward(0, fronts.fronts, x)
             fronts.backward(0, fronts.fronts, x)
+            return np.ascontiguousarray(x[:, self._own_place])
+        others = self._other_place
+        x[:, others] = swap(comm, b[:, ~here], count * len(others)).reshape(count, -1)
+        turn, middle, end = self._turn, self._middle, fronts.fronts
+        other, far = 1 - comm.rank, int(fronts.first[middle])
+        beyond = np.empty((count, x.shape[1] - far))
+        if not self._last:
+            fronts.forward(turn, middle, x)
+            comm.Send(np.ascontiguousarray(x[:, far:]), other)
+            comm.Recv(beyond, other)
+            x[:, far:] = beyond
+            fronts.backward(turn, middle, x)
         else:
-            turn, middle, end = self._turn, self._middle, fronts.fronts
-            near, far = (int(fronts.first[front]) for front in (turn, middle))
-            if comm.rank == 1:
-                x[:, far:] = 0.0
-                fronts.forward(turn, middle, x)
-                x[:, far:] = comm.sendrecv(x[:, far:], 0, source=0)
-                fronts.backward(turn, middle, x)
-                x[:, :near] = comm.sendrecv(x[:, near:far], 0, source=0)
-            else:
-                fronts.forward(0, turn, x)
-                x[:, far:] += comm.recv(source=1)
-                fronts.forward(middle, end, x)
-                fronts.backward(middle, end, x)
-                comm.send(x[:, far:], 1)
-                fronts.backward(0, turn, x)
-                x[:, near:far] = comm.sendrecv(x[:, :near], 1, source=1)
-        result = np.empty_like(x)
-        result[:, fronts.unknowns] = x
-        return result
+            fronts.forward(0, turn, x)
+            comm.Recv(beyond, other)
+            x[:, far:] += beyond
+            fronts.forward(middle, end, x)
+            fronts.backward(middle, end, x)
+            comm.Send(np.ascontiguousarray(x[:, far:]), other)
+            fronts.backward(0, turn, x)
+        found = np.empty_like(b)
+        found[:, here] = x[:, self._own_place]
+        away = count * int((~here).sum())
+        found[:, ~here] = swap(comm, x[:, others], away).reshape(count, -1)
+        return found
 
     def _residual(self, b: Floats, x: Floats) -> tuple[Floats, Floats]:
-        """b − K x, and the greatest part of |K| |x| + |b| that it is, (columns,).
+        """b − K x, owned part, and the greatest part of |K| |x| + |b| that it is, (columns,).
 
         In two parts, forces and volumes, which have units of their own. Oettli and Prager 1964,
         doi 10.1007/BF01386090; norms instead of single rows, which may be zero.
         """
-        code, rows = self._code, self._rows
-        first = int(self._offsets[self._comm.rank])
-        values = rows.values()
-        r, bound = np.zeros((2, *b.shape))
-        for column, rest, total in zip(x, r, bound, strict=True):
-            arrays = (rows.begin, rows.columns, values, column, rest, total)
-            code.lib.residual(len(rows.begin) - 1, first, *code.pointers(*arrays))
-        if self._comm.size > 1:
-            r, bound = self._comm.allreduce(np.array([r, bound]))
-        r, bound = r + b, bound + np.abs(b)
-        errors = np.zeros(len(b))
-        for part in (self._negative, ~self._negative):
-            size = np.linalg.norm(bound[:, part], axis=1)
-            here = np.linalg.norm(r[:, part], axis=1) / np.where(size > 0, size, 1.0)
-            errors = np.maximum(errors, here)
-        return r, errors
+        r, bound = self._product.residual(self._rows.inner_values(), self._outer, b, x)
+        parts = (self._negative, ~self._negative)
+        squares = [[(v[:, part] ** 2).sum(axis=1) for part in parts] for v in (r, bound)]
+        here, size = np.sqrt(total(self._comm, np.array(squares)))
+        return r, (here / np.where(size > 0, size, 1.0)).max(axis=0)
 
     def solve(self, b: Floats) -> Floats:
         """K⁻¹ b, owned parts, (columns, owned), refined until its residual is round-off.
@@ -239,8 +203,6 @@ class Layers:
         Raises:
             InaccurateError: refinement does not help.
         """
-        if self._comm.size > 1:
-            b = np.concatenate(self._comm.allgather(b), axis=1)
         x, before = np.zeros_like(b), np.inf
         r = b
         for _ in range(REFINEMENTS + 1):
@@ -248,8 +210,7 @@ class Layers:
             r, errors = self._residual(b, x)
             error = float(errors.max(initial=0.0))
             if error <= ENOUGH:
-                first, end = self._offsets[self._comm.rank : self._comm.rank + 2]
-                return x[:, first:end]
+                return x
             if not error < before / 2:
                 break
             before = error

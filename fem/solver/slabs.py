@@ -22,9 +22,8 @@ from petsc4py import PETSc
 
 from fem.kinematics.place import Place
 from fem.ranks import total
-from fem.solver.layers import Rows
 from fem.solver.problem import RefusedError
-from fem.solver.slab_parts import Block, Cuts, Gathered
+from fem.solver.slab_parts import Block, Cuts, Gathered, StoredRows
 
 Floats = npt.NDArray[np.float64]
 
@@ -122,7 +121,7 @@ class Slabs:
         K has entries μ h between displacements and h² between them and pressures.
         """
         kinds = self._volumetric
-        rows = Rows(self._matrix)
+        rows = StoredRows(self._matrix)
         alone = np.diff(rows.begin) == 1
         self._matrix.getDiagonal(self._x)
         diagonal = self._x.array_r[~kinds & ~alone]

@@ -93,7 +93,7 @@ class Recording(Hook):
 
     def _save(self, folder: RunFolder, march: Marching, step: int) -> None:
         """Keep where it stands; run.json says so too, of a run that is killed."""
-        restart.save(folder, self._archive, march.saved(), self.rows)
+        restart.save(folder, self._archive, march.saved(), self.rows, self.warnings)
         self.kept = step
         reason = f"at step {step}, kept; where no process runs it: go on with --resume"
         scene = self._assembly.scene

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -28,15 +28,21 @@ class Saved:
         position: where its march stood.
         rows: its history.
         snapshots: those it had taken.
+        warnings: what it had warned of.
     """
 
     position: Position
     rows: list[dict[str, Any]]
     snapshots: list[Snapshot]
+    warnings: list[str]
 
 
 def save(
-    folder: RunFolder, archive: Archive, position: Position, rows: list[dict[str, Any]]
+    folder: RunFolder,
+    archive: Archive,
+    position: Position,
+    rows: list[dict[str, Any]],
+    warnings: Sequence[str],
 ) -> None:
     """Write all that is needed to go on from here, and the history; collective.
 
@@ -47,11 +53,13 @@ def save(
         archive: moves states to rank 0.
         position: where the march stands.
         rows: rows of the history so far.
+        warnings: what was warned of so far; not all of it is seen again.
     """
     arrays = archive.pack(position)
     history = np.array(json.dumps(rows, default=float))
     folder.replace(CHECKPOINT, CHECKPOINT_BEFORE)
-    folder.write_arrays(CHECKPOINT, rows=history, **arrays)
+    warned = np.array(json.dumps(list(warnings)))
+    folder.write_arrays(CHECKPOINT, rows=history, warnings=warned, **arrays)
     folder.write_history(rows)
 
 
@@ -72,7 +80,7 @@ def load(folder: RunFolder, archive: Archive, say: Callable[[str], None]) -> Sav
     arrays = comm.bcast(arrays)
     if arrays is None:
         return None
-    rows = json.loads(str(arrays.pop("rows", "[]")))
+    rows, warnings = (json.loads(str(arrays.pop(name, "[]"))) for name in ("rows", "warnings"))
     if not rows or not all(map(col.is_column, rows[-1])):
         text = "of another version of fiberbend, cannot be resumed: expected --overwrite"
         raise CaseError([Problem(str(folder.path / CHECKPOINT), text)])
@@ -82,9 +90,8 @@ def load(folder: RunFolder, archive: Archive, say: Callable[[str], None]) -> Sav
         snapshot = read_snapshot(shot, say)
         if snapshot and snapshot.step <= rows[-1][col.STEP] and snapshot.label != LAST:
             snapshots.append(snapshot)
-    return Saved(
-        archive.unpack(arrays), rows, sorted(snapshots, key=lambda snapshot: snapshot.step)
-    )
+    snapshots.sort(key=lambda snapshot: snapshot.step)
+    return Saved(archive.unpack(arrays), rows, snapshots, warnings)
 
 
 def mesh(folder: RunFolder) -> MeshData | None:

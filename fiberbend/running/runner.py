@@ -327,6 +327,7 @@ class _Run:
             () if saved is None else saved.snapshots,
         )
         if again:
+            recording.warn([] if saved is None else saved.warnings)
             recording.remark(march.report)
             self.progress.message(f"resumed after step {recorder.rows[-1][col.STEP]}")
         return recorder, recording

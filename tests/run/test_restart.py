@@ -14,6 +14,7 @@ from mpi4py import MPI
 
 from fem.march.records import MODES
 from fem.results.checkpoint import Archive
+from fem.solver.factor import Factor
 from fem.solver.newton import Outcome
 from fiberbend.models.choice import meshed
 from fiberbend.models.result import RunResult
@@ -26,6 +27,7 @@ from fiberbend.results.folder import (
     RunFolder,
 )
 from fiberbend.results.reading import read_history
+from fiberbend.running import messages
 from fiberbend.running.assembly import assemble
 from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording
@@ -117,6 +119,25 @@ def test_the_same_to_the_last_bit(whole: RunResult, cut: Path, tmp_path: Path) -
     again, lines = _on(CASE, _copy(cut, tmp_path))
     assert "resumed after step 2" in lines
     assert_bitwise(again, whole)
+
+
+def test_what_was_warned_of_is_warned_of_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A run that has gone over to MUMPS does not again where it goes on: the warning stays."""
+    begin = Factor.__init__
+
+    def left(self: Factor, *given: Any, **named: Any) -> None:
+        begin(self, *given, **named)
+        self.left = "a residual of 1e-9 of its terms"
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Factor, "__init__", left)
+        out = _cut(CASE, tmp_path / "run", step=3)
+    again, lines = _on(CASE, out)
+    text = messages.left_to_mumps("a residual of 1e-9 of its terms")
+    assert lines.count(text) == 1
+    assert again.run["warnings"].count(text) == 1
 
 
 @pytest.mark.hard
