@@ -18,7 +18,7 @@ from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from fem.scene import Scene
-from fem.solver.layers import Rows
+from fem.solver.slab_parts import StoredRows
 
 Floats = npt.NDArray[np.float64]
 Row = dict[str, Any]
@@ -56,7 +56,7 @@ class Parts:
     """
 
     def __init__(self, scene: Scene) -> None:
-        rows = Rows(scene.matrix)
+        rows = StoredRows(scene.matrix)
         size = len(rows.begin) - 1
         upper = sparse.csr_matrix((rows.values(), rows.columns, rows.begin), shape=(size, size))
         whole = (upper + sparse.triu(upper, 1).T).tocsr()
