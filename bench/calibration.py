@@ -205,7 +205,7 @@ def _up_to_pressures() -> dict[str, str]:
 
 def _up_to_angles() -> dict[str, str]:
     return {
-        "effects.0.pressure.to": "260 kPa",
+        "effects.0.pressure.to": "300 kPa",
         "output.at_angles": f"[{', '.join(f'{angle} deg' for angle in ANGLES)}]",
         "output.stop_at_angle": f"{ANGLES[-1]} deg",
     }
