@@ -42,10 +42,10 @@ ROOT = Path(__file__).resolve().parent.parent
 CASE = ROOT / "cases" / "free_bending.yaml"
 KEPT = ROOT / "build" / "iterative"
 BODIES = (
-    (1, 6.0, "smeared"),
-    (1, 6.0, "calibrated"),
     (1, 6.0, "discrete"),
     (1, 1.5, "discrete"),
+    (1, 6.0, "smeared"),
+    (1, 6.0, "calibrated"),
     (2, 2.0, "discrete"),
 )
 """Elements through each thickness, length of the elements along the axis, mm, and the winding; the
