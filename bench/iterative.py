@@ -52,7 +52,7 @@ BODIES = (
 last takes ten minutes of the processor."""
 ANGLES = (0, 45, 180)
 SLABS = (4, 16)
-TRIED, LARGE = ("smeared", "discrete"), 200_000
+TRIED, LARGE = ("discrete",), 200_000
 """Windings of the coarsest body with which block preconditioners and multigrid are tried; unknowns
 from which on only the last state is."""
 

@@ -14,8 +14,8 @@ Row = Mapping[str, Any]
 HEAD = """\
 # Iterative solvers
 
-Made by `python -m bench.iterative --bodies {bodies}` on {machine}, PETSc {version}: the baseline's body at rest, bent
-to 45° and to 180°. The tangent of that state is solved for the
+Made by `python -m bench.iterative --bodies {bodies}` on {machine}, PETSc {version}:
+the baseline's body at rest, bent to 45° and to 180°. The tangent of that state is solved for the
 response to the pressure until 1e-8 of the right side is left. Seconds are of the processor, in one
 process on one core, beside other work: good to a fifth. Memory is that of the factors by MUMPS's
 own count. *Error* is that of the displacements against the direct solution.
@@ -24,8 +24,8 @@ own count. *Error* is that of the displacements against the direct solution.
 - **MUMPS**: the general direct solver, with the memory of its factor. (L of the layers is smaller.)
 - **slabs**: what `solver: {{linear: iterative}}` takes. The body is cut across its axis. Each slab,
   overlapped by its neighbours, is factorised by MUMPS with displacements and pressures; a coarse
-  system has six rigid motions a slab; GMRES. All slabs on this one rank; their memory has the factors
-  of the strips in which slabs overlap.
+  system has six rigid motions a slab; GMRES. All slabs on this one rank; their memory
+  has the factors of the strips in which slabs overlap.
 - **augmented Lagrangian**: A + γ Bᵀ W⁻¹ B factorised exactly, block triangular with the pressures.
 - **A alone**: conjugate gradients for A x = f, without pressures, at most 5 s and 400 iterations:
   a solver of the whole system would do this in every iteration.
@@ -89,12 +89,12 @@ def _summary(rows: Sequence[Row]) -> list[str]:
         "## What they say",
         "",
         f"- **Slabs converge at every state**: {min(counts)} to {max(counts)} iterations in "
-        f"all that was measured; {sum('why' in row for row in slabs)} of {len(slabs)} were refused.",
+        f"all that was measured; {len(slabs) - len(counts)} of {len(slabs)} were refused.",
         f"- **On one core they pay nothing.** Factor and one solve take {min(times):.1f} to "
         f"{max(times):.1f} times the direct solver's time, a solve alone {min(solves):.0f} to "
         f"{max(solves):.0f} times, and the factors {min(memory):.2f} to {max(memory):.2f} times "
-        "MUMPS's memory. What they are for is more than two ranks, where the layers end: each rank "
-        "has its own slabs. Beyond two ranks nothing was measured, for want of cores.",
+        "MUMPS's memory. What they are for is more than two ranks, where only MUMPS is left: "
+        "each rank has its own slabs. Beyond two ranks nothing was measured, for want of cores.",
     ]
     if alone:
         lines.append(
