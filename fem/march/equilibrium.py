@@ -194,7 +194,7 @@ class Equilibrium:
         conjugate, value = (state.measures[name] - before.measures[name] for name in kinds)
         # where the load has turned and another mode is lost, the count stays as it is
         turned = conjugate * value * state.measures[rate] < 0
-        if not self.newton.factor.counts:
+        if not self._counts():
             if turned:
                 raise RefusedError(f"a limit point of {scalar}, where negative pivots must be told")
             return
@@ -213,7 +213,7 @@ class Equilibrium:
         Those of the opposite symmetry, with the loads at given values. A round body may turn its
         buckles about its axis at no cost: what costs less than the mesh knows is no instability.
         """
-        if self.scene.free_opposite is None or not self.newton.factor.counts:
+        if self.scene.free_opposite is None or not self._counts():
             return 0
         self.restore(state)
         modes = opposite_modes(self.newton) - self._volumetric
@@ -253,6 +253,10 @@ class Equilibrium:
         start = np.zeros(body.owned)
         start[body.node_dofs[nodes]] = values[nodes]
         return start
+
+    def _counts(self) -> bool:
+        """Whether the solver tells negative pivots."""
+        return self.newton.factor.counts
 
     def _modes(self) -> int:
         return self.newton.negative_pivots(self.scene.natural) - self._volumetric

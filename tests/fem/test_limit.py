@@ -288,6 +288,9 @@ class _Told(Equilibrium):
     def __init__(self, rate: float | None) -> None:
         self._rate = rate
 
+    def _counts(self) -> bool:
+        return True
+
     def _modes(self) -> int:
         return 1
 
