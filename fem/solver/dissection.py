@@ -9,11 +9,15 @@ other, are halved along their own level sets until they are small.
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Iterable
 
 import numpy as np
 import numpy.typing as npt
+
+from fem.solver.order.blocks import fronts_of, order_blocks
+from fem.solver.order.constraints import Constraints
+from fem.solver.order.graph import Graph, Tree, UnsuitableError
+from fem.solver.order.swept import find_elements
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -22,103 +26,11 @@ PART = 60
 """Unknowns of a part between two planes that is not halved any more."""
 JOINED = 24
 """Unknowns of a cut through such a part that are eliminated together with the plane beside it."""
-REACHED = 1e-2
-"""Least singular value, relative, of constraints that can be eliminated within a part."""
 
 OPERATIONS, RATE, GENERAL = 3.3, 2.7e10, 7.5e-8
 """Multiplications and additions of a plane of n unknowns by n³, 7/3 of them for itself; how many
 are done in a second; and seconds of a general solver for n unknowns in each of L layers by
 L n^1.75. Measured on one core, on the body of cases/free_bending.yaml."""
-
-
-@dataclasses.dataclass(frozen=True)
-class Graph:
-    """Vertices are groups of unknowns with the same couplings and the same sign.
-
-    Attributes:
-        begin: where the neighbours of each vertex start, (vertices + 1,).
-        neighbours: of all vertices, one after the other, without themselves.
-        group: vertex of each unknown, (unknowns,).
-        weight: unknowns of each vertex, (vertices,).
-        negative: whether they are constraints, whose pivots are negative, (vertices,).
-    """
-
-    begin: Ints
-    neighbours: Ints
-    group: Ints
-    weight: Ints
-    negative: npt.NDArray[np.bool_]
-
-
-@dataclasses.dataclass(frozen=True)
-class Tree:
-    """Fronts in the order of elimination.
-
-    Attributes:
-        own: vertices that each front eliminates.
-        parent: the front that takes what it leaves; -1: none.
-    """
-
-    own: list[list[int]]
-    parent: list[int]
-
-
-class UnsuitableError(Exception):
-    """The matrix is not that of a long body with constraints inside its layers."""
-
-
-class Constraints:
-    """Couplings of constraints with unknowns of positive sign.
-
-    Args:
-        begin: rows of the upper triangle of the matrix.
-        columns: their columns, rising.
-        values: their entries.
-        graph: its graph.
-    """
-
-    def __init__(self, begin: Ints, columns: Ints, values: Floats, graph: Graph) -> None:
-        from scipy import sparse
-
-        size = len(begin) - 1
-        negative = graph.negative[graph.group]
-        rows = np.repeat(np.arange(size, dtype=np.int32), np.diff(begin))
-        mixed = np.flatnonzero(negative[rows] != negative[columns])
-        rows, others, entries = rows[mixed], columns[mixed], values[mixed]
-        swap = ~negative[rows]
-        rows, others = np.where(swap, others, rows), np.where(swap, rows, others)
-        self._rows = sparse.csr_matrix((entries, (rows, others)), shape=(size, size))
-        self._members = np.argsort(graph.group, kind="stable")
-        self._start = np.r_[0, np.cumsum(graph.weight)]
-        self._graph = graph
-
-    def unknowns(self, vertices: Iterable[int]) -> npt.NDArray[np.int64]:
-        """Unknowns of some vertices."""
-        parts = [self._members[self._start[v] : self._start[v + 1]] for v in vertices]
-        return np.concatenate([np.zeros(0, dtype=np.int64), *parts])
-
-    def unreached(self, part: set[int]) -> list[int]:
-        """Vertices of constraints that the unknowns of a part cannot meet by themselves.
-
-        No displacement within a closed part changes its volume: the sum of all volumes is a null
-        vector of Bᵀ, with B the couplings of constraints (rows) and displacements (columns).
-        """
-        graph = self._graph
-        pressures = sorted(v for v in part if graph.negative[v])
-        left = []
-        columns = self.unknowns(v for v in part if not graph.negative[v])
-        block = self._rows[self.unknowns(pressures)][:, columns].toarray()
-        block /= np.linalg.norm(block, axis=1)[:, None] + 1e-300
-        owner = np.repeat(pressures, graph.weight[pressures])
-        while len(owner):
-            # squares of singular values, rising: those of BBᵀ, which is small where B is wide
-            squares, modes = np.linalg.eigh(block @ block.T)
-            if squares[0] > REACHED**2 * squares[-1]:
-                break
-            vertex = int(owner[np.argmax(np.abs(modes[:, 0]))])
-            left.append(vertex)
-            block, owner = block[owner != vertex], owner[owner != vertex]
-        return left
 
 
 class _Layers:
@@ -251,6 +163,17 @@ def body_levels(graph: Graph) -> tuple[list[list[int]], list[list[int]], list[in
     planes = [part[facing[part]].tolist() for part in parts]
     between = [part[~facing[part]].tolist() for part in parts]
     return planes, between, alone.tolist()
+
+
+def swept_body(graph: Graph, constraints: Constraints) -> Tree:
+    swept = find_elements(graph)
+    order = order_blocks(graph, swept)
+    own, parent = constraints.settled(*fronts_of(graph, swept, order))
+    alone = np.flatnonzero(np.diff(graph.begin) == 0)
+    for first in range(0, len(alone), PART):
+        own.append(alone[first : first + PART])
+        parent.append(-1)
+    return Tree(own, parent)
 
 
 def long_body(graph: Graph, constraints: Constraints) -> Tree:

@@ -20,7 +20,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from fem import kernels
-from fem.solver.dissection import Graph, Tree
+from fem.solver.order.graph import Graph, Tree
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
