@@ -1,8 +1,9 @@
-"""Order of elimination of a long body: planes from both ends, and what lies between them first.
+"""Order of elimination of a long body: in blocks of elements, or plane by plane.
 
-Level sets of the matrix's graph from one end of the body (George and Liu 1981, Computer solution
+Where every element shows itself by its constraints, blocks of them are eliminated (`order.blocks`).
+Elsewhere level sets of the matrix's graph from one end of the body (George and Liu 1981, Computer solution
 of large sparse positive definite systems, Prentice-Hall, section 4.3). What of a level is coupled
-to the next one is its plane, the rest lies between two planes. Planes are eliminated one after the
+to the next one is its plane, the rest lies between two planes, before which it goes. Planes are eliminated one after the
 other from both ends, and meet in the middle; the parts between them, which know nothing of each
 other, are halved along their own level sets until they are small.
 """
@@ -17,6 +18,7 @@ import numpy.typing as npt
 from fem.solver.order.blocks import fronts_of, order_blocks
 from fem.solver.order.constraints import Constraints
 from fem.solver.order.graph import Graph, Tree, UnsuitableError
+from fem.solver.order.pieces import RATE
 from fem.solver.order.swept import find_elements
 
 Floats = npt.NDArray[np.float64]
@@ -27,10 +29,10 @@ PART = 60
 JOINED = 24
 """Unknowns of a cut through such a part that are eliminated together with the plane beside it."""
 
-OPERATIONS, RATE, GENERAL = 3.3, 2.7e10, 7.5e-8
-"""Multiplications and additions of a plane of n unknowns by n³, 7/3 of them for itself; how many
-are done in a second; and seconds of a general solver for n unknowns in each of L layers by
-L n^1.75. Measured on one core, on the body of cases/free_bending.yaml."""
+OPERATIONS, GENERAL = 3.3, 1.15e-7
+"""Multiplications and additions of a plane of n unknowns by n³, 7/3 of them for itself; and seconds
+of a general solver for n unknowns in each of L layers by L n^1.75. Measured on the core and on the
+bodies of `RATE`."""
 
 
 class _Layers:
@@ -123,8 +125,8 @@ def _pieces(near: dict[int, set[int]], part: set[int]) -> list[set[int]]:
     return pieces
 
 
-def body_levels(graph: Graph) -> tuple[list[list[int]], list[list[int]], list[int]]:
-    """Planes of a long body, what lies before each of them, and vertices without neighbours.
+def body_levels(graph: Graph) -> tuple[list[list[int]], list[list[int]]]:
+    """Planes of a long body, and what lies before each of them.
 
     Raises:
         UnsuitableError: several bodies, or constraints in a plane.
@@ -132,7 +134,6 @@ def body_levels(graph: Graph) -> tuple[list[list[int]], list[list[int]], list[in
     begin, neighbours = graph.begin, graph.neighbours
     count = len(begin) - 1
     rows = np.repeat(np.arange(count, dtype=np.int32), np.diff(begin))
-    alone = np.flatnonzero(np.diff(begin) == 0)
     coupled = np.flatnonzero(np.diff(begin) > 0)
 
     def distances(level: npt.NDArray[np.int64]) -> Ints:
@@ -162,34 +163,43 @@ def body_levels(graph: Graph) -> tuple[list[list[int]], list[list[int]], list[in
     parts = np.split(order, np.searchsorted(level[order], np.arange(level.max() + 1)))[1:]
     planes = [part[facing[part]].tolist() for part in parts]
     between = [part[~facing[part]].tolist() for part in parts]
-    return planes, between, alone.tolist()
-
-
-def swept_body(graph: Graph, constraints: Constraints) -> Tree:
-    swept = find_elements(graph)
-    order = order_blocks(graph, swept)
-    own, parent = constraints.settled(*fronts_of(graph, swept, order))
-    alone = np.flatnonzero(np.diff(graph.begin) == 0)
-    for first in range(0, len(alone), PART):
-        own.append(alone[first : first + PART])
-        parent.append(-1)
-    return Tree(own, parent)
+    return planes, between
 
 
 def long_body(graph: Graph, constraints: Constraints) -> Tree:
-    """Fronts that eliminate a long body from both ends; the last but one is the middle plane.
+    """Fronts that eliminate a long body from both ends; the middle plane follows them.
 
     Raises:
         UnsuitableError: few levels or wide ones, several bodies, or constraints in a plane.
     """
-    planes, between, alone = body_levels(graph)
+    try:
+        swept = find_elements(graph)
+    except UnsuitableError:
+        tree = _plane_by_plane(graph, constraints)
+    else:
+        order = order_blocks(graph, swept)
+        layers = int(swept.layer.max()) + 1
+        _demand(order.seconds, len(graph.group), layers)
+        tree = Tree(*constraints.settled(*fronts_of(graph, swept, order)))
+    alone = np.flatnonzero(np.diff(graph.begin) == 0)
+    parts = [alone[first : first + PART] for first in range(0, len(alone), PART)]
+    return Tree([*tree.own, *parts], [*tree.parent, *[-1] * len(parts)])
+
+
+def _demand(seconds: float, unknowns: int, layers: int) -> None:
+    """Refuse what a general solver is likely to do sooner."""
+    if seconds > GENERAL * layers * (unknowns / layers) ** 1.75:
+        raise UnsuitableError("its planes are wide")
+
+
+def _plane_by_plane(graph: Graph, constraints: Constraints) -> Tree:
+    """Every plane by itself, and what lies between two of them."""
+    planes, between = body_levels(graph)
     last = len(planes) - 1
     if last < 3:
         raise UnsuitableError("the body is short")
-    unknowns = len(graph.group) / len(planes)
     wide = sum(float(graph.weight[plane].sum()) ** 3 for plane in planes)
-    if OPERATIONS * wide / RATE > GENERAL * len(planes) * unknowns**1.75:
-        raise UnsuitableError("its planes are wide")
+    _demand(OPERATIONS * wide / RATE, len(graph.group), len(planes))
     layers = _Layers(graph, constraints)
     middle = last // 2
 
@@ -206,6 +216,4 @@ def long_body(graph: Graph, constraints: Constraints) -> Tree:
     down[0] = (between[last] + down[0][0], planes[last - 1])
     ends = chain(up) + chain(down)
     layers.add(planes[middle], ends)
-    for first in range(0, len(alone), PART):
-        layers.add(alone[first : first + PART], ())
     return Tree(layers.own, layers.parent)

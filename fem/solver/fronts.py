@@ -20,7 +20,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from fem import kernels
-from fem.solver.order.graph import Graph, Tree
+from fem.solver.order.graph import Graph, Tree, UnsuitableError
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -43,9 +43,13 @@ typedef struct {{ ...; }} blas_t;
 typedef struct {{ int fronts; {_TABLES} }} plan_t;
 void bind(blas_t *, const uintptr_t *);
 void sums(int32_t, const int32_t *, const int32_t *, const uint64_t *, uint64_t *);
+void neighbours(int32_t, const int32_t *, const int32_t *, const uint8_t *, const int32_t *,
+                int32_t *, int32_t *);
+void couplings(int32_t, const int32_t *, const int32_t *, const uint8_t *, const double *,
+               int32_t *, int32_t *, double *);
 int borders(int32_t, const int32_t *, const int32_t *, const int64_t *, const int32_t *,
-            const int32_t *, const int32_t *, const int32_t *, int32_t *, int64_t *, int32_t *,
-            int64_t);
+            const int32_t *, const int32_t *, const int32_t *, const uint8_t *, int32_t *,
+            int64_t *, int32_t *, int64_t);
 int64_t runs(const plan_t *, int32_t *, int64_t *, int32_t *);
 void entries(const plan_t *, int32_t, const int32_t *, const int32_t *, const int32_t *,
              const int32_t *, const uint8_t *, int32_t *, int64_t *, int32_t *, int32_t *);
@@ -102,17 +106,30 @@ def matrix_graph(code: Code, begin: Ints, columns: Ints, negative: npt.NDArray[n
         return_counts=True,
     )
     group = group.astype(np.int32)
-    kept = np.zeros(size, dtype=bool)
-    kept[first] = True
-    rows = np.repeat(np.flatnonzero(kept), np.diff(begin)[kept])
-    others = columns[np.repeat(kept, np.diff(begin))]
-    both = kept[others] & (others != rows)
-    rows, others = group[rows[both]], group[others[both]]
-    rows, others = np.r_[rows, others], np.r_[others, rows]
-    order = np.lexsort((others, rows))
-    starts = np.r_[0, np.cumsum(np.bincount(rows, minlength=len(first)))].astype(np.int32)
+    kept = np.zeros(size, dtype=np.uint8)
+    kept[first] = 1
+    count = np.zeros(len(first), dtype=np.int32)
+    pointers = code.pointers(begin, columns, kept, group)
+    code.lib.neighbours(size, *pointers, code.pointer(count), code.ffi.NULL)
+    starts = np.r_[0, np.cumsum(count)].astype(np.int32)
+    others, at = np.empty(starts[-1], dtype=np.int32), starts[:-1].copy()
+    code.lib.neighbours(size, *pointers, *code.pointers(at, others))
     weights = weight.astype(np.int32)
-    return Graph(starts, others[order], group, weights, negative[first])
+    return Graph(starts, others, group, weights, negative[first])
+
+
+def couplings(
+    code: Code, begin: Ints, columns: Ints, negative: npt.NDArray[np.bool_], values: Floats
+) -> tuple[Ints, Ints, Floats]:
+    """Couplings of constraints with unknowns of positive sign: starts, columns, entries of rows."""
+    size = len(begin) - 1
+    count, signs = np.zeros(size, dtype=np.int32), negative.astype(np.uint8)
+    pointers = code.pointers(begin, columns, signs, values)
+    code.lib.couplings(size, *pointers, code.pointer(count), code.ffi.NULL, code.ffi.NULL)
+    starts = np.r_[0, np.cumsum(count)].astype(np.int32)
+    at, others, entries = starts[:-1].copy(), np.empty(starts[-1], np.int32), np.empty(starts[-1])
+    code.lib.couplings(size, *pointers, *code.pointers(at, others, entries))
+    return starts, others, entries
 
 
 def _cut(array: Ints, size: int) -> Ints:
@@ -130,6 +147,9 @@ class Fronts:
         graph: its graph.
         tree: its fronts.
         mine: fronts whose numbers this rank needs.
+
+    Raises:
+        UnsuitableError: two fronts are coupled of which none is an ancestor of the other.
 
     Attributes:
         unknowns: unknown of every place in the order of elimination.
@@ -192,12 +212,16 @@ class Fronts:
         children = self._set("child", np.r_[children[parent[children] >= 0], 0])
         counts = np.bincount(parent[parent >= 0], minlength=self.fronts)
         child_at = self._set("child_at", np.r_[0, np.cumsum(counts)], "int64")
+        root = (parent < 0).astype(np.uint8)
         start, room = np.zeros(self.fronts + 1, dtype=np.int64), 16 * len(graph.weight)
         arrays = (self._own_at, self._vertices, child_at, children, graph.begin, graph.neighbours)
         while True:
             mark, found = np.full(len(graph.weight), -1, dtype=np.int32), np.zeros(room, np.int32)
-            pointers = self._code.pointers(*arrays, self._front_of, mark, start, found)
-            if not self._code.lib.borders(self.fronts, *pointers, room):
+            pointers = self._code.pointers(*arrays, self._front_of, root, mark, start, found)
+            failed = self._code.lib.borders(self.fronts, *pointers, room)
+            if failed == 2:
+                raise UnsuitableError("its planes do not part it")
+            if not failed:
                 break
             room *= 2
         found = found[: start[-1]]

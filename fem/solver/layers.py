@@ -14,8 +14,10 @@ import numpy.typing as npt
 from petsc4py import PETSc
 
 from fem.matrix import stored_values
-from fem.solver.dissection import Constraints, UnsuitableError, long_body
-from fem.solver.fronts import Code, Fronts, matrix_graph
+from fem.solver.dissection import long_body
+from fem.solver.fronts import Code, Fronts, couplings, matrix_graph
+from fem.solver.order.constraints import Constraints
+from fem.solver.order.graph import UnsuitableError
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -112,7 +114,8 @@ class Layers:
         self._code = code = Code(comm)
         self._negative = negative
         graph = matrix_graph(code, begin, columns, negative)
-        tree = long_body(graph, Constraints(begin, columns, values, graph))
+        rows = couplings(code, begin, columns, negative, values)
+        tree = long_body(graph, Constraints(rows, graph))
         # fronts [0, turn) from one end, [turn, middle) from the other, then the middle plane
         roots = [front for front, parent in enumerate(tree.parent) if parent == -1]
         self._middle = roots[0]
@@ -122,17 +125,18 @@ class Layers:
         far = (fronts >= self._turn) & (fronts < self._middle)
         owner = np.where(far, comm.size - 1, 0)
         self._fronts = Fronts(code, begin, columns, graph, tree, owner == comm.rank)
-        self._exchange(np.repeat(np.arange(comm.size), counts))
+        self._exchange(counts)
         self.negative_pivots = self.pivoted = 0
 
-    def _exchange(self, owner: Ints) -> None:
-        """Which of the values on other ranks this one needs."""
+    def _exchange(self, counts: list[int]) -> None:
+        """Which of the values on other ranks, so many on each, this one needs."""
         source = self._fronts.source
         self._sent = np.zeros(0, dtype=np.int64)
         if self._comm.size == 1:
             self._fronts.take(source)
             return
-        starts = np.searchsorted(owner, np.arange(self._comm.size))
+        starts = np.r_[0, np.cumsum(counts)]
+        owner = np.repeat(np.arange(self._comm.size), counts)
         here = owner[source] == self._comm.rank
         wanted = source[~here]
         other = 1 - self._comm.rank

@@ -33,8 +33,39 @@ void sums(int32_t n, const int32_t *begin, const int32_t *columns, const uint64_
     }
 }
 
-/* Later vertices that each front is coupled to; 1 where they are more than `room`. */
-int borders(int32_t fronts, const int32_t *own_at, const int32_t *own, const int64_t *child_at, const int32_t *child, const int32_t *graph_at, const int32_t *graph, const int32_t *front_of, int32_t *mark, int64_t *out_at, int32_t *out, int64_t room)
+/* Neighbours of groups of rows, by the kept one of each; twice: first their numbers, in at[1..],
+   then with at as it was left. */
+void neighbours(int32_t n, const int32_t *begin, const int32_t *columns, const uint8_t *kept, const int32_t *group, int32_t *at, int32_t *found)
+{
+  for (int32_t i = 0; i < n; i++) {
+    if (!kept[i]) continue;
+    const int32_t a = group[i];
+    for (int32_t s = begin[i]; s < begin[i + 1]; s++) {
+      const int32_t j = columns[s];
+      if (!kept[j] || j == i) continue;
+      const int32_t b = group[j];
+      if (found) { found[at[a]++] = b; found[at[b]++] = a; }
+      else { at[a]++; at[b]++; }
+    }
+  }
+}
+
+/* Couplings of constraints with unknowns of the other sign, by constraints; twice as well. */
+void couplings(int32_t n, const int32_t *begin, const int32_t *columns, const uint8_t *negative, const double *values, int32_t *at, int32_t *found, double *entries)
+{
+  for (int32_t i = 0; i < n; i++)
+    for (int32_t s = begin[i]; s < begin[i + 1]; s++) {
+      const int32_t j = columns[s];
+      if (negative[i] == negative[j]) continue;
+      const int32_t a = negative[i] ? i : j;
+      if (found) { found[at[a]] = negative[i] ? j : i; entries[at[a]] = values[s]; }
+      at[a]++;
+    }
+}
+
+/* Later vertices that each front is coupled to; 1 where they are more than `room`, 2 where a front
+   is coupled to one that is neither before nor behind it. */
+int borders(int32_t fronts, const int32_t *own_at, const int32_t *own, const int64_t *child_at, const int32_t *child, const int32_t *graph_at, const int32_t *graph, const int32_t *front_of, const uint8_t *root, int32_t *mark, int64_t *out_at, int32_t *out, int64_t room)
 {
   int64_t end = 0;
   for (int32_t f = 0; f < fronts; f++) {
@@ -47,8 +78,10 @@ int borders(int32_t fronts, const int32_t *own_at, const int32_t *own, const int
     for (int64_t i = child_at[f]; i < child_at[f + 1]; i++)
       for (int64_t s = out_at[child[i]]; s < out_at[child[i] + 1]; s++) {
         const int32_t v = out[s];
+        if (front_of[v] < f) return 2;
         if (front_of[v] > f && mark[v] != f) { if (end == room) return 1; mark[v] = f; out[end++] = v; }
       }
+    if (root[f] && end > out_at[f]) return 2;
   }
   out_at[fronts] = end;
   return 0;

@@ -23,6 +23,8 @@ Integers = npt.NDArray[Any]
 
 LENGTHS, STRIPS = (1, 2, 3, 4, 6, 8), (1, 2, 3, 4, 6)
 """Layers of a block, and blocks side by side, that are tried."""
+SURE = 1.1
+"""More strips are not tried where they took so much more time than fewer."""
 FEWEST = 4
 """Layers of a body that is long."""
 
@@ -140,13 +142,18 @@ def _best(section: Section, layers: int) -> tuple[int, list[Columns]]:
     """Layers of the slabs of a section, and their strips, that take the least time."""
     least, found = np.inf, (1, section.strips(1))
     for count in STRIPS:
-        strips = section.strips(count)
+        strips, before = section.strips(count), np.inf
         for length in LENGTHS:
             if length > layers:
                 break
             seconds = _seconds(section, length, strips) / length
             if seconds < least:
                 least, found = seconds, (length, strips)
+            if seconds > before:
+                break
+            before = seconds
+        if before > least * SURE:
+            break
     return found
 
 
@@ -171,7 +178,7 @@ def _seconds(section: Section, layers: int, strips: list[Columns]) -> float:
         active += enter[number]
         seconds += front_seconds(leave[number], active - leave[number])
         active -= leave[number]
-        seconds += section.cut(strip, layers).seconds
+        seconds += section.seconds(strip, layers)
     return seconds
 
 
@@ -214,7 +221,10 @@ def _gathered(order: Order, first: Integers, last: Integers) -> tuple[list[Integ
     fresh = (np.diff(upper[sorting]) != 0) | (np.diff(depth[sorting]) != 0)
     starts = np.r_[0, np.flatnonzero(fresh) + 1]
     own = np.split(coupled[sorting], starts[1:])
-    return own, _parents(lower[sorting][starts].tolist())
+    parent = _parents(lower[sorting][starts].tolist())
+    if parent.count(len(own) - 1) != 2:
+        raise UnsuitableError("the middle plane has no two sides")
+    return own, parent
 
 
 def _leaves(depth: Integers) -> Integers:

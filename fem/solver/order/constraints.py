@@ -28,23 +28,17 @@ class Constraints:
     """Couplings of constraints with unknowns of positive sign.
 
     Args:
-        begin: rows of the upper triangle of the matrix.
-        columns: their columns, rising.
-        values: their entries.
-        graph: its graph.
+        rows: starts, columns and entries of rows; empty for unknowns that are no constraints.
+        graph: of the matrix.
     """
 
-    def __init__(self, begin: Ints, columns: Ints, values: Floats, graph: Graph) -> None:
-        size = len(begin) - 1
-        negative = graph.negative[graph.group]
-        rows = np.repeat(np.arange(size, dtype=np.int32), np.diff(begin))
-        mixed = np.flatnonzero(negative[rows] != negative[columns])
-        rows, others, entries = rows[mixed], columns[mixed], values[mixed]
-        swap = ~negative[rows]
-        rows, others = np.where(swap, others, rows), np.where(swap, rows, others)
-        self._rows = sparse.csr_matrix((entries, (rows, others)), shape=(size, size))
+    def __init__(self, rows: tuple[Ints, Ints, Floats], graph: Graph) -> None:
+        starts, columns, entries = rows
+        size = len(starts) - 1
+        self._rows = sparse.csr_matrix((entries, columns, starts), shape=(size, size))
         self._members = np.argsort(graph.group, kind="stable")
         self._start = np.r_[0, np.cumsum(graph.weight)]
+        self._mark = np.zeros(size, dtype=bool)
         self._graph = graph
 
     def unknowns(self, vertices: Iterable[int]) -> npt.NDArray[np.int64]:
@@ -139,18 +133,25 @@ class Constraints:
             failing += fronts[squares[:, 0] <= REACHED**2 * squares[:, -1]].tolist()
         return set(failing)
 
-    def _block(self, rows: Integers) -> tuple[Integers, Floats]:
-        """Unknowns that some constraints are coupled to, and the couplings."""
-        some = self._rows[rows]
-        columns, place = np.unique(some.indices, return_inverse=True)
+    def _block(self, rows: Integers, inside: Integers | None = None) -> tuple[Integers, Floats]:
+        """Unknowns that some constraints are coupled to, and the couplings; only those inside."""
+        starts, ends = self._rows.indptr[rows], self._rows.indptr[rows + 1]
+        ranges = [np.arange(start, end) for start, end in zip(starts, ends, strict=True)]
+        entries = np.concatenate(ranges)
+        owner = np.repeat(np.arange(len(rows)), ends - starts)
+        if inside is not None:
+            self._mark[inside] = True
+            kept = self._mark[self._rows.indices[entries]]
+            self._mark[inside] = False
+            entries, owner = entries[kept], owner[kept]
+        columns, place = np.unique(self._rows.indices[entries], return_inverse=True)
         block = np.zeros((len(rows), len(columns)))
-        block[np.repeat(np.arange(len(rows)), np.diff(some.indptr)), place] = some.data
+        block[owner, place] = self._rows.data[entries]
         return columns, block
 
     def _unmet(self, vertices: list[int], inside: Integers) -> _Unmet:
         rows = self._unknowns_of(vertices, negative=True)
-        columns, block = self._block(rows)
-        block = block[:, np.isin(columns, inside)]
+        _, block = self._block(rows, inside)
         size = np.linalg.norm(block, axis=1) + 1e-300
         block /= size[:, None]
         squares, modes = np.linalg.eigh(block @ block.T)
@@ -164,7 +165,9 @@ class Constraints:
         columns, block = self._block(rows)
         whole = null.T @ block
         size = np.linalg.norm(whole, axis=1) + 1e-300
-        met = whole[:, np.isin(columns, inside)] / size[:, None]
+        self._mark[inside] = True
+        met = whole[:, self._mark[columns]] / size[:, None]
+        self._mark[inside] = False
         squares, modes = np.linalg.eigh(met @ met.T)
         null = (null / size) @ modes[:, squares <= REACHED**2]
         return _Unmet(rows, null, [v for part in parts for v in part.vertices])
