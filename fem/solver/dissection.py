@@ -1,11 +1,11 @@
 """Order of elimination of a long body: in blocks of elements, or plane by plane.
 
 Where every element shows itself by its constraints, blocks of them are eliminated (`order.blocks`).
-Elsewhere level sets of the matrix's graph from one end of the body (George and Liu 1981, Computer solution
-of large sparse positive definite systems, Prentice-Hall, section 4.3). What of a level is coupled
-to the next one is its plane, the rest lies between two planes, before which it goes. Planes are eliminated one after the
-other from both ends, and meet in the middle; the parts between them, which know nothing of each
-other, are halved along their own level sets until they are small.
+Elsewhere level sets of the matrix's graph from one end of the body are (George and Liu 1981,
+Computer solution of large sparse positive definite systems, Prentice-Hall, section 4.3). What of a
+level is coupled to the next one is its plane, the rest lies between two planes. Planes are
+eliminated one after the other from both ends, and meet in the middle; the parts between them, which
+know nothing of each other, are halved along their own level sets until they are small.
 """
 
 from __future__ import annotations

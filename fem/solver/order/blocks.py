@@ -9,6 +9,7 @@ element analysis, doi 10.1002/nme.1620020104). What lies within a block is halve
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from collections.abc import Iterable
 from typing import Any
 
@@ -132,7 +133,7 @@ def _slabs(sections: list[Section], first: int, end: int) -> list[_Slab]:
         length, strips = _best(sections[start], layer - start)
         count = -(-(layer - start) // length)
         bounds = np.linspace(start, layer, count + 1).round().astype(int).tolist()
-        for lower, upper in zip(bounds, bounds[1:], strict=False):
+        for lower, upper in itertools.pairwise(bounds):
             slabs.append(_Slab(lower, upper - lower, sections[start], strips))
         start = layer
     return slabs

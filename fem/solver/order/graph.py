@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -39,7 +40,7 @@ class Tree:
         parent: the front that takes what it leaves; -1: none.
     """
 
-    own: Sequence[npt.ArrayLike]
+    own: Sequence[Sequence[int] | npt.NDArray[Any]]
     parent: list[int]
 
 
