@@ -15,7 +15,7 @@ History = Sequence[tuple[float, float, float]]
 
 NEAR, NEAR_RATIO, CHORD_RATIO = 1e-3, 0.02, 0.1
 """A factor is used again below this residual, after this reduction, and while it reduces so."""
-LARGE, POOR = 5_000, 0.5
+LARGE, POOR = 20_000, 0.5
 """Unknowns from which on one factor is to serve a whole solve, while its steps shrink so."""
 
 
