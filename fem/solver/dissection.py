@@ -1,131 +1,39 @@
-"""Order of elimination of a long body: planes from both ends, and what lies between them first.
+"""Order of elimination of a long body: in blocks of elements, or plane by plane.
 
-Level sets of the matrix's graph from one end of the body (George and Liu 1981, Computer solution
-of large sparse positive definite systems, Prentice-Hall, section 4.3). What of a level is coupled
-to the next one is its plane, the rest lies between two planes. Planes are eliminated one after the
-other from both ends, and meet in the middle; the parts between them, which know nothing of each
-other, are halved along their own level sets until they are small.
+Where every element shows itself by its constraints, blocks of them are eliminated (`order.blocks`).
+Elsewhere level sets of the matrix's graph from one end of the body are (George and Liu 1981,
+Computer solution of large sparse positive definite systems, Prentice-Hall, section 4.3). What of a
+level is coupled to the next one is its plane, the rest lies between two planes. Planes are
+eliminated one after the other from both ends, and meet in the middle; the parts between them, which
+know nothing of each other, are halved along their own level sets until they are small.
 """
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
+from fem.solver.order.blocks import fronts_of, order_blocks
+from fem.solver.order.constraints import Constraints
+from fem.solver.order.graph import Graph, Tree, UnsuitableError
+from fem.solver.order.pieces import RATE
+from fem.solver.order.swept import find_elements
+
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
-Longs = npt.NDArray[np.int64]
 
 PART = 60
 """Unknowns of a part between two planes that is not halved any more."""
 JOINED = 24
 """Unknowns of a cut through such a part that are eliminated together with the plane beside it."""
-REACHED = 1e-2
-"""Least singular value, relative, of constraints that can be eliminated within a part."""
 
-OPERATIONS, RATE, GENERAL = 3.3, 2.7e10, 7.5e-8
-"""Multiplications and additions of a plane of n unknowns by n³, 7/3 of them for itself; how many
-are done in a second; and seconds of a general solver for n unknowns in each of L layers by
-L n^1.75. Measured on one core, on the body of cases/free_bending.yaml."""
-
-
-@dataclasses.dataclass(frozen=True)
-class Graph:
-    """Vertices are groups of unknowns with the same couplings and the same sign.
-
-    Attributes:
-        begin: where the neighbours of each vertex start, (vertices + 1,).
-        neighbours: of all vertices, one after the other, without themselves.
-        group: vertex of each unknown, (unknowns,).
-        weight: unknowns of each vertex, (vertices,).
-        negative: whether they are constraints, whose pivots are negative, (vertices,).
-    """
-
-    begin: Ints
-    neighbours: Ints
-    group: Ints
-    weight: Ints
-    negative: npt.NDArray[np.bool_]
-
-
-@dataclasses.dataclass(frozen=True)
-class Tree:
-    """Fronts in the order of elimination.
-
-    Attributes:
-        own: vertices that each front eliminates.
-        parent: the front that takes what it leaves; -1: none.
-    """
-
-    own: list[list[int]]
-    parent: list[int]
-
-
-class UnsuitableError(Exception):
-    """The matrix is not that of a long body with constraints inside its layers."""
-
-
-class Constraints:
-    """Couplings of constraints with unknowns of positive sign.
-
-    Args:
-        begin: where those of each unknown start, of constraints alone, (unknowns + 1,).
-        columns: unknowns of positive sign that they are coupled with.
-        values: their entries.
-        graph: the matrix's graph.
-    """
-
-    def __init__(self, begin: Longs, columns: Ints, values: Floats, graph: Graph) -> None:
-        self._begin, self._columns, self._values = begin, columns, values
-        self._place = np.full(len(begin) - 1, -1, dtype=np.int32)
-        self._members = np.argsort(graph.group, kind="stable")
-        self._start = np.r_[0, np.cumsum(graph.weight)]
-        self._graph = graph
-
-    def unknowns(self, vertices: Iterable[int]) -> npt.NDArray[np.int64]:
-        """Unknowns of some vertices."""
-        parts = [self._members[self._start[v] : self._start[v + 1]] for v in vertices]
-        return np.concatenate([np.zeros(0, dtype=np.int64), *parts])
-
-    def _block(
-        self, rows: npt.NDArray[np.int64], columns: npt.NDArray[np.int64]
-    ) -> npt.NDArray[np.float64]:
-        """Couplings of some constraints with some unknowns of positive sign."""
-        block = np.zeros((len(rows), len(columns)))
-        self._place[columns] = np.arange(len(columns))
-        for line, row in zip(block, rows.tolist(), strict=True):
-            part = slice(self._begin[row], self._begin[row + 1])
-            place = self._place[self._columns[part]]
-            line[place[place >= 0]] = self._values[part][place >= 0]
-        self._place[columns] = -1
-        return block
-
-    def unreached(self, part: set[int]) -> list[int]:
-        """Vertices of constraints that the unknowns of a part cannot meet by themselves.
-
-        No displacement within a closed part changes its volume: the sum of all volumes is a null
-        vector of Bᵀ, with B the couplings of constraints (rows) and displacements (columns).
-        """
-        graph = self._graph
-        pressures = sorted(v for v in part if graph.negative[v])
-        left = []
-        columns = self.unknowns(v for v in part if not graph.negative[v])
-        block = self._block(self.unknowns(pressures), columns)
-        block /= np.linalg.norm(block, axis=1)[:, None] + 1e-300
-        owner = np.repeat(pressures, graph.weight[pressures])
-        while len(owner):
-            # squares of singular values, rising: those of BBᵀ, which is small where B is wide
-            squares, modes = np.linalg.eigh(block @ block.T)
-            if squares[0] > REACHED**2 * squares[-1]:
-                break
-            vertex = int(owner[np.argmax(np.abs(modes[:, 0]))])
-            left.append(vertex)
-            block, owner = block[owner != vertex], owner[owner != vertex]
-        return left
+OPERATIONS, GENERAL = 3.3, 1.15e-7
+"""Multiplications and additions of a plane of n unknowns by n³, 7/3 of them for itself; and seconds
+of a general solver for n unknowns in each of L layers by L n^1.75. Measured on the core and on the
+bodies of `RATE`."""
 
 
 class _Layers:
@@ -148,7 +56,7 @@ class _Layers:
     def join(self, tree: Tree) -> int:
         """Take the fronts of one end, of which the last one is left."""
         start = len(self.own)
-        self.own += tree.own
+        self.own += [list(own) for own in tree.own]
         self.parent += [-1 if parent < 0 else parent + start for parent in tree.parent]
         return len(self.own) - 1
 
@@ -225,8 +133,8 @@ def _pieces(near: dict[int, set[int]], part: set[int]) -> list[set[int]]:
     return pieces
 
 
-def body_levels(graph: Graph) -> tuple[list[list[int]], list[list[int]], list[int]]:
-    """Planes of a long body, what lies before each of them, and vertices without neighbours.
+def body_levels(graph: Graph) -> tuple[list[list[int]], list[list[int]]]:
+    """Planes of a long body, and what lies before each of them.
 
     Raises:
         UnsuitableError: several bodies, or constraints in a plane.
@@ -234,7 +142,6 @@ def body_levels(graph: Graph) -> tuple[list[list[int]], list[list[int]], list[in
     begin, neighbours = graph.begin, graph.neighbours
     count = len(begin) - 1
     rows = np.repeat(np.arange(count, dtype=np.int32), np.diff(begin))
-    alone = np.flatnonzero(np.diff(begin) == 0)
     coupled = np.flatnonzero(np.diff(begin) > 0)
     degree = np.diff(begin)
 
@@ -267,7 +174,7 @@ def body_levels(graph: Graph) -> tuple[list[list[int]], list[list[int]], list[in
     parts = np.split(order, np.searchsorted(level[order], np.arange(level.max() + 1)))[1:]
     planes = [part[facing[part]].tolist() for part in parts]
     between = [part[~facing[part]].tolist() for part in parts]
-    return planes, between, alone.tolist()
+    return planes, between
 
 
 def _all(ends: Sequence[Callable[[], Tree]]) -> list[Tree]:
@@ -279,24 +186,48 @@ def long_body(
     constraints: Constraints,
     share: Callable[[Sequence[Callable[[], Tree]]], list[Tree]] = _all,
 ) -> Tree:
-    """Fronts that eliminate a long body from both ends; the last but one is the middle plane.
+    """Fronts that eliminate a long body from both ends; the middle plane follows them.
 
     Args:
         graph: of its matrix.
         constraints: couplings of its constraints.
-        share: makes the fronts of both ends, as ranks may do between them.
+        share: makes the fronts of both ends plane by plane, as ranks may do between them.
 
     Raises:
         UnsuitableError: few levels or wide ones, several bodies, or constraints in a plane.
     """
-    planes, between, alone = body_levels(graph)
+    try:
+        swept = find_elements(graph)
+    except UnsuitableError:
+        tree = _plane_by_plane(graph, constraints, share)
+    else:
+        order = order_blocks(graph, swept)
+        layers = int(swept.layer.max()) + 1
+        _demand(order.seconds, len(graph.group), layers)
+        tree = Tree(*constraints.settled(*fronts_of(graph, swept, order)))
+    alone = np.flatnonzero(np.diff(graph.begin) == 0)
+    parts = [alone[first : first + PART] for first in range(0, len(alone), PART)]
+    return Tree([*tree.own, *parts], [*tree.parent, *[-1] * len(parts)])
+
+
+def _demand(seconds: float, unknowns: int, layers: int) -> None:
+    """Refuse what a general solver is likely to do sooner."""
+    if seconds > GENERAL * layers * (unknowns / layers) ** 1.75:
+        raise UnsuitableError("its planes are wide")
+
+
+def _plane_by_plane(
+    graph: Graph,
+    constraints: Constraints,
+    share: Callable[[Sequence[Callable[[], Tree]]], list[Tree]],
+) -> Tree:
+    """Every plane by itself, and what lies between two of them."""
+    planes, between = body_levels(graph)
     last = len(planes) - 1
     if last < 3:
         raise UnsuitableError("the body is short")
-    unknowns = len(graph.group) / len(planes)
     wide = sum(float(graph.weight[plane].sum()) ** 3 for plane in planes)
-    if OPERATIONS * wide / RATE > GENERAL * len(planes) * unknowns**1.75:
-        raise UnsuitableError("its planes are wide")
+    _demand(OPERATIONS * wide / RATE, len(graph.group), len(planes))
     middle = last // 2
 
     def chain(order: Iterable[tuple[list[int], list[int]]]) -> Tree:
@@ -314,6 +245,4 @@ def long_body(
     layers = _Layers(graph, constraints)
     tops = [layers.join(tree) for tree in share([partial(chain, up), partial(chain, down)])]
     layers.add(planes[middle], tops)
-    for first in range(0, len(alone), PART):
-        layers.add(alone[first : first + PART], ())
     return Tree(layers.own, layers.parent)

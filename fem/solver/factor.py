@@ -1,7 +1,7 @@
 """One sparse factorisation, with the inertia that tells stability.
 
-Long bodies are factorised plane by plane (`layers`), everything else by MUMPS; so is a long body
-whose solutions the layers do not bring to round-off, from then on.
+Long bodies are factorised in blocks of elements (`layers`), everything else by MUMPS; so is a long
+body whose solutions the layers do not bring to round-off, from then on.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from fem import kernels
-from fem.solver.dissection import Graph, Tree
+from fem.solver.order.graph import Graph, Tree, UnsuitableError
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -44,8 +44,8 @@ typedef struct {{ int fronts; {_TABLES} }} plan_t;
 void bind(blas_t *, const uintptr_t *);
 void sums(int32_t, const int32_t *, const int32_t *, const uint64_t *, uint64_t *);
 int borders(int32_t, const int32_t *, const int32_t *, const int64_t *, const int32_t *,
-            const int32_t *, const int32_t *, const int32_t *, int32_t *, int64_t *, int32_t *,
-            int64_t);
+            const int32_t *, const int32_t *, const int32_t *, const uint8_t *, int32_t *,
+            int64_t *, int32_t *, int64_t);
 int64_t runs(const plan_t *, int32_t *, int64_t *, int32_t *);
 void entries(const plan_t *, int32_t, const int32_t *, const int32_t *, const int32_t *,
              const int32_t *, const uint8_t *, int32_t *, int64_t *, int32_t *, int32_t *);
@@ -98,6 +98,9 @@ class Fronts:
         graph: its graph.
         tree: its fronts.
         mine: fronts whose numbers this rank needs.
+
+    Raises:
+        UnsuitableError: two fronts are coupled of which none is an ancestor of the other.
 
     Attributes:
         unknowns: unknown of every place in the order of elimination.
@@ -162,12 +165,16 @@ class Fronts:
         children = self._set("child", np.r_[children[parent[children] >= 0], 0])
         counts = np.bincount(parent[parent >= 0], minlength=self.fronts)
         child_at = self._set("child_at", np.r_[0, np.cumsum(counts)], "int64")
+        root = (parent < 0).astype(np.uint8)
         start, room = np.zeros(self.fronts + 1, dtype=np.int64), 16 * len(graph.weight)
         arrays = (self._own_at, self._vertices, child_at, children, graph.begin, graph.neighbours)
         while True:
             mark, found = np.full(len(graph.weight), -1, dtype=np.int32), np.zeros(room, np.int32)
-            pointers = self._code.pointers(*arrays, self._front_of, mark, start, found)
-            if not self._code.lib.borders(self.fronts, *pointers, room):
+            pointers = self._code.pointers(*arrays, self._front_of, root, mark, start, found)
+            failed = self._code.lib.borders(self.fronts, *pointers, room)
+            if failed == 2:
+                raise UnsuitableError("its planes do not part it")
+            if not failed:
                 break
             room *= 2
         found = found[: start[-1]]

@@ -1,10 +1,10 @@
-"""Direct solver for long bodies: block elimination plane by plane, from both ends.
+"""Direct solver for long bodies: block elimination from both ends.
 
 A body of many layers has a block tridiagonal matrix once what lies between its planes is
 eliminated (Varah 1972, On the solution of block-tridiagonal systems, doi
-10.1090/S0025-5718-1972-0323087-4). Plane by plane all blocks are dense and of one size. With two
-ranks each eliminates one end, and the middle plane meets what both leave. The order of elimination
-is fixed, pivots are taken within a front only, so that a solution is checked by its residual.
+10.1090/S0025-5718-1972-0323087-4). Planes, or parts of them, are dense blocks. With two ranks each
+eliminates one end, and the middle plane meets what both leave. The order of elimination is fixed,
+pivots are taken within a front only, so that a solution is checked by its residual.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ import numpy.typing as npt
 from petsc4py import PETSc
 
 from fem.ranks import total
-from fem.solver.dissection import Tree, UnsuitableError, long_body
+from fem.solver.dissection import long_body
 from fem.solver.fronts import Code, Fronts
+from fem.solver.order.graph import Tree, UnsuitableError
 from fem.solver.rows import Product, Rows, Taken, swap
 
 Floats = npt.NDArray[np.float64]

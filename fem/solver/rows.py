@@ -12,8 +12,9 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from fem.matrix import outer_rows, stored_rows, stored_values
-from fem.solver.dissection import Constraints, Graph
 from fem.solver.fronts import Code, Fronts
+from fem.solver.order.constraints import Constraints
+from fem.solver.order.graph import Graph
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -162,7 +163,8 @@ class Rows:
         if self.comm.size > 1:
             parts = zip(*self.comm.allgather((counts, other, values)), strict=True)
             counts, other, values = map(np.concatenate, parts)
-        return Constraints(np.r_[0, np.cumsum(counts)], other, values, graph)
+        starts = np.r_[0, np.cumsum(counts)].astype(np.int32)
+        return Constraints((starts, other, values), graph)
 
 
 def _graph(

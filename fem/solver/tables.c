@@ -33,8 +33,9 @@ void sums(int32_t n, const int32_t *begin, const int32_t *columns, const uint64_
     }
 }
 
-/* Later vertices that each front is coupled to; 1 where they are more than `room`. */
-int borders(int32_t fronts, const int32_t *own_at, const int32_t *own, const int64_t *child_at, const int32_t *child, const int32_t *graph_at, const int32_t *graph, const int32_t *front_of, int32_t *mark, int64_t *out_at, int32_t *out, int64_t room)
+/* Later vertices that each front is coupled to; 1 where they are more than `room`, 2 where a front
+   is coupled to one that is neither before nor behind it. */
+int borders(int32_t fronts, const int32_t *own_at, const int32_t *own, const int64_t *child_at, const int32_t *child, const int32_t *graph_at, const int32_t *graph, const int32_t *front_of, const uint8_t *root, int32_t *mark, int64_t *out_at, int32_t *out, int64_t room)
 {
   int64_t end = 0;
   for (int32_t f = 0; f < fronts; f++) {
@@ -47,8 +48,10 @@ int borders(int32_t fronts, const int32_t *own_at, const int32_t *own, const int
     for (int64_t i = child_at[f]; i < child_at[f + 1]; i++)
       for (int64_t s = out_at[child[i]]; s < out_at[child[i] + 1]; s++) {
         const int32_t v = out[s];
+        if (front_of[v] < f) return 2;
         if (front_of[v] > f && mark[v] != f) { if (end == room) return 1; mark[v] = f; out[end++] = v; }
       }
+    if (root[f] && end > out_at[f]) return 2;
   }
   out_at[fronts] = end;
   return 0;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 
 import numpy as np
@@ -17,11 +18,14 @@ from fem.scene import Scene
 from fem.solver.layers import Layers
 from tests.exact.solids import box
 
+NARROW, WIDE = (2, 2), (5, 3)
+"""Columns of elements of a tower."""
 
-def tower(comm: MPI.Comm, pressure: float = 0.0) -> Scene:
+
+def tower(comm: MPI.Comm, pressure: float = 0.0, columns: tuple[int, int] = NARROW) -> Scene:
     """A clamped tower that leans under a pressure in its rubber, MPa; its tangent is assembled."""
     scene = Scene(
-        Domain(box((3.0, 2.0, 20.0), (2, 2, 10)), comm),
+        Domain(box((3.0, 2.0, 20.0), (*columns, 10)), comm),
         [
             Elastic("neo-hooke", {"solid": {"mu": 0.2}}),
             Incompressible(),
@@ -49,16 +53,16 @@ def tower(comm: MPI.Comm, pressure: float = 0.0) -> Scene:
 def measure(comm: MPI.Comm) -> dict[str, float]:
     """What the factor finds."""
     found = {}
-    for pressure in (0.0, 0.2):
-        scene = tower(comm, pressure)
+    for pressure, columns in itertools.product((0.0, 0.2), (NARROW, WIDE)):
+        scene = tower(comm, pressure, columns)
         layers = Layers(scene.matrix, scene.volumetric)
         layers.renew()
         residual = np.where(scene.free[: scene.body.owned], scene.residual()[0], 0.0)
         rest = np.where(scene.volumetric, residual, 0.0)
         x = layers.solve(np.array([residual, rest]))
-        found[f"pivots {pressure}"] = float(layers.negative_pivots)
-        found[f"solution {pressure}"] = float(total(comm, x[0] @ x[0]))
-        found[f"work {pressure}"] = float(total(comm, x[1] @ residual))
+        found[f"pivots {pressure} {columns}"] = float(layers.negative_pivots)
+        found[f"solution {pressure} {columns}"] = float(total(comm, x[0] @ x[0]))
+        found[f"work {pressure} {columns}"] = float(total(comm, x[1] @ residual))
     return found
 
 

@@ -176,15 +176,23 @@ def test_what_is_no_number_is_refused_and_leaves_nothing_behind(bad: float) -> N
         layers.solve(np.full((1, len(matrix)), np.nan))
 
 
+def half_scene(axial: float) -> Scene:
+    """Half an actuator, in a random state."""
+    return _assembled(
+        Domain(hexahedral_body(SHORT, MeshSize(axial=axial, section=1, half=True))),
+        [Symmetry(halves=True)],
+    )
+
+
 def scene_of(half: bool, cell: str = "hexahedron") -> Scene:
     """An actuator with everything that a body's tangent has, in a random state."""
-    domain = stub(cell)
-    extra: list[Effect] = []
     if half:
-        domain = Domain(hexahedral_body(SHORT, MeshSize(axial=3, section=1, half=True)))
-        extra = [Symmetry(halves=True)]
-    else:
-        extra = [winding(domain, 0.38)]
+        return half_scene(3.0)
+    domain = stub(cell)
+    return _assembled(domain, [winding(domain, 0.38)])
+
+
+def _assembled(domain: Domain, extra: list[Effect]) -> Scene:
     regions = list(domain.data.regions)
     scene = Scene(
         domain, [law("yeoh", regions), Incompressible(), ChamberPressure(), Clamp(), *extra]
