@@ -47,8 +47,14 @@ def upper_triangle(
 
 
 def outer_rows(matrix: PETSc.Mat) -> npt.NDArray[np.int32]:
-    """Rows of `upper_triangle` on this rank with columns of another, by local number, rising."""
+    """Rows on this rank with columns of another, by local number, rising.
+
+    Raises:
+        ValueError: a matrix of several ranks that `upper_triangle` has not made.
+    """
     rows: npt.NDArray[np.int32] | None = matrix.getAttr(_OUTER)
+    if rows is None and matrix.getComm().size > 1:
+        raise ValueError("which rows have columns of other ranks is not known")
     return np.zeros(0, dtype=np.int32) if rows is None else rows
 
 

@@ -193,7 +193,7 @@ def plan(case: CaseFile, /, *, settings: Changes = (), force: bool = False) -> i
   fiberbend run cases/section.yaml --verbose
   fiberbend run cases/section.yaml --out runs/thick --set actuator.wall="3 mm"
   fiberbend run cases/section.yaml --quiet --overwrite
-  mpirun -n 4 fiberbend run cases/free_bending.yaml --resume
+  mpirun -n 2 fiberbend run cases/free_bending.yaml --resume
 """
 )
 def run(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -55,8 +56,21 @@ def measure(comm: MPI.Comm, order: str, definite: bool) -> dict[str, float]:
     return {"error": error, "pivots": layers.negative_pivots - inertia(matrix)}
 
 
+def unknown(comm: MPI.Comm) -> str:
+    """What a matrix is refused with that another has made."""
+    matrix = PETSc.Mat().createSBAIJ(4, 1, csr=None, comm=comm)
+    matrix.setUp()
+    matrix.assemble()
+    try:
+        Layers(matrix, np.zeros(2, dtype=bool))
+    except ValueError as error:
+        return str(error)
+    return ""
+
+
 if __name__ == "__main__":
-    found = {
+    found: dict[str, Any] = {"unknown": unknown(MPI.COMM_WORLD)}
+    found |= {
         f"{order}, {definite}": measure(MPI.COMM_WORLD, order, definite)
         for order in ("by chance", "along", "from the other end")
         for definite in (True, False)
