@@ -196,18 +196,37 @@ def long_body(
     Raises:
         UnsuitableError: few levels or wide ones, several bodies, or constraints in a plane.
     """
-    try:
-        swept = find_elements(graph)
-    except UnsuitableError:
-        tree = _plane_by_plane(graph, constraints, share)
-    else:
-        order = order_blocks(graph, swept)
-        layers = int(swept.layer.max()) + 1
-        _demand(order.seconds, len(graph.group), layers)
-        tree = Tree(*constraints.settled(*fronts_of(graph, swept, order)))
+    tree = _block_by_block(graph, constraints) or _plane_by_plane(graph, constraints, share)
     alone = np.flatnonzero(np.diff(graph.begin) == 0)
     parts = [alone[first : first + PART] for first in range(0, len(alone), PART)]
     return Tree([*tree.own, *parts], [*tree.parent, *[-1] * len(parts)])
+
+
+def _block_by_block(graph: Graph, constraints: Constraints) -> Tree | None:
+    """Blocks of elements; None where something is coupled beyond them."""
+    try:
+        swept = find_elements(graph)
+    except UnsuitableError:
+        return None
+    order = order_blocks(graph, swept)
+    own, parent = fronts_of(graph, swept, order)
+    if not _parted(graph, own, parent):
+        return None
+    _demand(order.seconds, len(graph.group), int(swept.layer.max()) + 1)
+    return Tree(*constraints.settled(own, parent))
+
+
+def _parted(graph: Graph, own: Sequence[npt.NDArray[np.int64]], parent: Sequence[int]) -> bool:
+    """Whether of any two fronts that are coupled one is an ancestor of the other."""
+    first = np.arange(len(own))
+    for below, above in enumerate(parent):
+        if above >= 0:
+            first[above] = min(first[above], first[below])
+    front = np.full(len(graph.weight), -1, dtype=np.int32)
+    front[np.concatenate(own)] = np.repeat(np.arange(len(own)), [len(some) for some in own])
+    one = np.repeat(front, np.diff(graph.begin))
+    other = front[graph.neighbours]
+    return bool((first[np.maximum(one, other)] <= np.minimum(one, other)).all())
 
 
 def _demand(seconds: float, unknowns: int, layers: int) -> None:

@@ -17,7 +17,7 @@ from fem.solver.layers import Layers
 from fem.solver.order import blocks, pieces
 from fem.solver.order.blocks import fronts_of, order_blocks
 from fem.solver.order.constraints import Constraints
-from fem.solver.order.graph import Graph, UnsuitableError
+from fem.solver.order.graph import Graph, Tree, UnsuitableError
 from fem.solver.order.pieces import WITHIN, Nodes, Section
 from fem.solver.order.swept import find_elements
 from fem.solver.rows import Rows
@@ -170,20 +170,28 @@ def test_solutions_and_inertia_are_those_of_dense_algebra(
     assert inertia(unstable) > negative.sum()
 
 
-def test_what_its_planes_do_not_part_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    # two nodes far from each other that no element joins
+def test_what_blocks_do_not_part_goes_plane_by_plane(monkeypatch: pytest.MonkeyPatch) -> None:
+    # what lies within two elements
     monkeypatch.setattr(dissection, "GENERAL", 1.0)
-    matrix, negative = grid((2, 2, 9), 5)
-    displaced = np.flatnonzero(~negative)
-    hops = np.where(matrix != 0, 1.0, 0.0)
-    start, far = displaced[0], displaced[0]
-    reached = hops[start] > 0
-    while not reached[displaced].all():
-        far = displaced[~reached[displaced]][-1]
-        reached = hops[reached].any(axis=0)
-    matrix[start, far] = matrix[far, start] = 1.0
-    with pytest.raises(UnsuitableError):
-        Layers(stored(matrix), negative)
+    monkeypatch.setattr(blocks, "STRIPS", (3,))
+    matrix, negative = grid((4, 2, 9), 5)
+    within = np.flatnonzero(~negative & ((matrix[:, negative] != 0).sum(axis=1) == 1))
+    row = next(i for i in within if matrix[within[0], i] == 0)
+    matrix[within[0], row] = matrix[row, within[0]] = 1.0
+    tried = list[bool]()
+    plane_by_plane = dissection._plane_by_plane
+
+    def noted(graph: Graph, constraints: Constraints) -> Tree:
+        tried.append(True)
+        return plane_by_plane(graph, constraints)
+
+    monkeypatch.setattr(dissection, "_plane_by_plane", noted)
+    with contextlib.suppress(UnsuitableError):
+        layers = Layers(stored(matrix), negative)
+        layers.renew()
+        b = np.ones((1, len(matrix)))
+        assert np.linalg.norm(matrix @ layers.solve(b)[0] - 1) < 1e-8
+    assert tried
 
 
 def _solved(scene: Scene) -> tuple[Layers, npt.NDArray[np.float64]]:
