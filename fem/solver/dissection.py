@@ -25,6 +25,9 @@ from fem.solver.order.swept import find_elements
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 
+Share = Callable[[Sequence[Callable[[], Tree]]], list[Tree]]
+"""Makes the trees that each of some functions returns, all or a part of them on this rank."""
+
 PART = 60
 """Unknowns of a part between two planes that is not halved any more."""
 JOINED = 24
@@ -184,7 +187,7 @@ def _all(ends: Sequence[Callable[[], Tree]]) -> list[Tree]:
 def long_body(
     graph: Graph,
     constraints: Constraints,
-    share: Callable[[Sequence[Callable[[], Tree]]], list[Tree]] = _all,
+    share: Share = _all,
 ) -> Tree:
     """Fronts that eliminate a long body from both ends; the middle plane follows them.
 
@@ -238,7 +241,7 @@ def _demand(seconds: float, unknowns: int, layers: int) -> None:
 def _plane_by_plane(
     graph: Graph,
     constraints: Constraints,
-    share: Callable[[Sequence[Callable[[], Tree]]], list[Tree]],
+    share: Share,
 ) -> Tree:
     """Every plane by itself, and what lies between two of them."""
     planes, between = body_levels(graph)

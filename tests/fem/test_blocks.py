@@ -12,6 +12,7 @@ from mpi4py import MPI
 
 from fem.scene import Scene
 from fem.solver import dissection, factor
+from fem.solver.dissection import Share
 from fem.solver.fronts import Code
 from fem.solver.layers import Layers
 from fem.solver.order import blocks, pieces
@@ -181,9 +182,9 @@ def test_what_blocks_do_not_part_goes_plane_by_plane(monkeypatch: pytest.MonkeyP
     tried = list[bool]()
     plane_by_plane = dissection._plane_by_plane
 
-    def noted(graph: Graph, constraints: Constraints) -> Tree:
+    def noted(graph: Graph, constraints: Constraints, share: Share) -> Tree:
         tried.append(True)
-        return plane_by_plane(graph, constraints)
+        return plane_by_plane(graph, constraints, share)
 
     monkeypatch.setattr(dissection, "_plane_by_plane", noted)
     with contextlib.suppress(UnsuitableError):
