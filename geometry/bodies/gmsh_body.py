@@ -93,4 +93,8 @@ def _run(command: list[str], time_limit: float) -> None:
     if done.returncode != 0:
         lines = [line for line in done.stdout.splitlines() if line.strip()]
         last = " | ".join(lines[-_LAST_LINES:])
-        raise MeshError(f"gmsh ended with code {done.returncode}: {last}")
+        if done.returncode < 0:
+            how = f"gmsh crashed by signal {-done.returncode}; shorter elements or hexahedra may do"
+        else:
+            how = f"gmsh ended with code {done.returncode}"
+        raise MeshError(f"{how}: {last}")

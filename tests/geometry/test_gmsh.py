@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from geometry.bodies import gmsh_body
 from geometry.bodies.extrude import hexahedral_body
 from geometry.bodies.gmsh_body import build_body
 from geometry.checks import check, region_volumes, surface_area
@@ -66,6 +68,11 @@ def test_time_limit_stops_gmsh() -> None:
 def test_failure_of_gmsh_carries_its_message(tmp_path: Path) -> None:
     with pytest.raises(MeshError, match=r"ended with code 1: .*missing"):
         build_body(SHORT, MeshSize(axial=8), msh_path=tmp_path / "missing" / "body.msh")
+
+
+def test_crash_of_gmsh_is_named_with_what_may_help() -> None:
+    with pytest.raises(MeshError, match=r"crashed by signal 6; shorter elements or hexahedra"):
+        gmsh_body._run([sys.executable, "-c", "import os; os.abort()"], 10.0)
 
 
 def test_mesh_survives_its_file(tmp_path: Path) -> None:
