@@ -63,8 +63,8 @@ HEAD = (
     "",
     "Made by `make times`: one rank, kernels compiled, without pictures, fields and report.",
     "Seconds are those of the processors. The numbers of `fiberbend plan` are fitted to these",
-    f"runs, all but the number of steps, which it counts; not to {TOUCHING}, whose iterations a step",
-    "(`fiberbend/models/body.py`) are an estimate between those of spread windings and of turns.",
+    f"runs, all but the number of steps, which it counts; not to {TOUCHING}, whose iterations",
+    "a step (fiberbend/models/body.py) are between those of spread windings and of turns.",
     "",
 )
 
