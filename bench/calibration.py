@@ -1,8 +1,8 @@
 """Tables of calibrated windings: section beside a fine cell, coarse body beside a resolved one.
 
 Writes docs/evidence/calibration.md, row by row. Names on the command line, of parts (bent,
-straight, bodies, meshes, phases) and of geometries, renew only these rows, as in `bodies "radius
-6 mm"`.
+straight, bodies, meshes, phases) and of geometries, renew only these rows, as in
+`bodies "radius 6 mm"`.
 Minutes for sections and cells, an hour for the bodies; every number in the tables comes from here.
 Times are those of whole processes: the machine should be idle.
 """
@@ -59,7 +59,7 @@ PHASES = ("48 mm", "49.5 mm")
 HEAD = """# A calibrated winding beside every turn by itself
 
 P in kPa of the baseline of Polygerinos et al. 2015 (radius 8, length 160, wall 2, floor 2, sheath
-1 mm; double helix of pitch 3 mm) and of seven geometries beside it, of bodies an eighth, each
+1 mm; double helix of pitch 3 mm) and of seven other geometries, for bodies of an eighth too, each
 calibrated by its own cell (one element through each thickness, eight along half a pitch;
 `fiberbend/calibration/`). The fine cell has two elements through each thickness and twelve along
 half a pitch. `python bench/calibration.py` makes the tables, in the order bent, straight, bodies,

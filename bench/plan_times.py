@@ -55,15 +55,16 @@ RUNS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("cases/blocked_tip.yaml", ("mesh.axial=3 mm",)),
 )
 """Cases, and changes to them."""
-LAST = "blocked_tip"
-"""Touches: gives no price, but the iterations of a step under contact."""
+TOUCHING = "blocked_tip"
+"""Case whose body touches: nothing is fitted to it, and it shows how far a plan is off there."""
 
 HEAD = (
     "# Times of runs, measured and planned",
     "",
     "Made by `make times`: one rank, kernels compiled, without pictures, fields and report.",
     "Seconds are those of the processors. The numbers of `fiberbend plan` are fitted to these",
-    "runs, all but the number of steps, which it counts.",
+    f"runs, all but the number of steps, which it counts; not to {TOUCHING}, whose iterations",
+    "a step (fiberbend/models/body.py) are between those of spread windings and of turns.",
     "",
 )
 
@@ -127,7 +128,7 @@ def prices(runs: Sequence[Run]) -> dict[str, dict[str, Any]]:
     """Prices by model and kind of elements."""
     groups: dict[str, list[Run]] = {}
     for run in runs:
-        if LAST not in run["case"]:
+        if TOUCHING not in run["case"]:
             groups.setdefault(f"{run['model']} {run['kind']}", []).append(run)
     made: dict[str, dict[str, Any]] = {}
     for name, found in groups.items():

@@ -43,6 +43,9 @@ BLOCKED_IN_TURNS = 2.0
 1.9 % more than four."""
 BLOCKED_IN_LAYERS = 0.8
 """The same of two layers a half pitch or more: 0.2 % from four, and those are no limit."""
+BLOCKED_PITCH = 4.5 / 8
+"""Greatest pitch over the radius with which a tip was blocked: where the last turn ends moves the
+force by 1.3 % with 3/8 and by 2.4 % with this one (docs/evidence/calibration.md)."""
 _SHORT_ENOUGH = 3 / 8
 BULGES_AT_ENDS = 0.12
 """Pitches by which a body with turns seems longer than one whose winding is calibrated, which its
@@ -390,3 +393,5 @@ def _unknown(case: Case, model: MeshedModel, entries: Sequence[Known]) -> Iterat
         yield "nothing is known of a vacuum, and of bending the other way"
     if case.straight and model.ends:
         yield "strips of other widths move the force by up to 12 % (docs/evidence/blocked.md)"
+        if case.turns is not None and case.turns.pitch > BLOCKED_PITCH * radius(case) * (1 + _END):
+            yield f"no tip was blocked with a pitch beyond {BLOCKED_PITCH:.3g} radii"

@@ -45,7 +45,8 @@ if TYPE_CHECKING:
 
 _TOUCHING_ITERATIONS = 6.0
 """Newton iterations in a step with roof and post, under which the sheath yields, and along
-obstacles."""
+obstacles: between 4 with a spread winding (docs/accuracy.md) and 9 with turns
+(docs/evidence/times.md)."""
 _RESOLVED = ((0.5, 1.0), (2 / 3, 0.85), (4 / 3, 0.2))
 """Length of the elements over the pitch, and the part of the bulging between turns they give."""
 _END = 1 + 1e-9

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import shutil
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -191,7 +190,6 @@ class _Run:
 
         assembly = assemble(case, mesh, self.comm, make_guide, watch=True)
         recorder, recording = self._recording(assembly, again)
-        self.recording = recording
         if self.states is not None and assembly.parts.fibers is not None:
             write_fibers(self.states, assembly.parts.fibers, assembly.parts.smeared)
         recording.warn(self.own.remarks, silent=True)
@@ -292,8 +290,7 @@ class _Run:
             own = Path(scratch) / GMSH_FILE
             mesh = self.model.mesh(self.case, own)
             if own.exists():
-                with own.open("rb") as file:
-                    folder.write(GMSH_FILE, lambda target: shutil.copyfileobj(file, target))
+                folder.write(GMSH_FILE, lambda target: target.write(own.read_bytes()))
         folder.write(MESH, mesh.save)
         return mesh
 
@@ -315,7 +312,7 @@ class _Run:
             march.resume(saved.position)
         rows = None if saved is None else saved.rows
         recorder = Recorder(assembly.scene, gauge, self.model, march.rest, rows)
-        recording = Recording(
+        recording = self.recording = Recording(
             self.case,
             assembly,
             archive,

@@ -45,7 +45,7 @@ class Stations:
 
 _BESIDE_POST = 3.0
 """Greatest length of the cap's elements over that of a post beside them: twice as long, they bend
-with its edge and raise the tip force of a blocked baseline by up to 0.7 %."""
+with its edge and raise the tip force of a blocked baseline by up to 0.7 % (docs/decisions.md)."""
 _EVERYWHERE = frozenset({"symmetry", "outer"})
 _CHAMBER = _EVERYWHERE | {"chamber", "winding", "roof"}
 

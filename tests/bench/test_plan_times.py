@@ -80,7 +80,7 @@ def test_meshes_alike_across_take_the_power_of_the_others() -> None:
 
 
 def test_a_touching_run_gives_no_price() -> None:
-    touching = {"case": f"cases/{plan_times.LAST}.yaml"}
+    touching = {"case": f"cases/{plan_times.TOUCHING}.yaml"}
     runs: list[dict[str, Any]] = [run_by(LAW, *size) for size in ((10, 300), (20, 900))]
     assert prices([*runs, touching]) == prices(runs)
 

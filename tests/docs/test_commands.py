@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from pathlib import Path
 
 import pytest
@@ -25,10 +26,10 @@ def test_a_reader_can_do_what_the_page_says(name: str, tmp_path: Path) -> None:
 def test_commands_within_sentences_exist(name: str) -> None:
     text = PAGES[name].read_text(encoding="utf-8")
     for words in re.findall(r"`make((?: [^`]+)?)`", text):
-        for word in words.split():
+        for word in shlex.split(words):
             if not word.startswith("-") and "=" not in word:
                 assert word in targets(), f"{name}: make {word}"
-    for path in re.findall(r"`(?:\S+=\S+ )*python ((?:bench|examples)/[^` ]+)[^`]*`", text):
+    for path in re.findall(r"`(?:\S+=\S+ )*python ((?:bench|examples)/[^`\s]+)[^`]*`", text):
         assert (ROOT / path).is_file(), f"{name}: {path}"
     from fiberbend.cli import app
 

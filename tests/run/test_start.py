@@ -47,6 +47,21 @@ def test_a_section_is_run_by_what_solves_it(tmp_path: Path) -> None:
     assert loaded(command, (*UNASKED, *DRAWING, *OTHERS)) == []
 
 
+def test_a_script_that_imports_it_keeps_its_plugins_of_pydantic() -> None:
+    code = (
+        "import os; before = dict(os.environ); import fiberbend; from fiberbend import api;"
+        f"from fiberbend.reader.reader import read_case; read_case('{CASE}');"
+        "print(sorted({*os.environ} - {*before}))"
+    )
+    environment = {key: value for key, value in os.environ.items() if "PYDANTIC" not in key}
+    environment |= {"PYTHONPATH": str(ROOT)}
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, env=environment, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    assert "PYDANTIC_DISABLE_PLUGINS" not in done.stdout
+
+
 @pytest.mark.parametrize(("given", "kept"), [(None, "__all__"), ("logger", "logger")])
 def test_the_command_looks_for_no_plugins_of_pydantic(given: str | None, kept: str) -> None:
     name = "PYDANTIC_DISABLE_PLUGINS"

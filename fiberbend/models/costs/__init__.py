@@ -1,1 +1,1 @@
-"""What runs of finite elements take."""
+"""Processor time and memory of runs of finite elements."""

@@ -19,11 +19,11 @@ Pair = tuple[float, float]
 
 @dataclasses.dataclass(frozen=True)
 class Price:
-    """Of one kind of elements of a model, on one rank, with compiled kernels.
+    """Processor time and memory of one kind of elements of a model, on one rank, kernels compiled.
 
-    With n unknowns and m elements in L layers along the axis; numbers without a power count as
-    `a + b m` or `a + b n`, pairs (c, p) with one as c L (n/L)^p: what is long costs by its length,
-    what is wide by a power.
+    Of n unknowns and m elements in L layers along the axis. Linear pairs (a, b) mean `a + b m` or
+    `a + b n`, power pairs (c, p) mean c L (n/L)^p: what is long costs by its length, what is wide
+    by a power.
 
     Attributes:
         begin: s, and s an element: imports, mesh, kernels, the section that guides a body, and what
@@ -92,7 +92,7 @@ def power(pair: Pair, unknowns: float, layers: float) -> float:
 
 @functools.cache
 def price(model: str, kind: str) -> Price:
-    """That of a model.
+    """What a model takes; `make times` has fitted it.
 
     Args:
         model: its name.
