@@ -88,13 +88,13 @@ class Constraints:
             if front not in carried and front not in failing:
                 continue
             inside = self._unknowns_of(found[front], negative=False)
+            found[front] += [v for some in carried.get(front, []) for v in some.vertices]
             if front in failing:
                 unmet = self._unmet(found[front], inside)
                 leaving = unmet.vertices
             else:
                 unmet = self._still_unmet(carried[front], inside)
                 leaving = unmet.leaving(self._graph.group)
-                found[front] += [v for some in carried[front] for v in some.vertices]
             if above < 0 or not len(leaving):
                 continue
             found[front] = [v for v in found[front] if v not in leaving]
@@ -122,7 +122,7 @@ class Constraints:
         owner, other, values = owner[kept], rows.indices[kept], rows.data[kept]
         of, number = front[owner], np.empty(len(own), dtype=np.int64)
         failing = list[int]()
-        for height in np.unique(counts[0])[1:]:
+        for height in np.unique(counts[0][counts[0] > 0]):
             fronts = np.flatnonzero(counts[0] == height)
             number[fronts] = np.arange(len(fronts))
             mine = np.flatnonzero(counts[0][of] == height)
