@@ -176,10 +176,8 @@ def test_what_is_no_number_is_refused_and_leaves_nothing_behind(bad: float) -> N
         layers.solve(np.full((1, len(matrix)), np.nan))
 
 
-def test_what_is_no_number_at_first_is_no_reason_to_leave_layers(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(factor, "LAYERED", 0)
+@pytest.mark.usefixtures("_all_in_layers")
+def test_what_is_no_number_at_first_is_no_reason_to_leave_layers() -> None:
     matrix, negative = chain(8)
     petsc = stored(matrix)
     kept = Factor(petsc, volumetric=negative, free=np.ones(len(matrix), dtype=bool))

@@ -56,7 +56,7 @@ class Constraints:
         pressures = self._unknowns_of(sorted(part), negative=True)
         columns = self._unknowns_of(part, negative=False)
         block = self._rows[pressures][:, columns].toarray()
-        block /= np.linalg.norm(block, axis=1)[:, None] + 1e-300
+        block /= _sizes(block)[:, None]
         return self._unreached(block, graph.group[pressures])
 
     @staticmethod
@@ -128,7 +128,7 @@ class Constraints:
             mine = np.flatnonzero(counts[0][of] == height)
             blocks = np.zeros((len(fronts), height, counts[1][fronts].max()))
             blocks[number[of[mine]], place[owner[mine]], place[other[mine]]] = values[mine]
-            blocks /= np.linalg.norm(blocks, axis=2)[:, :, None] + 1e-300
+            blocks /= _sizes(blocks)[:, :, None]
             squares = np.linalg.eigvalsh(blocks @ blocks.transpose(0, 2, 1))
             failing += fronts[squares[:, 0] <= REACHED**2 * squares[:, -1]].tolist()
         return set(failing)
@@ -152,7 +152,7 @@ class Constraints:
     def _unmet(self, vertices: list[int], inside: Integers) -> _Unmet:
         rows = self._unknowns_of(vertices, negative=True)
         _, block = self._block(rows, inside)
-        size = np.linalg.norm(block, axis=1) + 1e-300
+        size = _sizes(block)
         block /= size[:, None]
         squares, modes = np.linalg.eigh(block @ block.T)
         null = modes[:, squares <= REACHED**2 * squares[-1]] / size[:, None]
@@ -164,13 +164,19 @@ class Constraints:
         null = linalg.block_diag(*(part.null for part in parts))
         columns, block = self._block(rows)
         whole = null.T @ block
-        size = np.linalg.norm(whole, axis=1) + 1e-300
+        size = _sizes(whole)
         self._mark[inside] = True
         met = whole[:, self._mark[columns]] / size[:, None]
         self._mark[inside] = False
         squares, modes = np.linalg.eigh(met @ met.T)
         null = (null / size) @ modes[:, squares <= REACHED**2]
         return _Unmet(rows, null, [v for part in parts for v in part.vertices])
+
+
+def _sizes(rows: Floats) -> Floats:
+    """Norm of each row, by which it can be divided; 1 of an empty one."""
+    found = np.linalg.norm(rows, axis=-1)
+    return np.where(found > 0, found, 1.0)
 
 
 @dataclasses.dataclass(frozen=True)
