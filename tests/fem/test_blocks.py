@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -34,7 +35,7 @@ def grid(counts: tuple[int, int, int], seed: int) -> tuple[Floats, Bools]:
     return bricks(list(itertools.product(*map(range, counts))), seed)
 
 
-def bricks(corners: list[tuple[int, ...]], seed: int) -> tuple[Floats, Bools]:
+def bricks(corners: Sequence[tuple[int, ...]], seed: int) -> tuple[Floats, Bools]:
     """Bricks of eight nodes with two unknowns within each and a constraint, unknowns shuffled."""
     rng = np.random.default_rng(seed)
     places = np.array(corners)[:, None] + list(itertools.product((0, 1), repeat=3))
