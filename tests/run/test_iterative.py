@@ -68,6 +68,7 @@ def test_no_convergence_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp_path: P
     assert text.startswith('solver.linear: "iterative", expected direct: no convergence in 3 it')
     record = json.loads((tmp_path / "run" / "run.json").read_text(encoding="utf-8"))
     assert (record["status"], record["reason"]) == ("failed", text)
+    assert record["wall_s"]["mesh"] > 0
 
 
 def test_a_limit_point_is_refused() -> None:
