@@ -46,6 +46,7 @@ class Layers:
 
     Raises:
         UnsuitableError: another solver is likely to be faster, or more than two ranks.
+        ZeroDivisionError: couplings of constraints that are no numbers.
     """
 
     def __init__(self, matrix: PETSc.Mat, negative: npt.NDArray[np.bool_]) -> None:
