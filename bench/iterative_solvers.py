@@ -18,7 +18,7 @@ from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from fem.scene import Scene
-from fem.solver.slab_parts import StoredRows
+from fem.solver.rows import StoredRows
 
 Floats = npt.NDArray[np.float64]
 Row = dict[str, Any]
@@ -58,7 +58,8 @@ class Parts:
     def __init__(self, scene: Scene) -> None:
         rows = StoredRows(scene.matrix)
         size = len(rows.begin) - 1
-        upper = sparse.csr_matrix((rows.values(), rows.columns, rows.begin), shape=(size, size))
+        entries = (rows.inner_values(), rows.columns, rows.begin)
+        upper = sparse.csr_matrix(entries, shape=(size, size))
         whole = (upper + sparse.triu(upper, 1).T).tocsr()
         self.u = scene.body.node_dofs[scene.body.owned_nodes].ravel()
         elements = scene.body.dofs("p")[:, :, 0]

@@ -206,7 +206,7 @@ def long_body(
 
 
 def _block_by_block(graph: Graph, constraints: Constraints) -> Tree | None:
-    """Blocks of elements; None where something is coupled beyond them."""
+    """Blocks of elements; None where something is coupled beyond them, or an end falls apart."""
     try:
         swept = find_elements(graph)
     except UnsuitableError:
@@ -216,7 +216,9 @@ def _block_by_block(graph: Graph, constraints: Constraints) -> Tree | None:
     if not _parted(graph, own, parent):
         return None
     _demand(order.seconds, len(graph.group), int(swept.layer.max()) + 1)
-    return Tree(*constraints.settled(own, parent))
+    own, parent = constraints.settled(own, parent)
+    # on the middle plane, the last front, lies one front of either end
+    return Tree(own, parent) if parent.count(len(own) - 1) == 2 else None
 
 
 def _parted(graph: Graph, own: Sequence[npt.NDArray[np.int64]], parent: Sequence[int]) -> bool:

@@ -233,14 +233,14 @@ class Factor:
 
         Raises:
             RuntimeError: MUMPS did not take the ordering asked for.
-            ZeroDivisionError: the matrix is singular.
+            ZeroDivisionError: the matrix is singular, or no number.
         """
         start = time.perf_counter()
         if self._try_layers:
-            self._try_layers = False
             assert self._volumetric is not None, "only with constraints"
             with contextlib.suppress(UnsuitableError):
                 self._layers = Layers(self._matrix, self._volumetric)
+            self._try_layers = False
         if self._layers is not None:
             try:
                 self._layers.renew()

@@ -27,6 +27,8 @@ Ints = npt.NDArray[np.int32]
 
 KEPT = 64
 """Columns of L that are kept together, with the rows from their first one on; as in fronts.c."""
+LARGEST = 2**31 - 1
+"""Entries of a front's own columns: tables.c counts them by 32 bits."""
 TINY = 1e-14
 """A pivot below this part of the greatest before in its block counts as one of another sign."""
 
@@ -100,7 +102,8 @@ class Fronts:
         mine: fronts whose numbers this rank needs.
 
     Raises:
-        UnsuitableError: two fronts are coupled of which none is an ancestor of the other.
+        UnsuitableError: two fronts are coupled of which none is an ancestor of the other, or one
+            is larger than `LARGEST`.
 
     Attributes:
         unknowns: unknown of every place in the order of elimination.
@@ -187,15 +190,17 @@ class Fronts:
         border = np.bincount(front, weights=weight, minlength=self.fronts).astype(np.int64)
         self._set("border_at", np.r_[0, np.cumsum(border)], "int64")
         self.size = self._set("size", self.own + border)
+        if int((self.own.astype(np.int64) * self.size).max()) > LARGEST:
+            raise UnsuitableError("a front is too large")
         self._parent, self._children = parent, (child_at, children)
 
     def _set_runs(self) -> None:
         children = int(self._children[0][-1])
         where = np.zeros(len(self.unknowns), dtype=np.int32)
-        at = self._set("run_at", np.zeros(children + 1), "int64")
+        at = self._set("run_at", np.zeros(children + 1, dtype=np.int64), "int64")
         pointers = (self._code.pointer(where), self._code.pointer(at))
         count = self._code.lib.runs(self._plan, *pointers, self._code.ffi.NULL)
-        run = self._set("run", np.zeros(3 * count))
+        run = self._set("run", np.zeros(3 * count, dtype=np.int32))
         self._code.lib.runs(self._plan, *pointers, self._code.pointer(run))
 
     def _set_entries(

@@ -46,6 +46,7 @@ class Layers:
 
     Raises:
         UnsuitableError: another solver is likely to be faster, or more than two ranks.
+        ZeroDivisionError: couplings of constraints that are no numbers.
     """
 
     def __init__(self, matrix: PETSc.Mat, negative: npt.NDArray[np.bool_]) -> None:
@@ -59,6 +60,8 @@ class Layers:
             negative = np.concatenate(comm.allgather(negative))
         graph = rows.graph(code, negative)
         tree = long_body(graph, rows.constraints(graph, negative), self._ends)
+        if comm.size > 1:  # where processors differ, so may what they round and choose
+            tree = comm.bcast(tree)
         # fronts [0, turn) from one end, [turn, middle) from the other, then the middle plane
         roots = [front for front, parent in enumerate(tree.parent) if parent == -1]
         self._middle = roots[0]

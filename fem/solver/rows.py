@@ -29,11 +29,11 @@ def swap(comm: MPI.Comm, given: npt.NDArray[np.float64], count: int) -> Floats:
     return found
 
 
-class Rows:
+class StoredRows:
     """The upper triangle that this rank stores.
 
     Args:
-        matrix: as `fem.matrix.upper_triangle` makes it, on two ranks at most.
+        matrix: as `fem.matrix.upper_triangle` makes it, on any number of ranks.
 
     Attributes:
         comm: its ranks.
@@ -42,8 +42,8 @@ class Rows:
         end: one more than that of the last.
         begin: where each row starts among the columns of this rank, (owned + 1,), a view.
         columns: those columns, local numbers, rising, the diagonal first, a view.
-        outer: rows and columns of the entries beside columns of another rank, global, (2, l).
-        theirs: such entries of another rank; each has a column of this one, global, (2, l').
+        outer: rows and columns of the entries beside columns of another rank, global, (2, l); rows
+            rise, and columns within a row.
     """
 
     def __init__(self, matrix: PETSc.Mat) -> None:
@@ -64,10 +64,6 @@ class Rows:
             columns.append(whole[inside:])
             rows.append(np.full(len(whole) - inside, self.first + row, dtype=np.int32))
         self.outer = np.array([np.concatenate(rows), np.concatenate(columns)])
-        self.theirs = self.outer[:, :0]
-        if self.comm.size > 1:
-            other = 1 - self.comm.rank
-            self.theirs = self.comm.sendrecv(self.outer, other, source=other)
 
     def inner_values(self) -> Floats:
         """Entries beside columns of this rank now, a view."""
@@ -77,6 +73,24 @@ class Rows:
         """Entries beside columns of another rank now, (l,)."""
         found = [self._matrix.getRow(row)[1][inside:] for row, inside in self._outer_rows]
         return np.concatenate([np.zeros(0), *found])
+
+
+class Rows(StoredRows):
+    """The same on two ranks at most, with what couples them, and the graph of the whole matrix.
+
+    Args:
+        matrix: as `fem.matrix.upper_triangle` makes it.
+
+    Attributes:
+        theirs: `outer` of another rank; each entry has a column of this one, (2, l').
+    """
+
+    def __init__(self, matrix: PETSc.Mat) -> None:
+        super().__init__(matrix)
+        self.theirs = self.outer[:, :0]
+        if self.comm.size > 1:
+            other = 1 - self.comm.rank
+            self.theirs = self.comm.sendrecv(self.outer, other, source=other)
 
     def graph(self, code: Code, negative: Bools) -> Graph:
         """The graph of the whole matrix; collective.
@@ -137,6 +151,9 @@ class Rows:
         Args:
             graph: of the whole matrix.
             negative: constraints, (size,).
+
+        Raises:
+            ZeroDivisionError: couplings that are no numbers, on whatever rank.
         """
         here, first = negative[self.first : self.end], self.first
         rows, places = self._entries(np.flatnonzero(here))
@@ -163,6 +180,8 @@ class Rows:
         if self.comm.size > 1:
             parts = zip(*self.comm.allgather((counts, other, values)), strict=True)
             counts, other, values = map(np.concatenate, parts)
+        if not np.isfinite(values).all():
+            raise ZeroDivisionError("couplings of constraints are no numbers")
         starts = np.r_[0, np.cumsum(counts)].astype(np.int32)
         return Constraints((starts, other, values), graph)
 

@@ -9,59 +9,13 @@ from petsc4py import PETSc
 
 from fem.matrix import stored_values, upper_triangle
 from fem.solver.factor import Mumps
+from fem.solver.rows import StoredRows
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 OVERLAP = 0.2
 """Part of its own length by which a slab goes into the next, at least one element."""
-
-
-class StoredRows:
-    """The upper triangle that this rank stores, row by row, on any number of ranks.
-
-    Attributes:
-        begin: where each row starts, (owned + 1,).
-        columns: their global columns, rising, the diagonal first.
-    """
-
-    def __init__(self, matrix: PETSc.Mat) -> None:
-        self._matrix = matrix
-        first, end = matrix.getOwnershipRange()
-        begin, columns = matrix.getDiagonalBlock().getRowIJ()
-        self._inner, self._outer = len(columns), list[tuple[int, int, int]]()
-        if matrix.getComm().size > 1:
-            matrix.setOption(PETSc.Mat.Option.GETROW_UPPERTRIANGULAR, True)
-            starts, within = np.diff(begin), np.split(columns, begin[1:-1])
-            parts = []
-            for row, inner in zip(range(first, end), within, strict=True):
-                whole = matrix.getRow(row)[0]
-                parts += [inner + first, whole[len(inner) :]]
-                if len(whole) > len(inner):
-                    self._outer.append((row, len(inner), len(whole)))
-            columns = np.concatenate([np.zeros(0, dtype=np.int32), *parts])
-            for row, _, length in self._outer:
-                starts[row - first] = length
-            begin = np.r_[0, np.cumsum(starts)]
-        self.begin = np.ascontiguousarray(begin, dtype=np.int32)
-        self.columns = np.ascontiguousarray(columns, dtype=np.int32)
-        self._first = first
-
-    def values(self) -> Floats:
-        """Entries now; a view where no row has columns of another rank."""
-        inner = stored_values(self._matrix, self._inner)
-        if not self._outer:
-            return inner
-        values = np.empty(len(self.columns))
-        taken = done = 0
-        for row, here, whole in self._outer:
-            start = int(self.begin[row - self._first])
-            count = start + here - done
-            values[done : start + here] = inner[taken : taken + count]
-            values[start + here : start + whole] = self._matrix.getRow(row)[1][here:]
-            taken, done = taken + count, start + whole
-        values[done:] = inner[taken:]
-        return values
 
 
 class Gathered:
@@ -79,19 +33,26 @@ class Gathered:
 
     def __init__(self, matrix: PETSc.Mat, wanted: Ints, first: Ints) -> None:
         self._rows = rows = StoredRows(matrix)
-        self._comm = matrix.getComm().tompi4py()
-        here = int(first[self._comm.rank])
-        asked = self._comm.alltoall(np.split(wanted, np.searchsorted(wanted, first[1:-1])))
-        lengths = np.diff(rows.begin)
-        self._sent = [_ranges(rows.begin[a - here], lengths[a - here]) for a in asked]
-        counts = np.concatenate(self._comm.alltoall([lengths[a - here] for a in asked]))
+        self._comm = comm = rows.comm
+        asked = comm.alltoall(np.split(wanted, np.searchsorted(wanted, first[1:-1])))
+        # row by row, where they are stored beside columns of this rank and then of others
+        within = np.diff(rows.begin)
+        row = np.r_[np.repeat(np.arange(len(within)), within), rows.outer[0] - rows.first]
+        stored = np.argsort(row, kind="stable")
+        lengths = np.bincount(row, minlength=len(within))
+        begin = np.cumsum(lengths) - lengths
+        asked = [rows_asked - rows.first for rows_asked in asked]
+        self._sent = [stored[_ranges(begin[a], lengths[a])] for a in asked]
+        counts = np.concatenate(comm.alltoall([lengths[a] for a in asked]))
         self.begin = np.r_[0, np.cumsum(counts)]
-        columns = self._comm.alltoall([rows.columns[sent] for sent in self._sent])
-        self.columns = np.concatenate(columns)
+        columns = np.r_[rows.columns + rows.first, rows.outer[1]]
+        self.columns = np.concatenate(comm.alltoall([columns[sent] for sent in self._sent]))
 
     def values(self) -> Floats:
         """Their entries now; collective."""
-        values = self._rows.values()
+        values, outer = self._rows.inner_values(), self._rows.outer_values()
+        if len(outer):
+            values = np.concatenate([values, outer])
         return np.concatenate(self._comm.alltoall([values[sent] for sent in self._sent]))
 
 

@@ -23,7 +23,7 @@ from petsc4py import PETSc
 from fem.kinematics.place import Place
 from fem.ranks import total
 from fem.solver.problem import RefusedError
-from fem.solver.slab_parts import Block, Cuts, Gathered, StoredRows
+from fem.solver.slab_parts import Block, Cuts, Gathered
 
 Floats = npt.NDArray[np.float64]
 
@@ -121,15 +121,14 @@ class Slabs:
         K has entries μ h between displacements and h² between them and pressures.
         """
         kinds = self._volumetric
-        rows = StoredRows(self._matrix)
-        alone = np.diff(rows.begin) == 1
+        shown = self._free & ~kinds
         self._matrix.getDiagonal(self._x)
-        diagonal = self._x.array_r[~kinds & ~alone]
+        diagonal = self._x.array_r[shown]
         self._x.array_w[:] = np.where(kinds, np.where(np.arange(len(kinds)) % 2, 1.0, -1.0), 0.0)
         self._matrix.mult(self._x, self._y)
-        across = self._y.array_r[~kinds & ~alone]
+        across = self._y.array_r[shown]
         sums = total(self._comm, np.array([diagonal @ diagonal, across @ across]))
-        ratio = float(np.sqrt(sums[0] / sums[1])) if sums[1] > 0 else 1.0
+        ratio = float(np.sqrt(sums[0] / sums[1])) if sums.all() else 1.0
         return np.where(kinds, ratio, 1.0)
 
     # --- between whole vectors and those of this rank's slabs -----------------------------------
@@ -157,20 +156,24 @@ class Slabs:
     # --- factors and coarse system -------------------------------------------------------------
 
     def renew(self) -> None:
-        """Factorise the slabs of the matrix as it is now; collective."""
+        """Factorise the slabs of the matrix as it is now; collective.
+
+        Raises:
+            RefusedError: a slab or the coarse system is singular.
+        """
         start = time.perf_counter()
         place = self._place()
         if not self.slabs:
             self._set_up(place)
         values = self._rows.values()
-        failed = False
+        failed = ""
         try:
             for block in (*self._blocks, *self._strips.values()):
                 block.renew(values)
-        except ZeroDivisionError:
-            failed = True
-        if total(self._comm, int(failed)):
-            raise RefusedError("a slab by itself is singular")
+        except (ZeroDivisionError, RuntimeError) as error:
+            failed = str(error)
+        if any(reasons := self._comm.allgather(failed)):
+            raise RefusedError(f"a slab by itself has no factor: {max(reasons)}")
         self._coarsen(place, values)
         self.seconds["factor"] += time.perf_counter() - start
 
@@ -204,7 +207,10 @@ class Slabs:
                         at = slice(k * MOVES, (k + 1) * MOVES)
                         whole[at, other * MOVES + j] = moves.T @ pull[block.at]
         whole = total(self._comm, whole)
-        self._coarse = np.linalg.inv((whole + whole.T) / 2)
+        try:
+            self._coarse = np.linalg.inv((whole + whole.T) / 2)
+        except np.linalg.LinAlgError as error:
+            raise RefusedError("the motions of whole slabs are singular") from error
 
     def _wanted_rows(self, values: Floats) -> Any:
         """The wanted rows and columns, both triangles."""

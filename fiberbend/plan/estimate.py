@@ -18,11 +18,14 @@ from machine.folders import MachineError, cache_root
 _GROWTH = 1.5
 _NEAR = 0.2
 _TWO_RANKS = 0.6
+_ITERATIVE = (
+    "not known of the iterative solver, {} on one rank (docs/evidence/iterative.md); direct: "
+)
 
 
 @dataclasses.dataclass(frozen=True)
 class Cost:
-    """What a run is expected to take.
+    """What a run is expected to take, with the direct solver.
 
     Attributes:
         steps: load steps; None where the bending angle at the end cannot be predicted.
@@ -31,6 +34,7 @@ class Cost:
         compile_s: seconds more where they are not.
         memory_mb: greatest memory on one rank, MB.
         free: what there is, where that is known.
+        iterative: the run takes the iterative solver, whose time and memory nothing estimates.
     """
 
     steps: int | None
@@ -39,6 +43,7 @@ class Cost:
     compile_s: float
     memory_mb: float
     free: Room | None = None
+    iterative: bool = False
 
     def rows(self, case: Case, model: MeshedModel) -> dict[str, list[str]]:
         """Steps, time and memory in words."""
@@ -53,6 +58,8 @@ class Cost:
             if model.shared:
                 time += f" on one rank, {_rounded(self.seconds(2) or whole)} s on two"
         time += f"; {MACHINE}, an estimate"
+        if self.iterative:
+            time = _ITERATIVE.format("several times longer") + time
         more = [f"about {self.compile_s:g} s more {_compiled()}"]
         drawing = drawing_seconds(case, model)
         if drawing:
@@ -60,6 +67,8 @@ class Cost:
         memory = f"about {_rounded(self.memory_mb / 1000)} GB"
         if model.shared:
             memory += f", and {RANK_MB / 1000:g} GB for each further rank"
+        if self.iterative:
+            memory = _ITERATIVE.format("more") + memory
         if self.free is not None:
             memory += f"; {gigabytes(self.free.mb)} are free {self.free.source}"
         return {"steps": [steps], "time": [time, *more], "memory": [memory]}
@@ -86,6 +95,7 @@ def cost_of(case: Case, model: MeshedModel, size: ProblemSize) -> Cost:
         compile_s=model.compile_s,
         memory_mb=needed_mb(case),
         free=room(),
+        iterative=model.shared and case.solver.linear == "iterative",
     )
 
 

@@ -36,8 +36,9 @@ class Plan:
         steps: load steps, where they can be predicted.
         refusal: why a run would be refused here and now; empty where it would not.
         seconds: of the run with compiled kernels on one rank, without pictures; None where its
-            steps cannot be predicted.
-        memory_mb: greatest memory on one rank, MB; None of a closed form.
+            steps cannot be predicted, or it takes the iterative solver.
+        memory_mb: greatest memory on one rank, MB; None of a closed form; less than it is with the
+            iterative solver.
     """
 
     model: str
@@ -118,7 +119,7 @@ def _finite_elements(
         size.unknowns,
         cost.steps,
         "" if short is None else f"memory: {short}",
-        cost.seconds(),
+        None if cost.iterative else cost.seconds(),
         cost.memory_mb,
     )
 

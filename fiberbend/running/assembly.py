@@ -62,6 +62,11 @@ class Assembly:
         )
 
 
+def without_symmetry(case: Case) -> Case:
+    """The case without a mirror plane."""
+    return case.model_copy(update={"mesh": case.mesh.model_copy(update={"symmetry": "full"})})
+
+
 def assemble(
     case: Case,
     mesh: MeshData,

@@ -134,7 +134,11 @@ def unfinished(
 
 
 def refused(
-    folder: RunFolder | None, model: str, rows: Sequence[col.Row], error: Exception
+    folder: RunFolder | None,
+    model: str,
+    rows: Sequence[col.Row],
+    wall_s: dict[str, float],
+    error: Exception,
 ) -> CaseError:
     """What a run says that the iterative solver refuses; run.json says it too, on one rank.
 
@@ -142,11 +146,12 @@ def refused(
         folder: of the run, or None.
         model: name of the model.
         rows: of the history so far.
+        wall_s: seconds by phase that has ended.
         error: why.
     """
     problem = Problem("solver.linear", f'"iterative", expected direct: {error}')
     if folder is not None:
-        entries = unfinished("failed", str(problem), model, rows, {}, launch.size())
+        entries = unfinished("failed", str(problem), model, rows, wall_s, launch.size())
         folder.write_run(**entries)
     return CaseError([problem])
 

@@ -30,7 +30,7 @@ from fiberbend.process.signals import Interrupted, stop_of
 from fiberbend.results.folder import MESH, REPORT, RunFolder
 from fiberbend.results.states import LAST, write_fibers
 from fiberbend.running import launch, messages, record, restart
-from fiberbend.running.assembly import Assembly, assemble
+from fiberbend.running.assembly import Assembly, assemble, without_symmetry
 from fiberbend.running.calibrated import Own, calibrated
 from fiberbend.running.history import Recorder
 from fiberbend.running.hooks import Recording, ended, shows_states, unmet
@@ -127,7 +127,7 @@ def _solve(
 
         return on_rank_0(comm, lambda: run_analytic(case, folder, progress))
     if model.shared:
-        whole = _whole(case)
+        whole = without_symmetry(case)
         # asked now: later the half body takes of the memory that is free
         leaves = case.mesh.symmetry == "auto" and model.half(case)[0]
         leaves = leaves and (force or fits(whole, comm, folder is not None))
@@ -143,11 +143,6 @@ def _solve(
     # too small to share: one rank solves it
     alone = _Run(case, model, folder, progress, MPI.COMM_SELF, scratch, own)
     return on_rank_0(comm, lambda: alone.go(False))
-
-
-def _whole(case: Case) -> Case:
-    """The case without a mirror plane."""
-    return case.model_copy(update={"mesh": case.mesh.model_copy(update={"symmetry": "full"})})
 
 
 class _Run:
@@ -252,7 +247,8 @@ class _Run:
             raise stop from None
         except RefusedError as error:
             rows = self.recording.rows if self.recording else []
-            raise record.refused(self.folder, self.model.name, rows, error) from None
+            spent = self.progress.wall_s
+            raise record.refused(self.folder, self.model.name, rows, spent, error) from None
 
     def _stopped(self, stop: Interrupted) -> None:
         """Say what is kept, and leave it in run.json: by the rank that still can."""

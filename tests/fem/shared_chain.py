@@ -1,4 +1,7 @@
-"""A chain's matrix on two ranks, whichever rows they have: solutions and inertia against dense."""
+"""A chain's matrix on two ranks, whichever rows they have: solutions and inertia against dense.
+
+What is told of rows that other ranks own, too.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,7 @@ from petsc4py import PETSc
 
 from fem.matrix import upper_triangle
 from fem.solver.layers import Layers
+from fem.solver.slab_parts import Gathered
 from tests.fem.test_layers import chain, inertia
 
 Floats = npt.NDArray[np.float64]
@@ -35,14 +39,15 @@ def measure(comm: MPI.Comm, order: str, definite: bool) -> dict[str, float]:
 
     Args:
         comm: two ranks.
-        order: of the unknowns: by chance, along the chain, or from its other end.
+        order: of the unknowns: by chance, along the chain, from its other end, or by chance and
+            all on the last rank.
         definite: no pivot has another sign than expected.
     """
-    matrix, negative = chain(11, definite, shuffled=order == "by chance")
+    matrix, negative = chain(11, definite, shuffled=order in ("by chance", "none"))
     if order == "from the other end":
         matrix, negative = matrix[::-1, ::-1].copy(), negative[::-1].copy()
     size = len(matrix)
-    cut = size // 3 if order == "by chance" else size // 2 - 5
+    cut = {"by chance": size // 3, "none": 0}.get(order, size // 2 - 5)
     first, end = ((0, cut), (cut, size))[comm.rank]
     layers = Layers(shared(comm, matrix, first, end), negative[first:end])
     b = np.random.default_rng(2).standard_normal((3, size))
@@ -54,6 +59,20 @@ def measure(comm: MPI.Comm, order: str, definite: bool) -> dict[str, float]:
             error, float(np.abs(x - np.linalg.solve(matrix, b.T).T).max() / np.abs(x).max())
         )
     return {"error": error, "pivots": layers.negative_pivots - inertia(matrix)}
+
+
+def gathered(comm: MPI.Comm, part: float) -> float:
+    """What is wrong with every third row of the upper triangle, of which ranks own parts."""
+    matrix, _ = chain(11)
+    size = len(matrix)
+    cut = int(part * size)
+    first, end = ((0, cut), (cut, size))[comm.rank]
+    wanted = np.arange(comm.rank, size, 3)
+    rows = Gathered(shared(comm, matrix, first, end), wanted, np.array([0, cut, size]))
+    found = np.zeros((len(wanted), size))
+    found[np.repeat(np.arange(len(wanted)), np.diff(rows.begin)), rows.columns] = rows.values()
+    error = np.abs(found - np.triu(matrix)[wanted]).max()
+    return float(comm.allreduce(error, MPI.MAX))
 
 
 def unknown(comm: MPI.Comm) -> str:
@@ -70,9 +89,10 @@ def unknown(comm: MPI.Comm) -> str:
 
 if __name__ == "__main__":
     found: dict[str, Any] = {"unknown": unknown(MPI.COMM_WORLD)}
+    found["gathered"] = [gathered(MPI.COMM_WORLD, part) for part in (0.0, 0.4, 1.0)]
     found |= {
         f"{order}, {definite}": measure(MPI.COMM_WORLD, order, definite)
-        for order in ("by chance", "along", "from the other end")
+        for order in ("by chance", "along", "from the other end", "none")
         for definite in (True, False)
     }
     if MPI.COMM_WORLD.rank == 0:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -30,16 +31,20 @@ LAYERS = 10
 
 
 def grid(counts: tuple[int, int, int], seed: int) -> tuple[Floats, Bools]:
+    """Bricks beside, behind and upon each other."""
+    return bricks(list(itertools.product(*map(range, counts))), seed)
+
+
+def bricks(corners: Sequence[tuple[int, ...]], seed: int) -> tuple[Floats, Bools]:
     """Bricks of eight nodes with two unknowns within each and a constraint, unknowns shuffled."""
     rng = np.random.default_rng(seed)
-    shape = tuple(n + 1 for n in counts)
-    nodes, cells = int(np.prod(shape)), int(np.prod(counts))
+    places = np.array(corners)[:, None] + list(itertools.product((0, 1), repeat=3))
+    found, number = np.unique(places.reshape(-1, 3), axis=0, return_inverse=True)
+    nodes, cells = len(found), len(corners)
     size = nodes + 3 * cells
     matrix = np.zeros((size, size))
-    for cell, corner in enumerate(itertools.product(*map(range, counts))):
-        places = np.array(corner) + list(itertools.product((0, 1), repeat=3))
-        corners = (places[:, 0] * shape[1] + places[:, 1]) * shape[2] + places[:, 2]
-        part = np.r_[corners, nodes + 2 * cell, nodes + 2 * cell + 1]
+    for cell, own in enumerate(number.reshape(cells, 8)):
+        part = np.r_[own, nodes + 2 * cell, nodes + 2 * cell + 1]
         block = rng.standard_normal((len(part), len(part)))
         matrix[np.ix_(part, part)] += block @ block.T
         row, pressure = rng.standard_normal(len(part)), nodes + 2 * cells + cell
@@ -187,12 +192,36 @@ def test_what_blocks_do_not_part_goes_plane_by_plane(monkeypatch: pytest.MonkeyP
         return plane_by_plane(graph, constraints, share)
 
     monkeypatch.setattr(dissection, "_plane_by_plane", noted)
-    with contextlib.suppress(UnsuitableError):
-        layers = Layers(stored(matrix), negative)
-        layers.renew()
-        b = np.ones((1, len(matrix)))
-        assert np.linalg.norm(matrix @ layers.solve(b)[0] - 1) < 1e-8
+    layers = Layers(stored(matrix), negative)
     assert tried
+    layers.renew()
+    assert layers.negative_pivots == inertia(matrix)
+    b = np.ones((1, len(matrix)))
+    assert np.linalg.norm(matrix @ layers.solve(b)[0] - 1) < 1e-8
+
+
+@pytest.mark.parametrize("legs", [2, 4])
+def test_an_end_that_falls_apart_goes_plane_by_plane(
+    legs: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # two legs, each a strip: the middle plane lies on three fronts
+    monkeypatch.setattr(dissection, "GENERAL", 1.0)
+    monkeypatch.setattr(blocks, "LENGTHS", (1,))
+    monkeypatch.setattr(blocks, "STRIPS", (2,))
+    trunk = list(itertools.product(range(4), range(2), range(2)))
+    forked = trunk + list(itertools.product((0, 3), range(2), range(2, 2 + legs)))
+    matrix, negative = bricks(forked, 7)
+    rows, code = Rows(stored(matrix)), Code(MPI.COMM_SELF)
+    graph = rows.graph(code, negative)
+    swept = find_elements(graph)
+    own, parent = fronts_of(graph, swept, order_blocks(graph, swept))
+    assert parent.count(len(own) - 1) == 3
+    assert dissection._block_by_block(graph, rows.constraints(graph, negative)) is None
+    layers = Layers(stored(matrix), negative)
+    layers.renew()
+    assert layers.negative_pivots == inertia(matrix)
+    b = np.ones((1, len(matrix)))
+    assert np.linalg.norm(matrix @ layers.solve(b)[0] - 1) < 1e-8
 
 
 def _solved(scene: Scene) -> tuple[Layers, npt.NDArray[np.float64]]:
@@ -220,6 +249,18 @@ def test_a_wide_tower_is_solved_as_by_mumps(leaf: int, monkeypatch: pytest.Monke
     assert calm.pivoted <= 1
     pressed, _ = _solved(tower(MPI.COMM_SELF, 0.2, columns=WIDE))
     assert pressed.negative_pivots > calm.negative_pivots
+
+
+def test_constraints_that_meet_others_on_their_way_are_not_lost() -> None:
+    # constraints 0 and 1, both of unknown 3 alone; unknown 2 is eliminated with the second
+    begin, near = np.array([0, 1, 2, 2, 4], np.int32), np.array([3, 3, 0, 1], np.int32)
+    negative, each = np.array([True, True, False, False]), np.ones(4, np.int32)
+    graph = Graph(begin, near, np.arange(4, dtype=np.int32), each, negative)
+    rows = (np.array([0, 1, 2, 2, 2], np.int32), np.array([3, 3], np.int32), np.ones(2))
+    constraints = Constraints(rows, graph)
+    own, parent = constraints.settled([np.array([0]), np.array([1, 2]), np.array([3])], [1, 2, -1])
+    assert [sorted(some.tolist()) for some in own] == [[2], [0, 1, 3]]
+    assert parent == [1, -1]
 
 
 def test_constraints_of_closed_pieces_wait(monkeypatch: pytest.MonkeyPatch) -> None:

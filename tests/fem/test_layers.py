@@ -16,7 +16,7 @@ from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Clamp, Symmetry
 from fem.kinematics.domain import Domain
 from fem.scene import Scene
-from fem.solver import dissection, factor
+from fem.solver import dissection, factor, fronts
 from fem.solver.dissection import UnsuitableError
 from fem.solver.factor import Factor
 from fem.solver.layers import InaccurateError, Layers
@@ -176,6 +176,36 @@ def test_what_is_no_number_is_refused_and_leaves_nothing_behind(bad: float) -> N
         layers.solve(np.full((1, len(matrix)), np.nan))
 
 
+@pytest.mark.usefixtures("_all_in_layers")
+def test_what_is_no_number_at_first_is_no_reason_to_leave_layers() -> None:
+    matrix, negative = chain(8)
+    petsc = stored(matrix)
+    kept = Factor(petsc, volumetric=negative, free=np.ones(len(matrix), dtype=bool))
+    row = int(np.flatnonzero(negative)[0])
+    column = int(np.flatnonzero(matrix[row])[0])
+    place = (min(row, column), max(row, column))
+    petsc.setValue(*place, np.nan)
+    petsc.assemble()
+    with pytest.raises(ZeroDivisionError, match="no numbers"):
+        kept.renew()
+    petsc.setValue(*place, matrix[row, column])
+    petsc.assemble()
+    kept.renew()
+    assert kept._layers is not None
+    assert kept.negative_pivots == inertia(matrix)
+
+
+def test_a_front_beyond_32_bits_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    matrix, negative = chain(9)
+    largest = Layers(stored(matrix), negative)._fronts
+    entries = int((largest.own.astype(np.int64) * largest.size).max())
+    monkeypatch.setattr(fronts, "LARGEST", entries)
+    Layers(stored(matrix), negative)
+    monkeypatch.setattr(fronts, "LARGEST", entries - 1)
+    with pytest.raises(UnsuitableError, match="a front is too large"):
+        Layers(stored(matrix), negative)
+
+
 def half_scene(axial: float) -> Scene:
     """Half an actuator, in a random state."""
     return _assembled(
@@ -258,7 +288,8 @@ def test_two_ranks_may_have_any_rows(mpirun: MpiRun) -> None:
     assert run.returncode == 0, run.stderr
     found = json.loads(run.stdout)
     assert "not known" in found.pop("unknown")
-    assert len(found) == 6
+    assert found.pop("gathered") == [0.0] * 3
+    assert len(found) == 8
     for name, values in found.items():
         assert values["error"] < 1e-8, name
         assert values["pivots"] == 0, name

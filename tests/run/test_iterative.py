@@ -11,7 +11,7 @@ import pytest
 from fem.solver import slabs
 from fiberbend import run
 from fiberbend.models.choice import choose_model
-from fiberbend.plan.plan import unused
+from fiberbend.plan.plan import make_plan, unused
 from fiberbend.reader.reader import as_case
 from fiberbend.results.reading import read_history
 from fiberbend.schema.problems import CaseError
@@ -68,6 +68,7 @@ def test_no_convergence_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp_path: P
     assert text.startswith('solver.linear: "iterative", expected direct: no convergence in 3 it')
     record = json.loads((tmp_path / "run" / "run.json").read_text(encoding="utf-8"))
     assert (record["status"], record["reason"]) == ("failed", text)
+    assert record["wall_s"]["mesh"] > 0
 
 
 def test_a_limit_point_is_refused() -> None:
@@ -84,6 +85,17 @@ def test_a_limit_point_is_refused() -> None:
     del soft["actuator"]["sheath"]
     with pytest.raises(CaseError, match=r"solver.linear.*a limit point of pressure"):
         run(soft)
+
+
+def test_a_plan_says_that_its_figures_are_those_of_the_direct_solver() -> None:
+    direct, iterative = (make_plan(as_case(case)) for case in (CASE, ITERATIVE))
+    rows, known = dict(iterative.rows), dict(direct.rows)
+    for heading, what in (("time", "several times longer"), ("memory", "more")):
+        text, other = rows[heading][0], known[heading][0].split(";")[0]
+        assert text.startswith(f"not known of the iterative solver, {what} on one rank")
+        assert other in text
+    assert direct.seconds is not None
+    assert iterative.seconds is None
 
 
 def test_tetrahedra_are_refused() -> None:

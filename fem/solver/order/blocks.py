@@ -222,10 +222,7 @@ def _gathered(order: Order, first: Integers, last: Integers) -> tuple[list[Integ
     fresh = (np.diff(upper[sorting]) != 0) | (np.diff(depth[sorting]) != 0)
     starts = np.r_[0, np.flatnonzero(fresh) + 1]
     own = np.split(coupled[sorting], starts[1:])
-    parent = _parents(lower[sorting][starts].tolist())
-    if parent.count(len(own) - 1) != 2:
-        raise UnsuitableError("the middle plane has no two sides")
-    return own, parent
+    return own, _parents(lower[sorting][starts].tolist())
 
 
 def _leaves(depth: Integers) -> Integers:

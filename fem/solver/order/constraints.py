@@ -56,7 +56,7 @@ class Constraints:
         pressures = self._unknowns_of(sorted(part), negative=True)
         columns = self._unknowns_of(part, negative=False)
         block = self._rows[pressures][:, columns].toarray()
-        block /= np.linalg.norm(block, axis=1)[:, None] + 1e-300
+        block /= _sizes(block)[:, None]
         return self._unreached(block, graph.group[pressures])
 
     @staticmethod
@@ -88,13 +88,13 @@ class Constraints:
             if front not in carried and front not in failing:
                 continue
             inside = self._unknowns_of(found[front], negative=False)
+            found[front] += [v for some in carried.get(front, []) for v in some.vertices]
             if front in failing:
                 unmet = self._unmet(found[front], inside)
                 leaving = unmet.vertices
             else:
                 unmet = self._still_unmet(carried[front], inside)
                 leaving = unmet.leaving(self._graph.group)
-                found[front] += [v for some in carried[front] for v in some.vertices]
             if above < 0 or not len(leaving):
                 continue
             found[front] = [v for v in found[front] if v not in leaving]
@@ -122,13 +122,13 @@ class Constraints:
         owner, other, values = owner[kept], rows.indices[kept], rows.data[kept]
         of, number = front[owner], np.empty(len(own), dtype=np.int64)
         failing = list[int]()
-        for height in np.unique(counts[0])[1:]:
+        for height in np.unique(counts[0][counts[0] > 0]):
             fronts = np.flatnonzero(counts[0] == height)
             number[fronts] = np.arange(len(fronts))
             mine = np.flatnonzero(counts[0][of] == height)
             blocks = np.zeros((len(fronts), height, counts[1][fronts].max()))
             blocks[number[of[mine]], place[owner[mine]], place[other[mine]]] = values[mine]
-            blocks /= np.linalg.norm(blocks, axis=2)[:, :, None] + 1e-300
+            blocks /= _sizes(blocks)[:, :, None]
             squares = np.linalg.eigvalsh(blocks @ blocks.transpose(0, 2, 1))
             failing += fronts[squares[:, 0] <= REACHED**2 * squares[:, -1]].tolist()
         return set(failing)
@@ -152,7 +152,7 @@ class Constraints:
     def _unmet(self, vertices: list[int], inside: Integers) -> _Unmet:
         rows = self._unknowns_of(vertices, negative=True)
         _, block = self._block(rows, inside)
-        size = np.linalg.norm(block, axis=1) + 1e-300
+        size = _sizes(block)
         block /= size[:, None]
         squares, modes = np.linalg.eigh(block @ block.T)
         null = modes[:, squares <= REACHED**2 * squares[-1]] / size[:, None]
@@ -164,13 +164,19 @@ class Constraints:
         null = linalg.block_diag(*(part.null for part in parts))
         columns, block = self._block(rows)
         whole = null.T @ block
-        size = np.linalg.norm(whole, axis=1) + 1e-300
+        size = _sizes(whole)
         self._mark[inside] = True
         met = whole[:, self._mark[columns]] / size[:, None]
         self._mark[inside] = False
         squares, modes = np.linalg.eigh(met @ met.T)
         null = (null / size) @ modes[:, squares <= REACHED**2]
         return _Unmet(rows, null, [v for part in parts for v in part.vertices])
+
+
+def _sizes(rows: Floats) -> Floats:
+    """Norm of each row, by which it can be divided; 1 of an empty one."""
+    found = np.linalg.norm(rows, axis=-1)
+    return np.where(found > 0, found, 1.0)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -45,12 +45,10 @@ class Cut:
     Attributes:
         order: columns and layers of its elements.
         depths: of the cut between each element and the next one; `WITHIN`: there is none.
-        seconds: that its fronts are likely to take.
     """
 
     order: list[tuple[int, int]]
     depths: list[int]
-    seconds: float
 
 
 Part = tuple[Columns, int, int]
@@ -112,8 +110,8 @@ class Section:
 
     def cut(self, columns: Columns, layers: int) -> Cut:
         """How a block is cut where its fronts cost least."""
-        piece = self._piece(columns, layers, self.nodes)
-        return Cut(*self._placed(columns, layers), piece.seconds)
+        self._piece(columns, layers, self.nodes)
+        return Cut(*self._placed(columns, layers))
 
     def _placed(self, columns: Columns, layers: int) -> tuple[list[tuple[int, int]], list[int]]:
         """Order and depths of a piece that is known."""
