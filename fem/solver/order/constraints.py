@@ -107,13 +107,14 @@ class Constraints:
     def _failing(self, own: Sequence[Integers]) -> set[int]:
         """Fronts whose unknowns do not meet all their constraints."""
         rows, weight = self._rows, self._graph.weight
-        front = np.empty(len(weight), dtype=np.int64)
+        # what is coupled to nothing is in none of them: a last one stands for it
+        front = np.full(len(weight), len(own))
         front[np.concatenate(own)] = np.repeat(np.arange(len(own)), [len(some) for some in own])
         front = front[self._graph.group]
         negative = self._graph.negative[self._graph.group]
-        counts, place = np.zeros((2, len(own)), dtype=np.int64), np.empty(len(front), np.int64)
+        counts, place = np.zeros((2, len(own) + 1), dtype=np.int64), np.empty(len(front), np.int64)
         for row, part in enumerate((np.flatnonzero(negative), np.flatnonzero(~negative))):
-            counts[row] = np.bincount(front[part], minlength=len(own))
+            counts[row] = np.bincount(front[part], minlength=len(own) + 1)
             part = part[np.argsort(front[part], kind="stable")]
             starts = np.repeat(np.cumsum(counts[row]) - counts[row], counts[row])
             place[part] = np.arange(len(part)) - starts
@@ -122,8 +123,9 @@ class Constraints:
         owner, other, values = owner[kept], rows.indices[kept], rows.data[kept]
         of, number = front[owner], np.empty(len(own), dtype=np.int64)
         failing = list[int]()
-        for height in np.unique(counts[0][counts[0] > 0]):
-            fronts = np.flatnonzero(counts[0] == height)
+        heights = counts[0, :-1]
+        for height in np.unique(heights[heights > 0]):
+            fronts = np.flatnonzero(heights == height)
             number[fronts] = np.arange(len(fronts))
             mine = np.flatnonzero(counts[0][of] == height)
             blocks = np.zeros((len(fronts), height, counts[1][fronts].max()))
