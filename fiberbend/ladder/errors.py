@@ -293,7 +293,11 @@ def _corner(
 def _reference(
     limits: Mapping[Family, Mapping[str, FamilyLimit]], solved: Sequence[Solved]
 ) -> Family | None:
-    """The finest family: of the dearest model, every turn by itself, most known, sharpest limit."""
+    """The finest family: of the dearest model, every turn by itself, most known, sharpest limit.
+
+    Hexahedra before tetrahedra, as `finest` has it.
+    """
+    shapes = get_args(Mesh.model_fields["element"].annotation)
     rank = {}
     for family, found in limits.items():
         sizes = [each.limit for each in found.values()]
@@ -305,5 +309,6 @@ def _reference(
         own = (rung for rung, _ in solved if rung.family.discretisation == family)
         discrete = any(map(_discrete, own))
         sharp = max(limit.uncertainty / abs(limit.value) for limit in sizes)
-        rank[family] = (ORDER.index(family.model), discrete, len(found), -sharp)
+        shape = shapes.index(family.element) if family.element else 0
+        rank[family] = (ORDER.index(family.model), discrete, len(found), -shape, -sharp)
     return max(rank, key=lambda family: rank[family], default=None)

@@ -71,17 +71,31 @@ def test_every_direction_has_meshes_of_its_own() -> None:
         meshes.setdefault(rung.family.key, []).append(rung.mesh)
     assert len(meshes["section-spread"]) == 4
     assert [set(mesh) for mesh in meshes["section-spread"]] == [{"section"}] * 4
-    for key in ("cell-turns", *(f"{body}-half" for body in BODY), "body-turns-tetrahedron-half"):
+    hexahedra = [f"{body}-half" for body in BODY if "tetrahedron" not in body]
+    for key in ("cell-turns", *hexahedra):
         axial = {mesh["axial"] for mesh in meshes[key]}
         section = {mesh["section"] for mesh in meshes[key]}
         assert len(axial) == 3
         assert len(section) == (3 if key == "cell-turns" else 2)
+    # tetrahedra become smaller in all directions at once
+    for key in ("body-turns-tetrahedron-half", "body-spread-tetrahedron-half"):
+        assert [set(mesh) for mesh in meshes[key]] == [{"axial"}] * 3
     given: dict[str, set[float]] = {rung.family.key: set() for rung in of_case().rungs}
     for rung in of_case().rungs:
         given[rung.family.key].add(rung.case.mesh.axial)
     assert given["body-turns-hexahedron-half"] == {3.0, 1.5, 0.75}
     assert given["cell-turns"] == {0.75, 0.375, 0.1875}
+    assert given["body-turns-tetrahedron-half"] == {6.0, 3.0, 1.5}
     assert len(meshes["body-turns-hexahedron-full"]) == 1
+
+
+def test_a_section_is_refined_where_the_turns_are_resolved() -> None:
+    refined = [
+        rung.case.mesh.axial
+        for rung in of_case().rungs
+        if rung.family.key == "body-turns-hexahedron-half" and rung.case.mesh.section == 2
+    ]
+    assert refined == [0.75]
 
 
 def test_settings_make_the_rung() -> None:
