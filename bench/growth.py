@@ -26,7 +26,7 @@ CASE = "cases/free_bending.yaml"
 KEPT = ROOT / "build" / "growth"
 PAGE = ROOT / "docs" / "evidence" / "growth.md"
 PICTURE = ROOT / "docs" / "images" / "growth.png"
-SIZES = ((1, 6.0), (1, 3.0), (1, 1.5), (2, 4.0), (2, 2.0), (2, 1.25), (2, 0.9), (3, 1.5), (4, 1.5))
+SIZES = ((1, 6.0), (1, 3.0), (1, 1.5), (2, 4.0), (2, 2.0), (2, 1.25), (2, 0.9))
 """Elements through each thickness, and length of the elements along the axis, mm."""
 PHASES = ("factor", "tangent", "residual", "solve")
 SETTINGS = (
