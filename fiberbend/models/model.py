@@ -28,9 +28,6 @@ if TYPE_CHECKING:
 
     KinematicsFactory = Callable[[Domain, Iterable[str]], Kinematics]
 
-MACHINE = "two 2 GHz Xeon cores"
-"""Where seconds and memory of all models were measured, see docs/evidence/times.md: Debian 12,
-dolfinx 0.5, one BLAS thread a rank. Good to a factor of two."""
 ENDS_BEND = (
     "the whole body bends further than its middle, the baseline's by 0.6 to 1.4 % "
     "(docs/evidence/free.md)"

@@ -11,7 +11,8 @@ import math
 from fiberbend.case.case import Case
 from fiberbend.case.section_beside import section_guides
 from fiberbend.models import lines
-from fiberbend.models.model import MACHINE, MeshedModel, ModelKind, ProblemSize
+from fiberbend.models.costs.price import machine
+from fiberbend.models.model import MeshedModel, ModelKind, ProblemSize
 from fiberbend.plan.memory import RANK_MB, Room, gigabytes, needed_mb, room
 from machine.folders import MachineError, cache_root
 
@@ -57,7 +58,7 @@ class Cost:
             time = f"about {_rounded(whole)} s"
             if model.shared:
                 time += f" on one rank, {_rounded(self.seconds(2) or whole)} s on two"
-        time += f"; {MACHINE}, an estimate"
+        time += f"; on {machine()}, an estimate"
         if self.iterative:
             time = _ITERATIVE.format("several times longer") + time
         more = [f"about {self.compile_s:g} s more {_compiled()}"]

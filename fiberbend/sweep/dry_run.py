@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
-from fiberbend.models.model import MACHINE
+from fiberbend.models.costs.price import machine
 from fiberbend.plan.estimate import cold, drawing_seconds, steps_of
 from fiberbend.plan.memory import gigabytes, needed_mb, room
 from fiberbend.schema.units import show
@@ -121,7 +121,8 @@ def _total(left: Sequence[Point], number: int, jobs: int) -> Iterator[str]:
     share = f"{jobs} at once" if jobs > 1 else "one after the other"
     if known:
         least = "at least " if len(known) < len(times) else ""
-        yield f"time: {least}{in_words(together(known, jobs))}, {share}; {MACHINE}, an estimate"
+        time = in_words(together(known, jobs))
+        yield f"time: {least}{time}, {share}; on {machine()}, an estimate"
     if len(known) < len(times):
         number = len(times) - len(known)
         yield f"time: of {number} points it is not known, as their load steps are not"

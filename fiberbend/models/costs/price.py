@@ -91,6 +91,17 @@ def power(pair: Pair, unknowns: float, layers: float) -> float:
 
 
 @functools.cache
+def _measured() -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
+    return found
+
+
+def machine() -> str:
+    """Processor, and kernel of the linear algebra, that the prices were measured with."""
+    return str(_measured()["origin"]["machine"])
+
+
+@functools.cache
 def price(model: str, kind: str) -> Price:
     """What a model takes; `make times` has fitted it.
 
@@ -98,9 +109,7 @@ def price(model: str, kind: str) -> Price:
         model: its name.
         kind: of its elements, as `ProblemSize.kind` has it.
     """
-    entry: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))["prices"][
-        f"{model} {kind}"
-    ]
+    entry: dict[str, Any] = _measured()["prices"][f"{model} {kind}"]
     numbers: dict[str, Any] = {
         name: tuple(value) if isinstance(value, list) else value for name, value in entry.items()
     }
