@@ -70,7 +70,7 @@ accuracy: setup ## what accuracy costs in time: two ladders, prices; an idle mac
 speed: setup ## measure what an answer costs in each model; four minutes on an idle machine
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/speed.py
 
-growth: setup ## time and memory on finer and finer bodies, one and two ranks; an hour; resumable
+growth: setup ## time and memory on finer and finer bodies, one and two ranks; ten minutes; resumable
 	$(BIN)/python -m bench.growth
 
 times: setup ## fit the times and memory of `fiberbend plan` to runs; an idle machine, three minutes
