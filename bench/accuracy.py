@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from bench import prices
+from fiberbend.results.folder import LADDER, RUNGS
 
 ROOT = Path(__file__).resolve().parent.parent
 RUNS = ROOT / "runs"
@@ -28,17 +29,28 @@ How long does an answer take that is right to one percent? This page shows it fo
 finger that bends freely and one whose tip is blocked. `fiberbend accuracy` makes the same for
 your own case.
 
+## In short
+
+{short}
+
 ## How to read it
 
-Every point of a picture is one run: a model with a mesh, in a process of its own. To the right
-it took longer, upward it is farther off. The red line joins the runs that no other one beats: no
-run is both quicker and more exact. Take a point on it.
+Every point of a picture is one run: a model with a mesh, in a process of its own. Together they
+are a ladder, and each is a rung. To the right a run took longer, upward it is farther off. The
+thick line joins the runs that no other one beats: none is both quicker and more exact. They are
+named, and in bold in the table. Take one of them.
+
+A mark says the model and the shape of its elements, a colour how the winding is represented, the
+numbers beside it the mesh as the case has it (`mesh.section / mesh.axial`). A hollow mark is a
+whole body, a full one half of it. A pale one is never advised: it does not reach all that the
+case asks for, or its mesh error is not known. A thin line to the left of a mark is the
+calibration of its winding, which is done once and kept for all later runs of the same section.
 
 The error has two parts:
 
 - The **mesh error** falls with smaller elements. It is the distance of a run from the limit of
   its own family, which is the same model with ever finer meshes. The limit is extrapolated from
-  three or four meshes in each direction, across the section and along the axis (Richardson's
+  several meshes in each direction, across the section and along the axis (Richardson's
   extrapolation; Roache 1994, doi 10.1115/1.2910291).
 - The **modelling error** stays whatever the mesh. It is the distance between the limit of the
   family and the limit of the finest family, which is the body with every turn of the winding. A
@@ -46,9 +58,9 @@ The error has two parts:
   turns. No mesh can show it.
 
 The two are added without their signs. A run in which they cancel is right by luck, and the next
-radius has other luck. Of several answers (such as the pressures at three angles) the worst one
-counts. The reference is itself known to some percent only: the grey band. Runs in it cannot be
-told apart.
+radius has other luck. Of several answers, such as the pressures at several angles, the worst one
+counts. The limit of the finest family is itself not known exactly: below the dashed line, in the
+grey band, runs cannot be told apart. The advice adds what is not known of it to every error.
 
 The limits are those of equations, not of rubber: how far the model is from an experiment is on
 [the cross-check of every run](crosscheck.md). Half and whole body give the same answers; the
@@ -72,11 +84,13 @@ $ fiberbend accuracy cases/free_bending.yaml --within 30s
 $ fiberbend accuracy cases/free_bending.yaml
 ```
 
-The last line is the advice, with the options to type. The folder `runs/accuracy_free_bending`
-has the picture `accuracy.png`, the table as `accuracy.csv` and `accuracy.md`, and a file of
-every run in `rungs/`. A run is done again when case, program or machine have changed. `--only
-section --only cell` solves a part of the ladder; what was solved before counts too. What a model
-does not support, what failed and what was skipped is named in `accuracy.md` with its reason.
+At its end stand the advice and the commands that solve its rungs. The folder
+`runs/accuracy_free_bending` has the picture `accuracy.png`, the table as `accuracy.csv` and
+`accuracy.md`, and a file of every rung in `rungs/`. A rung is solved again when case, program or
+machine have changed; the command says so. `--only section --only cell` solves a part of the
+ladder; what was solved before counts too. What a model does not support, what failed and what was
+left out is named in `accuracy.md` with its reason. A rung that failed counts nowhere; `--retry`
+solves it again.
 """
 
 
@@ -96,17 +110,12 @@ class Shown:
 
 
 LADDERS = (
-    Shown(
-        "free_bending",
-        "Free bending",
-        "The baseline actuator is bent to a full circle. The answers are the pressures at 90, 180 "
-        "and 360°.",
-    ),
+    Shown("free_bending", "Free bending", "The baseline actuator bends freely."),
     Shown(
         "blocked_tip",
         "Blocked tip",
-        "The same actuator lies between a roof and a post. The answers are the forces of its tip "
-        "at 50 to 200 kPa. Only a body has the ends that this needs.",
+        "The same actuator lies between a roof and a post, which keep it straight and feel the "
+        "force of its tip. Only a body has the ends that this needs.",
     ),
 )
 
@@ -125,15 +134,30 @@ def part(shown: Shown) -> Iterator[str]:
     yield ""
     yield f"{shown.text} Made by `fiberbend accuracy cases/{shown.name}.yaml` on {machine(folder)}."
     yield ""
-    yield f"![Error against time of every model and mesh]({f'images/{picture}'})"
+    yield f"![Error against time of every model and mesh](images/{picture})"
     yield ""
+    # the commands of the advice take as long as the table says
+    text = text.replace("```console", "<!-- slow -->\n```console")
     yield from re.sub(r"\A# .*\n\n", "", text).rstrip().splitlines()
     yield ""
 
 
+def in_short() -> str:
+    """The advice of every ladder."""
+    lines = []
+    for shown in LADDERS:
+        path = RUNS / f"accuracy_{shown.name}" / LADDER
+        advice = json.loads(path.read_text(encoding="utf-8"))["advice"]
+        lines.append(f"- **{shown.heading}.** {advice}")
+    return "\n".join(lines)
+
+
 def machine(folder: Path) -> str:
-    """Where the rungs were solved, and with which commit."""
-    records = [json.loads(path.read_text()) for path in sorted(folder.glob("rungs/*.json"))]
+    """Where the rungs of the table were solved, and with which commit."""
+    names = json.loads((folder / LADDER).read_text(encoding="utf-8"))["rungs"]
+    # files of another commit, of rungs that are not solved again, may lie beside them
+    files = [folder / RUNGS / f"{name}.json" for name in names]
+    records = [json.loads(path.read_text(encoding="utf-8")) for path in files]
     keys = {(each["key"]["machine"], each["key"]["commit"][:12]) for each in records}
     if len(keys) > 1:
         raise SystemExit(f"{folder}: rungs of {len(keys)} machines or commits, expected one")
@@ -151,10 +175,10 @@ def price_list(found: dict[str, Any]) -> Iterator[str]:
     yield (
         "An effect that a case does not have costs nothing: it has no unknowns, no kernels and no "
         "terms. What it costs where it is there shows the baseline's body, half of it but in one "
-        f"line, with elements of {found['axial']}, under 50 kPa. Each scene is solved with the "
-        f"effect and without it, {found['rounds']} times in turns, and the least processor time of "
-        "the load steps counts. Discrete turns add no unknowns, but they need elements of half the "
-        "pitch, so that a body has two to three times as many."
+        f"line, with elements of {found['axial']}, under {found['pressure']}. Each scene is solved "
+        f"with the effect and without it, {found['rounds']} times in turns, and the least "
+        "processor time of the load steps counts. Every turn of the winding by itself adds no "
+        "unknowns to a mesh, but it needs elements no longer than half the pitch."
     )
     yield ""
     place = f"{found['machine']['processor']}, {found['machine']['usable_cores']} cores"
@@ -166,7 +190,7 @@ def price_list(found: dict[str, Any]) -> Iterator[str]:
 
 def main() -> None:
     """Write the page."""
-    lines = [HEAD]
+    lines = [HEAD.format(short=in_short())]
     for shown in LADDERS:
         lines += part(shown)
     if prices.TARGET.exists():

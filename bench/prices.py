@@ -24,11 +24,13 @@ from machine import origin
 ROOT = Path(__file__).resolve().parent.parent
 CASE = ROOT / "cases" / "free_bending.yaml"
 TARGET = ROOT / "runs" / "prices.json"
+PRESSURE = "50 kPa"
+"""It bends the baseline to a right angle."""
 BASE = (
-    *("output={}", "effects.0.pressure.to=50 kPa", "effects.1.winding.as=smeared"),
+    *("output={}", f"effects.0.pressure.to={PRESSURE}", "effects.1.winding.as=smeared"),
     *("model=body", *BARE),
 )
-"""50 kPa bend the baseline to a right angle; a winding that is spread takes long elements."""
+"""A winding that is spread takes long elements."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -113,6 +115,7 @@ def measure(axial: str, rounds: int) -> dict[str, Any]:
     return {
         "command": f'python -m bench.prices --rounds {rounds} --axial "{axial}"',
         "axial": axial,
+        "pressure": PRESSURE,
         "rounds": rounds,
         "machine": origin.machine(),
         "commit": origin.commit(ROOT),

@@ -43,7 +43,7 @@ def accuracy(
     Each rung is solved in a process of its own, one at a time: leave the machine idle. Started
     again, the command goes on. Its folder gets a picture of error against time (accuracy.png), a
     table (accuracy.csv, accuracy.md) and a file of each rung. It ends with one sentence on which
-    model and mesh to take.
+    model and mesh to take, and the commands for them.
 
     Args:
         case: Case file.
@@ -53,7 +53,7 @@ def accuracy(
         only: Solve these rungs alone.
         retry: Solve failed rungs again.
         dry_run: Print rungs, time and memory; solve and write nothing.
-        quiet: No progress; the advice alone.
+        quiet: No progress; the advice and its commands alone.
         verbose: Print load steps and the table too.
         force: Solve rungs even if there is not enough memory.
     """

@@ -21,6 +21,8 @@ _STEP = 1.5
 """Pixels between the points of a curve that texts keep clear of."""
 _PAD = 3.0
 """Points of paper between a text and a curve."""
+_GAP = 1.5
+"""Points of paper between two texts: the paper behind the one covers no letter of the other."""
 _NEAR = 22.0
 """A text farther from its point, in points of paper, is joined to it by a thin line."""
 _DISTANCES = (9.0, 15.0, 22.0, 36.0, 54.0, 76.0, 100.0, 130.0, 170.0, 220.0)
@@ -139,7 +141,7 @@ def fit(axes: Any, style: Style, below: float = 0.0) -> None:
         )
 
 
-def legend(axes: Any, style: Style, free: Room, grow: bool = False) -> None:
+def legend(axes: Any, style: Style, free: Room, grow: bool = False, below: bool = False) -> None:
     """Name the curves where no curve is; below the axes where there is no such place.
 
     Args:
@@ -147,13 +149,14 @@ def legend(axes: Any, style: Style, free: Room, grow: bool = False) -> None:
         style: of the page.
         free: what is free; the legend is taken from it.
         grow: for a legend below the page grows; else the axes shrink.
+        below: it stands below the axes though there may be a place within them.
 
     Raises:
         NoRoomError: there is no room below either.
     """
     frame = _legend(axes, style, loc="lower left", bbox_to_anchor=(0.0, 0.0))
     box = frame.get_window_extent(axes.figure.canvas.get_renderer())
-    place = free.corner(box.width, box.height)
+    place = None if below else free.corner(box.width, box.height)
     if place is not None:
         frame.set_bbox_to_anchor(place, transform=axes.figure.dpi_scale_trans)
         scale = axes.figure.dpi
@@ -199,7 +202,8 @@ class Room:
 
     def __init__(self, axes: Any, style: Style) -> None:
         self._axes, self._style = axes, style
-        self._taken: list[tuple[float, float, float, float]] = []
+        self._taken: list[Floats] = []
+        self._gap = _pixels(_GAP * style.scale, axes.figure)
         self._pad = _pixels(_PAD * style.scale, axes.figure)
         self.look()
 
@@ -215,7 +219,7 @@ class Room:
 
     def take(self, box: tuple[float, float, float, float]) -> None:
         """Let nothing else stand in a box x0, y0, x1, y1 in pixels."""
-        self._taken.append(box)
+        self._taken.append(np.array(box))
 
     def corner(self, width: float, height: float) -> tuple[float, float] | None:
         """Lower left corner, in inches, of a free place for a box in pixels; None without one."""
@@ -239,7 +243,15 @@ class Room:
                 return float(across[i]) / dpi, float(up[j]) / dpi
         return None
 
-    def write(self, text: str, across: float, up: float, size: float = 12.0) -> None:
+    def write(
+        self,
+        text: str,
+        across: float,
+        up: float,
+        size: float = 12.0,
+        reach: float = math.inf,
+        ways: Sequence[int] = _DIRECTIONS,
+    ) -> None:
         """Write beside a point where nothing else is, as near to it as possible.
 
         Args:
@@ -247,6 +259,8 @@ class Room:
             across: the point, as the axes count.
             up: its other coordinate.
             size: of the letters, pt; in proportion to those of the style.
+            reach: points of paper; where nothing is free so near, nothing is written.
+            ways: degrees, the best first: where the text may stand as seen from the point.
         """
         figure, scale = self._axes.figure, self._style.scale
         at = self._axes.transData.transform((across, up))
@@ -263,12 +277,16 @@ class Room:
         )
         extent = note.get_window_extent(figure.canvas.get_renderer())
         half = np.array([extent.width, extent.height]) / 2
-        places = list(_around(at, half, _pixels(scale, figure)))
+        around = _around(at, half, _pixels(scale, figure), ways)
+        places = [place for place in around if place[0] <= reach]
         costs = []
         for _, middle in places:
             costs.append(self._cost((*(middle - half), *(middle + half))))
             if costs[-1] == 0:
                 break
+        if costs[-1] > 0 and reach < math.inf:
+            note.remove()
+            return
         distance, middle = places[int(np.argmin(costs))]
         self.take((*(middle - half), *(middle + half)))
         shift = (middle - at) * 72 / figure.dpi
@@ -282,6 +300,11 @@ class Room:
             thin = LineCollection([way], colors="0.45", linewidths=0.8 * scale, zorder=2.5)
             self._axes.add_collection(thin, autolim=False)
 
+    def between(self, one: tuple[float, float], other: tuple[float, float]) -> float:
+        """Distance of two points of the axes on the page, in points of paper."""
+        ends = self._axes.transData.transform([one, other])
+        return float(np.hypot(*(ends[1] - ends[0]))) * 72 / float(self._axes.figure.dpi)
+
     def _cost(self, box: Sequence[float]) -> float:
         """How much a box x0, y0, x1, y1 in pixels covers."""
         x0, y0, x1, y1 = self._box
@@ -289,7 +312,7 @@ class Room:
         beyond = max(x0 - low[0], y0 - low[1], high[0] - x1, high[1] - y1, 0.0)
         covered = _within(self._points, low - self._pad, high + self._pad)
         overlaps = sum(
-            bool(low[0] < b[2] and b[0] < high[0] and low[1] < b[3] and b[1] < high[1])
+            bool(((low - self._gap < b[2:]) & (high + self._gap > b[:2])).all())
             for b in self._taken
         )
         return float(covered) + 1e4 * overlaps + 10 * beyond
@@ -300,10 +323,12 @@ def _within(points: Floats, low: Floats, high: Floats) -> int:
     return int(inside.sum())
 
 
-def _around(at: Floats, half: Floats, point: float) -> Iterator[tuple[float, Floats]]:
+def _around(
+    at: Floats, half: Floats, point: float, ways: Sequence[int]
+) -> Iterator[tuple[float, Floats]]:
     """Distances in points of paper and middles of boxes around a point, the nearest first."""
     for distance in _DISTANCES:
-        for degrees in _DIRECTIONS:
+        for degrees in ways:
             way = np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees))])
             yield distance, at + way * (distance * point + half)
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from fiberbend.ladder.errors import Judged, Judgement
 from fiberbend.ladder.rungs import Family
-from fiberbend.ladder.words import mesh_words, number, percent, seconds, settings, title
+from fiberbend.ladder.words import full_name, number, percent, seconds, title
 
 GOALS = (1.0, 0.1)
 """Errors in percent for which there is advice."""
@@ -38,35 +38,60 @@ def pareto(judgement: Judgement) -> list[Judged]:
 
 
 def advice(judgement: Judgement, goals: Sequence[float] = GOALS) -> str:
-    """One sentence: what to take for each goal, how long it takes, and what to type."""
-    best, known = pareto(judgement), judgement.known_to()
-    if not best:
+    """One sentence: what to take for each goal, as the table calls it, and how long it takes."""
+    known, found = judgement.known_to(), list(_choices(judgement, goals))
+    if not found:
         return "No advice: no family of rungs has a limit to compare with."
     parts: list[str] = []
-    for goal in goals:
-        # a reference that is uncertain lends its uncertainty to every error
-        able = [each for each in judgement.rungs if not each.flaw]
-        fits = [each for each in able if each.worst() + known <= goal]
-        fit = min(fits, key=lambda each: each.record.wall_s, default=None)
-        if fit is not None:
-            same = any(take(fit) in part for part in parts)
-            parts.append(f"for {number(goal)} % {'the same' if same else f'take {take(fit)}'}")
-            continue
-        near = min(best, key=lambda each: (max(each.worst(), known), each.record.wall_s))
-        why = (
-            f"the reference itself is known to {percent(known)} only"
-            if known > goal
-            else f"no rung keeps within it together with the {percent(known)} of the reference"
-            if known > goal / 2
-            else "no rung of this ladder is known to be as exact"
-        )
-        parts.append(
-            f"for {number(goal)} % {why}; the best has {percent(near.worst())}: {take(near)}"
-            if not any(take(near) in part for part in parts)
-            else f"for {number(goal)} % {why}, and the best has {percent(near.worst())}"
-        )
+    named: list[Judged] = []
+    for goal, choice, fits in found:
+        known_as = "the same" if choice in named else take(choice)
+        if fits:
+            parts.append(f"for {number(goal)} % {'' if choice in named else 'take '}{known_as}")
+        else:
+            best = f"the best has {percent(choice.worst())}"
+            name = "" if choice in named else f": {known_as}"
+            parts.append(f"for {number(goal)} % {_why_none(goal, known)}, and {best}{name}")
+        named.append(choice)
     text = "; ".join(parts)
     return f"{text[0].upper()}{text[1:]}.{_reservation(judgement)}"
+
+
+def chosen(judgement: Judgement, goals: Sequence[float] = GOALS) -> list[Judged]:
+    """The rungs that the advice names, each once."""
+    found: list[Judged] = []
+    for _, choice, _ in _choices(judgement, goals):
+        if choice not in found:
+            found.append(choice)
+    return found
+
+
+def _choices(judgement: Judgement, goals: Sequence[float]) -> Iterator[tuple[float, Judged, bool]]:
+    """For each goal the quickest rung that is sure to keep it, else the best; and which it is."""
+    best, known = pareto(judgement), judgement.known_to()
+    if not best:
+        return
+    able = [each for each in judgement.rungs if not each.flaw]
+    for goal in goals:
+        # a reference that is uncertain lends its uncertainty to every error
+        fits = [each for each in able if each.worst() + known <= goal]
+        if fits:
+            yield goal, min(fits, key=lambda each: each.record.wall_s), True
+        else:
+            yield goal, min(best, key=lambda each: _badness(each, known)), False
+
+
+def _badness(judged: Judged, known: float) -> tuple[float, float]:
+    """Error, as far as it can be told apart, then time."""
+    return max(judged.worst(), known), judged.record.wall_s
+
+
+def _why_none(goal: float, known: float) -> str:
+    if known > goal:
+        return f"the reference itself is known to {percent(known)} only"
+    if known > goal / 2:
+        return f"no rung keeps within it together with the {percent(known)} of the reference"
+    return "no rung of this ladder is known to be as exact"
 
 
 def _reservation(judgement: Judgement) -> str:
@@ -85,7 +110,7 @@ def _kind(family: Family) -> tuple[str, str]:
 
 
 def take(judged: Judged) -> str:
-    """A rung in words, its time, and the options that make it."""
-    family, rung = title(judged.rung.family), judged.rung
-    words = ", ".join(filter(None, (family, mesh_words(rung))))
-    return f"{words}: {seconds(judged.record.wall_s)} ({settings(rung)})"
+    """A rung as the table calls it, and its time."""
+    record = judged.record
+    once = f", {seconds(record.once_s)} of them once for all runs" if record.once_s else ""
+    return f'"{full_name(judged.rung)}", {seconds(record.wall_s)}{once}'

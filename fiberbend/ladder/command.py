@@ -5,19 +5,20 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
+import shlex
 import statistics
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from fiberbend.ladder.advice import advice, pareto
+from fiberbend.ladder.advice import advice, chosen, pareto
 from fiberbend.ladder.asked import asked
 from fiberbend.ladder.errors import Judgement, Solved, judge
-from fiberbend.ladder.record import FAILED, LATE, Record, Store
+from fiberbend.ladder.record import FAILED, LATE, Record, Store, find
 from fiberbend.ladder.rungs import Ladder, Missing, Rung, ladder
 from fiberbend.ladder.table import waiting
-from fiberbend.ladder.words import seconds, title
-from fiberbend.plan.memory import room, shortage
+from fiberbend.ladder.words import seconds, settings, title
+from fiberbend.plan.memory import gigabytes, room, shortage
 from fiberbend.process.signals import stop_of
 from fiberbend.running import launch
 from fiberbend.schema.problems import CaseError, Problem, meant
@@ -71,7 +72,7 @@ def duration(text: str) -> float:
 def run_ladder(
     path: Path,
     out: Path,
-    settings: Sequence[str] = (),
+    changes: Sequence[str] = (),
     options: Options | None = None,
     say: Say = print,
     solve: Solve | None = None,
@@ -81,7 +82,7 @@ def run_ladder(
     Args:
         path: the case file.
         out: the folder; started again, the ladder goes on there.
-        settings: changes to the case.
+        changes: changes to the case.
         options: what is solved, and how.
         say: takes lines for the user.
         solve: solves a rung; a process each by default.
@@ -100,15 +101,15 @@ def run_ladder(
         from fiberbend.ladder.solve import solve as in_a_process
 
         solve = in_a_process
-    whole = ladder(path, settings)
+    whole = ladder(path, changes)
     part = _part(whole, options)
     tell = (lambda _: None) if options.quiet else say
     if options.dry:
-        _plan(part, say)
+        _plan(part, out, options, say)
         return 0
     store = Store(out)
     try:
-        return _run(path, _Work(store, whole, part, options, say, tell, solve))
+        return _run(_Work(path, tuple(changes), store, whole, part, options, say, tell, solve))
     finally:
         store.close()
 
@@ -117,6 +118,8 @@ def run_ladder(
 class _Work:
     """What a ladder is solved with."""
 
+    path: Path
+    changes: tuple[str, ...]
     store: Store
     whole: Ladder
     part: Ladder
@@ -126,7 +129,7 @@ class _Work:
     solve: Solve
 
 
-def _run(path: Path, work: _Work) -> int:
+def _run(work: _Work) -> int:
     stop = None
     missing = list(work.part.missing)
     try:
@@ -142,7 +145,7 @@ def _run(path: Path, work: _Work) -> int:
     if not solved:
         work.say("no rung is solved" + ("" if stop else f": {_why(absent)}"))
         return stop.code if stop else launch.FAILED
-    judgement = _write(path, work, solved, absent, pictures=stop is None)
+    judgement = _write(work, solved, absent, pictures=stop is None)
     if text := waiting(solved):
         work.say(f"warning: {text}")
     failed = [record for _, record in solved if record.status == FAILED]
@@ -207,17 +210,51 @@ def _has(rung: Rung, word: str) -> bool:
     return word == rung.name or all(each in parts for each in wanted)
 
 
-def _plan(part: Ladder, say: Say) -> None:
+def _plan(part: Ladder, out: Path, options: Options, say: Say) -> None:
     """What would be solved, with expected time and memory."""
+    free = None if options.force else room()
+    before, fit = [], []
     for rung in part.rungs:
         size = f"{rung.unknowns} unknowns" if rung.unknowns else "closed form"
-        say(
+        line = (
             f"{rung.name:48s} {size:>16s}  about {seconds(rung.seconds)}, "
-            f"{rung.memory_mb / 1000:.1f} GB"
+            f"{gigabytes(rung.memory_mb)}"
         )
+        if find(out, rung) is not None:
+            before.append(rung)
+            line += "  (solved before)"
+        elif shortage([rung.memory_mb], free) is not None:
+            line += "  (left out: more memory than is free)"
+        else:
+            fit.append(rung)
+        say(line)
     for each in part.missing:
         say(f"not {each.name}: {each.reason}")
-    say(f"{len(part.rungs)} rungs, about {seconds(sum(rung.seconds for rung in part.rungs))}")
+    say(_sum(part.rungs, before, fit))
+
+
+def _sum(every: Sequence[Rung], before: Sequence[Rung], fit: Sequence[Rung]) -> str:
+    """The last line of a plan: what is left to do, in time and memory."""
+    parts = [f"{len(every)} rungs"]
+    if before:
+        parts.append(f"{len(before)} solved before")
+    short = len(every) - len(before) - len(fit)
+    if short:
+        parts.append(f"{short} left out for want of memory")
+    if fit:
+        parts.append(f"about {seconds(sum(rung.seconds for rung in fit))} one after the other")
+        parts.append(f"at most {gigabytes(max(rung.memory_mb for rung in fit))} of memory")
+    return ", ".join(parts)
+
+
+def _outdated(store: Store, left: Sequence[Rung]) -> str:
+    """Which rungs are solved again because something else than their mesh has changed."""
+    found = [names for rung in left if (names := store.outdated(rung))]
+    if not found:
+        return ""
+    changed = ", ".join(dict.fromkeys(name for names in found for name in names))
+    count = f"{len(found)} {'rungs were' if len(found) > 1 else 'rung was'}"
+    return f"{count} solved with another {changed}: solved again"
 
 
 def _solve(work: _Work) -> list[Missing]:
@@ -231,6 +268,8 @@ def _solve(work: _Work) -> list[Missing]:
     expected = sum(rung.seconds for rung in left)
     to_come = f", about {seconds(expected)} to go" if left else ""
     work.tell(f"{total} rungs, {before} solved before{to_come}")
+    if text := _outdated(store, left):
+        work.tell(text)
     missing, ratios = [], []
     for number, rung in enumerate(left):
         short = None if options.force else shortage([rung.memory_mb], room(), "the rung")
@@ -256,7 +295,7 @@ def _solve(work: _Work) -> list[Missing]:
 
 
 def _write(
-    path: Path, work: _Work, solved: Sequence[Solved], missing: Sequence[Missing], pictures: bool
+    work: _Work, solved: Sequence[Solved], missing: Sequence[Missing], pictures: bool
 ) -> Judgement:
     from fiberbend.ladder.picture import draw
     from fiberbend.ladder.table import as_csv, as_markdown, rung_table
@@ -264,11 +303,12 @@ def _write(
     case = work.whole.rungs[0].case
     answered = [(rung, record) for rung, record in solved if record.values]
     judgement = judge(asked(case), answered, work.whole.rungs)
-    heading = case.title or path.stem
+    heading = case.title or work.path.stem
     folder = work.store.folder
     folder.write_text("accuracy.csv", as_csv(judgement, solved))
-    folder.write_text("accuracy.md", as_markdown(heading, judgement, solved, missing))
-    work.store.conclude(_found(judgement, solved, missing))
+    typed = _typed(work, judgement)
+    folder.write_text("accuracy.md", as_markdown(heading, judgement, solved, missing, typed))
+    work.store.conclude(_found(judgement, solved, missing, typed))
     if pictures and judgement.reference is not None:
         launch.settle_folders()
         folder.write("accuracy.png", lambda file: draw(judgement, heading, file))
@@ -277,18 +317,30 @@ def _write(
             work.say(line)
     if judgement.reference is not None:
         work.tell(f"reference: the limit of {title(judgement.reference)}")
-    work.say(advice(judgement))
+    work.say("\n".join([advice(judgement), *(f"  {line}" for line in typed)]))
     work.tell(f"table and picture in {work.store.path}")
     return judgement
 
 
+def _typed(work: _Work, judgement: Judgement) -> list[str]:
+    """The commands that solve the rungs of the advice."""
+    path = shlex.quote(str(work.path))
+    return [
+        f"fiberbend run {path} {settings(each.rung, work.changes)}" for each in chosen(judgement)
+    ]
+
+
 def _found(
-    judgement: Judgement, solved: Sequence[Solved], missing: Sequence[Missing]
+    judgement: Judgement,
+    solved: Sequence[Solved],
+    missing: Sequence[Missing],
+    typed: Sequence[str],
 ) -> dict[str, Any]:
     """Content of accuracy.json."""
     known = judgement.known_to()
     return {
         "advice": advice(judgement),
+        "commands": list(typed),
         "reference": None if judgement.reference is None else judgement.reference.key,
         "reference_known_to_percent": known if math.isfinite(known) else None,
         "front": [each.record.name for each in pareto(judgement)],

@@ -11,9 +11,8 @@ import dataclasses
 import math
 import statistics
 from collections.abc import Iterator, Mapping, Sequence
-from typing import get_args
 
-from fiberbend.case.case import Mesh
+from fiberbend.case.shapes import SHAPES
 from fiberbend.ladder.asked import Asked
 from fiberbend.ladder.record import Record
 from fiberbend.ladder.richardson import Limit, extrapolate, observed_order
@@ -144,12 +143,15 @@ def finest(rungs: Sequence[Rung]) -> Family | None:
     if best is None:
         return None
     same = (rung.family for rung in known if rung.family.model == best.family.model)
-    shapes = get_args(Mesh.model_fields["element"].annotation)
     first = min(
         (family for family in same if family.winding == best.family.winding),
-        key=lambda family: shapes.index(family.element) if family.element else 0,
+        key=_shape,
     )
     return first.discretisation
+
+
+def _shape(family: Family) -> int:
+    return list(SHAPES).index(family.element) if family.element else 0
 
 
 def _discrete(rung: Rung) -> bool:
@@ -295,9 +297,8 @@ def _reference(
 ) -> Family | None:
     """The finest family: of the dearest model, every turn by itself, most known, sharpest limit.
 
-    Hexahedra before tetrahedra, as `finest` has it.
+    The usual shape of elements before others, as `finest` has it.
     """
-    shapes = get_args(Mesh.model_fields["element"].annotation)
     rank = {}
     for family, found in limits.items():
         sizes = [each.limit for each in found.values()]
@@ -309,6 +310,5 @@ def _reference(
         own = (rung for rung, _ in solved if rung.family.discretisation == family)
         discrete = any(map(_discrete, own))
         sharp = max(limit.uncertainty / abs(limit.value) for limit in sizes)
-        shape = shapes.index(family.element) if family.element else 0
-        rank[family] = (ORDER.index(family.model), discrete, len(found), -shape, -sharp)
+        rank[family] = (ORDER.index(family.model), discrete, len(found), -_shape(family), -sharp)
     return max(rank, key=lambda family: rank[family], default=None)

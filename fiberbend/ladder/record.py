@@ -118,6 +118,24 @@ def key_of(rung: Rung) -> dict[str, str]:
     }
 
 
+def find(folder: Path, rung: Rung) -> Record | None:
+    """The record of a rung in a ladder's folder that still holds; None where there is none.
+
+    A file that is damaged, or of another case, program or machine, is as good as none.
+    """
+    record = _read(folder, rung)
+    return record if record is not None and record.key == key_of(rung) else None
+
+
+def _read(folder: Path, rung: Rung) -> Record | None:
+    """The record of a rung, whatever it holds for."""
+    try:
+        text = (folder / RUNGS / f"{rung.name}.json").read_text(encoding="utf-8")
+        return Record.of(json.loads(text))
+    except (OSError, ValueError, TypeError):
+        return None
+
+
 class Store:
     """The folder of a ladder, held while it is open.
 
@@ -150,16 +168,19 @@ class Store:
         self._lock.release()
 
     def find(self, rung: Rung) -> Record | None:
-        """The record of a rung that still holds; None where it is to be solved (again).
+        """The record of a rung that still holds; None where it is to be solved (again)."""
+        return find(self.path, rung)
 
-        A file that is damaged, or of another case, program or machine, is as good as none.
+    def outdated(self, rung: Rung) -> tuple[str, ...]:
+        """In what a record of the rung differs from what would be solved now; empty without one.
+
+        Names of `key_of`: case, version, commit, machine.
         """
-        try:
-            data = json.loads((self.path / RUNGS / f"{rung.name}.json").read_text(encoding="utf-8"))
-            record = Record.of(data)
-        except (OSError, ValueError, TypeError):
-            return None
-        return record if record.key == key_of(rung) else None
+        record = _read(self.path, rung)
+        if record is None:
+            return ()
+        now = key_of(rung)
+        return tuple(name for name in now if record.key.get(name) != now[name])
 
     def keep(self, record: Record) -> None:
         """Write a record, whole or not at all."""

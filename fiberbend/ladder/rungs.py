@@ -16,7 +16,8 @@ from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
 
 from fiberbend.case import convert
-from fiberbend.case.case import Case, Mesh
+from fiberbend.case.case import Case
+from fiberbend.case.shapes import SHAPES
 from fiberbend.models.choice import MODELS
 from fiberbend.models.model import MeshedModel, ModelKind
 from fiberbend.plan.estimate import cost_of
@@ -35,15 +36,13 @@ BARE = (
 _LAYERS = (0.5, 1.0, 2.0)
 """Elements along the axis, over those that a model needs to resolve a turn."""
 _EDGES = (0.25, 0.5, 1.0)
-"""The same of tetrahedra, which become smaller in all directions."""
+"""The same of elements with one size, which become smaller in all directions."""
 _SPREAD = 0.8
 """Length of the longest elements over the half width of the section, without turns."""
 _STEPS = 12
 """Load steps of a run whose steps cannot be predicted."""
 _WORDS = {"smeared": "spread", "discrete": "turns"}
 """Words of the family for what a case calls otherwise."""
-TETRAHEDRON = "tetrahedron"
-"""The shape with one size in all directions: `mesh.axial` over `mesh.section`."""
 SECTION, AXIAL = "section", "axial"
 """The two directions in which a mesh is refined; keys of `mesh`."""
 
@@ -176,14 +175,16 @@ class _LeftOutError(Exception):
 def _families(base: Case) -> Iterator[tuple[Family, list[str]]]:
     """Every combination of model, winding, elements and halves, with its changes to the case."""
     path, words = representations(base)
+    # a case that asks for an accuracy would choose its mesh itself where a rung is typed by hand
+    own = ["accuracy=null"] if base.accuracy is not None else []
     for name, model in MODELS.items():
         elements = model.elements()
         shapes: tuple[str, ...] = ("",)
         if elements is not None and elements.takes_mesh_as_given:
-            shapes = get_args(Mesh.model_fields["element"].annotation)
+            shapes = tuple(SHAPES)
         for shape in shapes:
             for word in words:
-                changes = [f"model={name}"]
+                changes = [*own, f"model={name}"]
                 if word:
                     changes.append(f"{path}={word}")
                 if shape:
@@ -247,8 +248,7 @@ def _rungs(
         meshes = list(_meshes(first, elements))
         if half != halved:
             # it differs in time and memory only: one mesh shows how much
-            shapes = get_args(Mesh.model_fields["element"].annotation)
-            meshes = meshes[:1] if family.element == shapes[0] else []
+            meshes = meshes[:1] if family.element == next(iter(SHAPES)) else []
         for mesh in meshes:
             more = [*changes, *symmetry, *(f"mesh.{key}={value}" for key, value in mesh.items())]
             yield _rung(_read(source, settings, more), own, more, model)
@@ -290,7 +290,7 @@ def _meshes(case: Case, model: MeshedModel) -> Iterator[dict[str, str]]:
         yield from ({key: value} for value in values)
         return
     yield from ({SECTION: sections[0], AXIAL: axial} for axial in axials)
-    if case.mesh.element == TETRAHEDRON:
+    if _one_size(case):
         return
     base = axials[0]
     if case.turns is not None and case.turns.discrete:
@@ -302,11 +302,15 @@ def _meshes(case: Case, model: MeshedModel) -> Iterator[dict[str, str]]:
         yield {SECTION: sections[1], AXIAL: axials[-1]}
 
 
+def _one_size(case: Case) -> bool:
+    return SHAPES[case.mesh.element].one_size
+
+
 def _axials(case: Case, model: MeshedModel) -> list[str]:
     """Lengths of the elements, halved twice: of a pitch's parts, or of the section's size."""
     turns = case.turns
     if turns is not None and turns.discrete:
-        parts = _EDGES if case.mesh.element == TETRAHEDRON else _LAYERS
+        parts = _EDGES if _one_size(case) else _LAYERS
         lengths = [turns.pitch / (model.layers_a_pitch * factor) for factor in parts]
     else:
         width = convert.dimensions(case.actuator).outline_half_width
@@ -333,7 +337,7 @@ def _rung(case: Case, family: Family, changes: Sequence[str], model: ModelKind) 
     seconds = cost.start_s + _STEPS * cost.step_s if expected is None else expected
     mesh = {}
     named = {change.partition("=")[0] for change in changes}
-    if f"mesh.{SECTION}" in named and case.mesh.element != TETRAHEDRON:
+    if f"mesh.{SECTION}" in named and not _one_size(case):
         mesh[SECTION] = 1.0 / case.mesh.section
     if f"mesh.{AXIAL}" in named:
         mesh[AXIAL] = _length(case, elements)

@@ -13,7 +13,7 @@ from fiberbend.ladder.advice import advice, pareto
 from fiberbend.ladder.errors import FamilyLimit, Judged, Judgement
 from fiberbend.ladder.record import Record
 from fiberbend.ladder.rungs import Missing, Rung
-from fiberbend.ladder.words import mesh_words, percent, settings, title
+from fiberbend.ladder.words import full_name, percent, seconds, settings, title
 
 _COUNTS = ("wall_s", "cpu_s", "once_s", "solve_wall_s", "solve_cpu_s", "unknowns", "load_steps")
 _MORE = ("iterations", "peak_memory_MB")
@@ -65,9 +65,13 @@ def as_markdown(
     judgement: Judgement,
     solved: Sequence[tuple[Rung, Record]],
     missing: Sequence[Missing],
+    typed: Sequence[str] = (),
 ) -> str:
     """Advice, rungs by time, limits of the families, and what is not there, for a reader."""
-    lines = [f"# {heading}", "", advice(judgement), "", *_reference(judgement), ""]
+    lines = [f"# {heading}", "", advice(judgement), ""]
+    if typed:
+        lines += ["```console", *(f"$ {line}" for line in typed), "```", ""]
+    lines += [*_reference(judgement), ""]
     if text := waiting(solved):
         lines += [f"**{text[0].upper()}{text[1:]}.**", ""]
     lines += [*rung_table(judgement), "", *limit_table(judgement), ""]
@@ -94,7 +98,7 @@ def rung_table(judgement: Judgement) -> list[str]:
     lines = [f"| {' | '.join(head)} |", "|---|" + "---:|" * (len(head) - 1)]
     for each in sorted(judgement.rungs, key=lambda judged: judged.record.wall_s):
         record = each.record
-        name = ", ".join(filter(None, (title(each.rung.family), mesh_words(each.rung))))
+        name = full_name(each.rung)
         cells = [f"**{name}**" if record.name in best else name]
         cells += [_percent(each.worst(part)) for part in ("size", "mesh", "model")]
         cells += [_seconds(value) for value in _times(record)]
@@ -119,10 +123,13 @@ def limit_table(judgement: Judgement) -> list[str]:
 def _reference(judgement: Judgement) -> list[str]:
     if judgement.reference is None:
         return ["Nothing to compare with: no family has a limit."]
+    asked = ", ".join(each.label for each in judgement.asked)
     return [
-        f"Errors are against the limit of {title(judgement.reference)}, which is known to "
-        f"{percent(judgement.known_to())}; the greatest over all that the case asks for, mesh and "
-        "model added without regard to their signs. In bold: no other is quicker and more exact."
+        f"The case asks for: {asked}. Errors are against the limit of "
+        f'"{title(judgement.reference)}", which is itself known to '
+        f"{percent(judgement.known_to())}. A row has the greatest error over all that is asked "
+        "for; error is mesh plus model, added without their signs. In bold: no other rung is "
+        "both quicker and more exact."
     ]
 
 
@@ -131,8 +138,10 @@ def _once(solved: Sequence[tuple[Rung, Record]]) -> Iterator[str]:
     longest = max((record.once_s for _, record in solved), default=0.0)
     if longest > 0:
         yield (
-            f"Times include up to {longest:.1f} s of a calibration by the cell, which is done once "
-            "for a section and kept (`once_s` in accuracy.csv)."
+            f"A calibrated winding needs a calibration by the cell, here up to {seconds(longest)}. "
+            "It is done once for a section and kept for all later runs. The times have it in them; "
+            "without it they are those at the left ends of the thin lines in the picture (`once_s` "
+            "in accuracy.csv)."
         )
         yield ""
 
@@ -166,12 +175,17 @@ def _remarks(found: Any) -> str:
 
 def _absent(solved: Sequence[tuple[Rung, Record]], missing: Sequence[Missing]) -> Iterator[str]:
     """Rungs that failed or stopped early, families and rungs that are not there."""
-    ended = [(record.name, record) for _, record in solved if record.status != "converged"]
-    if ended:
-        yield "Rungs without an answer, or with a part of it:"
-        yield ""
-        yield from (f"- {name}: {record.status}, {record.reason}" for name, record in ended)
-        yield ""
+    ended = [record for _, record in solved if record.status != "converged"]
+    yield from _ended(
+        "Rungs that failed. They are not in the picture and count nowhere; `--retry` solves them "
+        "again:",
+        [record for record in ended if not record.values],
+    )
+    yield from _ended(
+        "Rungs that came to a part of what is asked for. They are pale in the picture and never "
+        "advised:",
+        [record for record in ended if record.values],
+    )
     left_out = {text: title(rung.family) for rung, _ in solved for text in rung.left_out}
     if left_out:
         yield "Left out by a model:"
@@ -182,6 +196,14 @@ def _absent(solved: Sequence[tuple[Rung, Record]], missing: Sequence[Missing]) -
         yield "Not in this ladder:"
         yield ""
         yield from (f"- {each.name}: {each.reason}" for each in missing)
+
+
+def _ended(head: str, records: Sequence[Record]) -> Iterator[str]:
+    if records:
+        yield head
+        yield ""
+        yield from (f"- {each.name}: {each.status}, {each.reason}" for each in records)
+        yield ""
 
 
 def _times(record: Record) -> tuple[float, ...]:

@@ -4,22 +4,33 @@ from __future__ import annotations
 
 import math
 import shlex
+from collections.abc import Sequence
 
 from fiberbend.answer.numbers import number as _number
+from fiberbend.case.shapes import SHAPES
 from fiberbend.ladder.rungs import AXIAL, SECTION, Family, Rung
 from fiberbend.schema.units import show
 
-_WINDINGS = {"turns": "every turn", "spread": "spread winding"}
-_SHORT = {"hexahedron": "", "tetrahedron": "tets"}
-_ELEMENTS = {"hexahedron": "hexahedra", "tetrahedron": "tetrahedra"}
+WINDINGS = {
+    "": "",
+    "spread": "spread winding",
+    "calibrated": "calibrated winding",
+    "turns": "every turn",
+}
+"""How a winding is represented, in the words of tables and sentences."""
 
 
 def title(family: Family) -> str:
     """A family in words, such as "body, every turn, hexahedra, half"."""
-    winding = family.winding and _WINDINGS.get(family.winding, f"{family.winding} winding")
-    element = _ELEMENTS.get(family.element, family.element)
+    winding = WINDINGS.get(family.winding, f"{family.winding} winding")
+    element = SHAPES[family.element].plural if family.element else ""
     half = {True: "half", False: "whole", None: ""}[family.half]
     return ", ".join(filter(None, (family.model, winding, element, half)))
+
+
+def full_name(rung: Rung) -> str:
+    """A rung as the table and the advice call it: its family and its mesh."""
+    return ", ".join(filter(None, (title(rung.family), mesh_words(rung))))
 
 
 def mesh_words(rung: Rung) -> str:
@@ -32,13 +43,14 @@ def mesh_words(rung: Rung) -> str:
     return ", ".join(parts)
 
 
-def short(rung: Rung) -> str:
-    """A rung on a picture: model, winding and mesh in few letters."""
-    family = rung.family
-    parts = [family.model, family.winding, _SHORT.get(family.element, family.element)]
+def short(*rungs: Rung) -> str:
+    """Rungs of one family on a picture: model, winding and meshes in few letters."""
+    family = rungs[0].family
+    element = SHAPES[family.element].short if family.element else ""
+    parts = [family.model, family.winding, element]
     if family.half is False:
         parts.append("whole")
-    return " ".join(filter(None, [*parts, short_mesh(rung)]))
+    return " ".join(filter(None, [*parts, ", ".join(map(short_mesh, rungs))]))
 
 
 def short_mesh(rung: Rung) -> str:
@@ -51,9 +63,9 @@ def short_mesh(rung: Rung) -> str:
     return " / ".join(parts)
 
 
-def settings(rung: Rung) -> str:
-    """The options of a rung as they are typed."""
-    return " ".join(f"--set {shlex.quote(setting)}" for setting in rung.settings)
+def settings(rung: Rung, before: Sequence[str] = ()) -> str:
+    """The options of a rung as they are typed, after others that the case was changed by."""
+    return " ".join(f"--set {shlex.quote(setting)}" for setting in (*before, *rung.settings))
 
 
 def number(value: float) -> str:

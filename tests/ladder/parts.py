@@ -71,6 +71,6 @@ def solved(values: Values = truth, path: Path = CASE) -> list[Solved]:
     return found
 
 
-def judged(values: Values = truth) -> Judgement:
+def judged(values: Values = truth, path: Path = CASE) -> Judgement:
     """All of them, judged."""
-    return judge(asked(of_case().rungs[0].case), solved(values))
+    return judge(asked(of_case(path).rungs[0].case), solved(values, path))

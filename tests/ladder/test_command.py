@@ -23,6 +23,7 @@ from fiberbend.ladder.rungs import Ladder, Rung, ladder
 from fiberbend.ladder.solve import _once_s, solve
 from fiberbend.ladder.words import seconds
 from fiberbend.models.costs.price import price
+from fiberbend.plan.memory import Room, gigabytes
 from fiberbend.schema.problems import CaseError
 from tests.conftest import ROOT
 from tests.ladder.parts import CASE, record, truth
@@ -77,7 +78,9 @@ def test_a_ladder_leaves_table_picture_and_advice(tmp_path: Path) -> None:
     assert code == 0
     assert said[0].startswith("5 rungs, 0 solved before, about ")
     assert any(line.startswith("[ 3/5] section-spread-s2") and "to go" in line for line in said)
-    assert any(line.startswith("For 1 % take section, spread winding") for line in said)
+    (text,) = (line for line in said if line.startswith("For "))
+    assert text.startswith('For 1 % take "section, spread winding, mesh.section ')
+    assert f"\n  fiberbend run {CASE} --set model=section --set " in text
     with (tmp_path / "out" / "accuracy.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 5
@@ -152,7 +155,10 @@ def test_a_failed_rung_is_named_and_kept(tmp_path: Path) -> None:
     assert code == 2
     assert "failed: section-spread-s3: det F at element 7" in said
     text = (tmp_path / "accuracy.md").read_text()
-    assert "- section-spread-s3: failed, det F at element 7" in text
+    head, _, named = text.partition("Rungs that failed.")
+    assert "- section-spread-s3: failed, det F at element 7" in named
+    # it counts nowhere: no row, and no mesh of its family
+    assert "mesh.section 3" not in head
     assert "section-spread-s3,section," in (tmp_path / "accuracy.csv").read_text()
     again = Solver()
     assert run(tmp_path, again)[0] == 2
@@ -184,8 +190,6 @@ def test_interrupted_it_goes_on(tmp_path: Path) -> None:
 def test_what_does_not_fit_is_refused_and_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from fiberbend.plan.memory import Room
-
     # of the sections the finest alone does not
     least = price("section", "quadrilaterals").memory_mb(3346, 1.0) - 1
     monkeypatch.setattr("fiberbend.ladder.command.room", lambda: Room(least, "of this machine"))
@@ -201,8 +205,6 @@ def test_what_does_not_fit_is_refused_and_said(
 
 
 def test_nothing_solved_is_a_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from fiberbend.plan.memory import Room
-
     monkeypatch.setattr("fiberbend.ladder.command.room", lambda: Room(1.0, "of this machine"))
     code, said = run(tmp_path, Solver())
     assert code == 2
@@ -215,11 +217,50 @@ def test_a_dry_run_writes_nothing(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
     rungs = ladder(CASE, ()).rungs
     total = sum(rung.seconds for rung in rungs)
-    assert said[-1] == f"{len(rungs)} rungs, about {seconds(total)}"
+    most = gigabytes(max(rung.memory_mb for rung in rungs))
+    assert said[-1] == (
+        f"{len(rungs)} rungs, about {seconds(total)} one after the other, at most {most} of memory"
+    )
     # 459 s when it was fitted, good to a factor of two; most of it for bodies
     assert 150 < total < 1500
     assert sum(rung.seconds for rung in rungs if rung.family.model == "body") > total / 2
     assert any("body-turns-hexahedron-half-s1-a1.5mm" in line for line in said)
+
+
+def test_a_dry_run_counts_what_is_solved_and_what_does_not_fit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run(tmp_path, Solver())
+    monkeypatch.setattr("fiberbend.ladder.command.room", lambda: Room(1000.0, "of this machine"))
+    _, said = run(tmp_path, Solver(), Options(dry=True))
+    large = [rung for rung in rungs_of(CASE, ()).rungs if rung.memory_mb > 1000]
+    assert large
+    assert sum("(solved before)" in line for line in said) == 5
+    assert sum("(left out: more memory than is free)" in line for line in said) == len(large)
+    assert f", 5 solved before, {len(large)} left out for want of memory, about " in said[-1]
+
+
+def test_rungs_of_another_commit_are_solved_again_and_that_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run(tmp_path, Solver())
+    monkeypatch.setattr("fiberbend.ladder.record._commit", lambda: "0" * 40)
+    newer = Solver()
+    _, said = run(tmp_path, newer)
+    assert len(newer.names) == 5
+    assert "5 rungs were solved with another commit: solved again" in said
+    _, said = run(tmp_path, Solver())
+    assert not any("solved again" in line for line in said)
+
+
+def test_the_commands_of_the_advice_have_the_changes_of_the_case(tmp_path: Path) -> None:
+    _, said = run(tmp_path, Solver(), settings=("actuator.wall=3 mm",))
+    found = json.loads((tmp_path / "accuracy.json").read_text())["commands"]
+    assert found
+    for line in found:
+        assert line.startswith(f"fiberbend run {CASE} --set 'actuator.wall=3 mm' --set model=")
+        assert any(line in text for text in said)
+        assert f"$ {line}" in (tmp_path / "accuracy.md").read_text()
 
 
 def test_what_is_not_solved_yet_is_named(tmp_path: Path) -> None:
@@ -248,6 +289,7 @@ def test_quiet_gives_the_advice_alone(tmp_path: Path) -> None:
     _, said = run(tmp_path, Solver(), dataclasses.replace(ONLY, quiet=True))
     assert len(said) == 1
     assert said[0].startswith("For 1 % take")
+    assert all(line.startswith("  fiberbend run ") for line in said[0].splitlines()[1:])
     _, loud = run(tmp_path, Solver(), dataclasses.replace(ONLY, verbose=True))
     assert any(line.startswith("| **section, spread winding, mesh.section 1** |") for line in loud)
 
@@ -321,7 +363,7 @@ def test_a_real_ladder_end_to_end(tmp_path: Path) -> None:
     )
     assert done.returncode == 0, done.stderr
     assert "section-spread-s4" in done.stdout
-    assert "take section, spread winding" in done.stdout
+    assert 'take "section, spread winding' in done.stdout
     found = {}
     for path in (tmp_path / "out" / "rungs").glob("*.json"):
         each = Record.of(json.loads(path.read_text()))

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
-import re
+import shlex
 
 import pytest
 
-from fiberbend.ladder.advice import advice, front, pareto
+from fiberbend.ladder.advice import advice, chosen, front, pareto
 from fiberbend.ladder.asked import Asked, asked
 from fiberbend.ladder.errors import family_limit, judge
 from fiberbend.ladder.rungs import Family, Rung
-from fiberbend.ladder.words import seconds
+from fiberbend.ladder.table import rung_table
+from fiberbend.ladder.words import seconds, settings
 from fiberbend.reader.reader import read_case
 from tests.conftest import ROOT
 from tests.ladder.parts import judged, of_case, record, solved, truth
@@ -150,14 +152,35 @@ def test_advice_names_rung_time_and_what_to_type() -> None:
     text = advice(judged(exact))
     quickest = min(rung.seconds for rung in of_case().rungs if rung.family.model == "section")
     assert 0.5 < quickest < 5
-    start = f"For 1 % take section, spread winding, mesh.section 1: {seconds(quickest)} (--set "
-    assert text.startswith(start)
-    second = text.index("for 0.1 % take cell, every turn")
-    assert text.endswith(").")
-    typed = re.findall(r"--set ('[^']*'|\S+?)(?=[ )])", text[second:])
-    case = read_case(ROOT / "cases" / "free_bending.yaml", [word.strip("'") for word in typed])
-    assert case.model == "cell"
+    first = '"section, spread winding, mesh.section 1"'
+    second = '"cell, every turn, mesh.section 1, mesh.axial 0.75 mm"'
+    cell = next(rung.seconds for rung in of_case().rungs if rung.family.model == "cell")
+    assert text == (
+        f"For 1 % take {first}, {seconds(quickest)}; for 0.1 % take {second}, {seconds(cell)}."
+    )
+    # in the words of the table
+    rows = rung_table(judged(exact))
+    for name in (first, second):
+        assert any(f"**{name[1:-1]}**" in row for row in rows)
+    *_, choice = chosen(judged(exact))
+    typed = shlex.split(settings(choice.rung, ["actuator.wall=3 mm"]))[1::2]
+    case = read_case(ROOT / "cases" / "free_bending.yaml", typed)
+    assert (case.model, case.actuator.wall) == ("cell", 3.0)
     assert case.mesh.axial == pytest.approx(0.75)
+
+
+def test_a_rung_that_serves_two_goals_is_named_once() -> None:
+    text = advice(judged(lambda rung, each: 100.0))
+    assert text.endswith("; for 0.1 % the same.")
+    assert len(chosen(judged(lambda rung, each: 100.0))) == 1
+
+
+def test_advice_says_what_of_a_time_is_spent_once() -> None:
+    pairs = [
+        (rung, dataclasses.replace(found, once_s=found.wall_s / 2)) for rung, found in solved()
+    ]
+    text = advice(judge(asked(of_case().rungs[0].case), pairs))
+    assert " of them once for all runs" in text
 
 
 def test_advice_takes_the_quickest_that_is_sure_though_it_lies_in_the_band() -> None:

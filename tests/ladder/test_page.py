@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from bench import accuracy, prices
+from fiberbend.reader.reader import read_case
+from fiberbend.schema.units import show
 from tests.ladder.parts import of_case, record
 
 
@@ -44,13 +46,35 @@ def test_the_least_of_several_times_counts_and_a_failure_is_none() -> None:
         prices.least(failed)
 
 
+def test_the_page_begins_with_the_advice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(accuracy, "RUNS", tmp_path)
+    for shown in accuracy.LADDERS:
+        folder = tmp_path / f"accuracy_{shown.name}"
+        folder.mkdir()
+        (folder / "accuracy.json").write_text(json.dumps({"advice": f"Take {shown.name}."}))
+    assert accuracy.in_short() == (
+        "- **Free bending.** Take free_bending.\n- **Blocked tip.** Take blocked_tip."
+    )
+
+
+def test_scenes_say_the_sizes_of_the_baseline() -> None:
+    actuator = read_case(prices.CASE).actuator
+    effects = {scene.effect for scene in prices.SCENES}
+    assert f"sheath of {show(actuator.sheath, 'length')}" in effects
+    assert f"caps of {show(actuator.cap, 'length')}, instead of 1 mm" in effects
+
+
 def test_a_part_of_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(accuracy, "RUNS", tmp_path)
     monkeypatch.setattr(accuracy, "IMAGES", tmp_path)
     folder = tmp_path / "accuracy_free_bending"
     (folder / "rungs").mkdir(parents=True)
     (folder / "accuracy.png").write_bytes(b"picture")
-    (folder / "accuracy.md").write_text("# Free bending\n\nFor 1 % take …\n\n| rung |\n")
+    block = "```console\n$ fiberbend run …\n```\n"
+    (folder / "accuracy.md").write_text(f"# Free bending\n\nFor 1 % take …\n\n{block}| rung |\n")
+    names = [rung.name for rung in of_case().rungs[:2]]
+    found = {"advice": "For 1 % take …", "rungs": names}
+    (folder / "accuracy.json").write_text(json.dumps(found))
     for rung in of_case().rungs[:2]:
         text = json.dumps(vars(record(rung, {})))
         (folder / "rungs" / f"{rung.name}.json").write_text(text)
@@ -58,9 +82,13 @@ def test_a_part_of_the_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     assert lines[0] == "## Free bending"
     assert "For 1 % take …" in lines
     assert not any(line.startswith("# ") for line in lines)
+    assert lines[lines.index("```console") - 1] == "<!-- slow -->"
     assert (tmp_path / "accuracy_free_bending.png").read_bytes() == b"picture"
     other = json.loads(text)
     other["key"]["commit"] = "0" * 40
     (folder / "rungs" / "other.json").write_text(json.dumps(other))
+    # what is not in the table has no say
+    assert list(accuracy.part(accuracy.LADDERS[0])) == lines
+    (folder / "accuracy.json").write_text(json.dumps(found | {"rungs": [*names, "other"]}))
     with pytest.raises(SystemExit, match="expected one"):
         list(accuracy.part(accuracy.LADDERS[0]))

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import get_args
 
 import pytest
 import yaml
 
+from fiberbend.case.case import Mesh
+from fiberbend.case.shapes import SHAPES
 from fiberbend.ladder.asked import asked
 from fiberbend.ladder.command import Options, _part
 from fiberbend.ladder.rungs import BARE, ladder, representations
+from fiberbend.ladder.words import WINDINGS
 from fiberbend.models.choice import MODELS
 from fiberbend.reader.reader import read_case
 from tests.conftest import ROOT
@@ -129,6 +133,19 @@ def test_representations_come_from_the_schema() -> None:
     found = ladder({**bare, "model": "auto"})
     assert {rung.family.winding for rung in found.rungs} == {""}
     assert {rung.family.model for rung in found.rungs} == {"section", "body"}
+
+
+def test_shapes_and_windings_of_a_case_have_their_words() -> None:
+    assert tuple(SHAPES) == get_args(Mesh.model_fields["element"].annotation)
+    assert {rung.family.winding for rung in ladder(CASE).rungs} <= set(WINDINGS)
+
+
+def test_a_rung_of_a_case_with_an_accuracy_is_typed_without_it() -> None:
+    settings = ["accuracy=1 %", "mesh={}"]
+    rung = ladder(CASE, settings).rungs[-1]
+    typed = read_case(CASE, [*settings, *rung.settings])
+    assert typed.accuracy is None
+    assert typed.mesh == rung.case.mesh
 
 
 def test_asked() -> None:
