@@ -21,9 +21,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from fiberbend.calibration.store import FOLDER
+from fiberbend.calibration.store import Store
 from fiberbend.schema.units import parse, show
-from machine.folders import cache_root
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "evidence" / "calibration.md"
@@ -113,7 +112,7 @@ class Run:
 def anew(case: str, settings: dict[str, str]) -> Run:
     """A run whose calibration is not kept from before; compiled kernels are."""
     mark = Run(case, settings).run["calibration"]["digest"]
-    (cache_root().path / FOLDER / f"{mark}.json").unlink(missing_ok=True)
+    Store().forget(mark)
     return Run(case, settings)
 
 

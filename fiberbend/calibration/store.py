@@ -84,6 +84,12 @@ class Store:
         except OSError as error:
             self.remarks.append(f"{self._path}: the calibration is not kept: {error.strerror}")
 
+    def forget(self, digest: str) -> None:
+        """Let a calibration be made anew, as where its time is measured."""
+        if self._path is not None:
+            with contextlib.suppress(OSError):
+                self._file(digest).unlink(missing_ok=True)
+
     @contextlib.contextmanager
     def alone(self, digest: str) -> Iterator[None]:
         """Let one process at a time calibrate what has a digest; others wait for its result."""

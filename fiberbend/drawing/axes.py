@@ -280,8 +280,10 @@ class Room:
         around = _around(at, half, _pixels(scale, figure), ways)
         places = [place for place in around if place[0] <= reach]
         costs = []
-        for _, middle in places:
+        for distance, middle in places:
             costs.append(self._cost((*(middle - half), *(middle + half))))
+            if distance > _NEAR:
+                costs[-1] += self._crossed(at, np.clip(at, middle - half, middle + half))
             if costs[-1] == 0:
                 break
         if costs[-1] > 0 and reach < math.inf:
@@ -296,9 +298,15 @@ class Room:
 
             # from the point to the nearest side of the text
             end = np.clip(at, middle - half, middle + half)
+            self._points = np.concatenate([self._points, _densely(np.stack([at, end]))])
             way = self._axes.transData.inverted().transform(np.stack([at, end]))
             thin = LineCollection([way], colors="0.45", linewidths=0.8 * scale, zorder=2.5)
             self._axes.add_collection(thin, autolim=False)
+
+    def _crossed(self, at: Floats, end: Floats) -> float:
+        """How much of a line between two points in pixels lies under texts."""
+        way = _densely(np.stack([at, end]))
+        return float(sum(_within(way, box[:2], box[2:]) for box in self._taken))
 
     def between(self, one: tuple[float, float], other: tuple[float, float]) -> float:
         """Distance of two points of the axes on the page, in points of paper."""

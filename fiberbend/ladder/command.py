@@ -17,7 +17,7 @@ from fiberbend.ladder.errors import Judgement, Solved, judge
 from fiberbend.ladder.record import FAILED, LATE, Record, Store, find
 from fiberbend.ladder.rungs import Ladder, Missing, Rung, ladder
 from fiberbend.ladder.table import waiting
-from fiberbend.ladder.words import seconds, settings, title
+from fiberbend.ladder.words import brief, seconds, settings, title
 from fiberbend.plan.memory import gigabytes, room, shortage
 from fiberbend.process.signals import stop_of
 from fiberbend.running import launch
@@ -98,9 +98,9 @@ def run_ladder(
         text = "under mpirun, expected one process: rungs are timed on one rank, one at a time"
         raise CaseError([Problem("fiberbend accuracy", text)])
     if solve is None:
-        from fiberbend.ladder.solve import solve as in_a_process
+        from fiberbend.ladder.solve import Processes
 
-        solve = in_a_process
+        solve = Processes()
     whole = ladder(path, changes)
     part = _part(whole, options)
     tell = (lambda _: None) if options.quiet else say
@@ -150,7 +150,7 @@ def _run(work: _Work) -> int:
         work.say(f"warning: {text}")
     failed = [record for _, record in solved if record.status == FAILED]
     for record in failed:
-        work.say(f"failed: {record.name}: {record.reason}")
+        work.say(f"failed: {record.name}: {brief(record.reason)}")
     if stop is not None:
         work.say("interrupted; the same command goes on where it was")
         return stop.code
@@ -285,7 +285,7 @@ def _solve(work: _Work) -> list[Missing]:
             store.keep(record)
         ratios.append(record.wall_s / rung.seconds)
         to_go = statistics.median(ratios[-5:]) * sum(each.seconds for each in left[number + 1 :])
-        reason = f" ({record.status}: {record.reason})" if record.reason else ""
+        reason = f" ({record.status}: {brief(record.reason)})" if record.reason else ""
         more = f", about {seconds(to_go)} to go" if to_go else ""
         work.tell(
             f"[{before + number + 1:2d}/{total}] {record.name:48s} {seconds(record.wall_s):>8s}"
@@ -318,7 +318,8 @@ def _write(
     if judgement.reference is not None:
         work.tell(f"reference: the limit of {title(judgement.reference)}")
     work.say("\n".join([advice(judgement), *(f"  {line}" for line in typed)]))
-    work.tell(f"table and picture in {work.store.path}")
+    what = "table" if judgement.reference is None else "table and picture"
+    work.tell(f"{what} in {work.store.path}")
     return judgement
 
 

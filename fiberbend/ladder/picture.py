@@ -80,7 +80,7 @@ def draw(judgement: Judgement, heading: str, target: Target, style: Style = PAGE
 def _names(free: Room, shown: Sequence[Judged], best: Sequence[Judged]) -> None:
     """Name the front, and of the others the meshes where there is a place beside them."""
     names = {each.record.name for each in best}
-    for group in _groups(free, best):
+    for group in reversed(_groups(free, best)):
         text = short(*(each.rung for each in group))
         free.write(text, *_place(group[len(group) // 2]), size=11, ways=_UNDER)
     for each in shown:
@@ -111,7 +111,8 @@ def _limits(axes: Any, shown: Sequence[Judged], judgement: Judgement) -> None:
     """Axes around all points and, where it is known, around what the reference is known to."""
     times, errors = zip(*map(_place, shown), strict=True)
     known = judgement.known_to()
-    axes.set_xlim(min(times) / _ROOM, max(times) * _ROOM)
+    # names stand to the left of their marks
+    axes.set_xlim(min(times) / _ROOM**2, max(times) * _ROOM)
     heights = [*errors, *([known] if _FLOOR < known < math.inf else [])]
     low = min(heights) / _ROOM
     axes.set_ylim(low, max(heights) * _ROOM)

@@ -6,6 +6,7 @@ import contextlib
 import dataclasses
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -17,6 +18,7 @@ from typing import IO, Any
 
 import yaml
 
+from fiberbend.calibration.store import Store
 from fiberbend.ladder.asked import asked
 from fiberbend.ladder.record import FAILED, LATE, Record, key_of
 from fiberbend.ladder.rungs import AXIAL, SECTION, Rung
@@ -29,6 +31,8 @@ _GRACE = 3.0
 """Seconds between the signal that asks a process to stop and the one that makes it."""
 _BUSY = 4.0
 """A process may take so many times its processor time where others run."""
+_PLACE = re.compile(r"^(\w+\.)+(?=[A-Z]\w*: )")
+"""The module of an error's class, as Python prints it."""
 _TAIL = 2000
 """Characters of what a process has said that are looked at for its reason."""
 
@@ -43,24 +47,58 @@ class _Ended:
     late: bool
 
 
-def solve(rung: Rung, most_s: float | None = None, verbose: bool = False) -> Record:
-    """Solve a rung; whatever goes wrong is its record.
+@dataclasses.dataclass(frozen=True)
+class _Found:
+    """What a process had to make that others keep.
 
-    A first run that had to compile kernels counts for nothing: it is run again.
-
-    Args:
-        rung: the rung.
-        most_s: seconds of processor time, or four times as many of any, after which it is stopped;
-            no limit by default.
-        verbose: let it print its load steps.
+    Attributes:
+        compiled: kernels.
+        calibration: digest of the calibration that it used; empty without one.
+        made: it made that itself.
     """
-    record, compiled = _once(rung, most_s, verbose)
-    if compiled and record.status not in (FAILED, LATE):
-        record, _ = _once(rung, most_s, verbose)
-    return record
+
+    compiled: bool
+    calibration: str
+    made: bool
 
 
-def _once(rung: Rung, most_s: float | None, verbose: bool) -> tuple[Record, bool]:
+class Processes:
+    """Solves rungs in a process each; remembers which calibrations it has seen being made."""
+
+    def __init__(self) -> None:
+        self._timed: set[str] = set()
+
+    def __call__(self, rung: Rung, most_s: float | None = None, verbose: bool = False) -> Record:
+        """Solve a rung; whatever goes wrong is its record.
+
+        A first run that had to compile kernels counts for nothing, and one that took a calibration
+        from before counts for little: how busy the machine was then is not known. It is run again,
+        and calibrates.
+
+        Args:
+            rung: the rung.
+            most_s: seconds of processor time, or four times as many of any, after which it is
+                stopped; no limit by default.
+            verbose: let it print its load steps.
+        """
+        record, found = _once(rung, most_s, verbose)
+        timed = found.calibration in self._timed or (found.made and not found.compiled)
+        again = bool(found.calibration) and not timed
+        if record.status not in (FAILED, LATE) and (found.compiled or again):
+            if again:
+                Store().forget(found.calibration)
+            record, _ = _once(rung, most_s, verbose)
+        if record.status not in (FAILED, LATE):
+            self._timed.add(found.calibration)
+        return record
+
+
+def solve(rung: Rung, most_s: float | None = None, verbose: bool = False) -> Record:
+    """Solve one rung, as `Processes` does."""
+    return Processes()(rung, most_s, verbose)
+
+
+def _once(rung: Rung, most_s: float | None, verbose: bool) -> tuple[Record, _Found]:
     with tempfile.TemporaryDirectory(prefix="fiberbend-rung-") as name:
         scratch = Path(name)
         case, run, notes = (scratch / each for each in ("case.yaml", "run", "notes.json"))
@@ -101,7 +139,9 @@ def _once(rung: Rung, most_s: float | None, verbose: bool) -> tuple[Record, bool
         # the BLAS is the solver's: this process has loaded none
         provenance=provenance() | {name: found[name] for name in ("blas",) if found.get(name)},
     )
-    return record, bool(own.get("compiled"))
+    entry = found.get("calibration") or {}
+    made = bool(entry.get("seconds"))
+    return record, _Found(bool(own.get("compiled")), str(entry.get("digest") or ""), made)
 
 
 def _mesh(rung: Rung) -> dict[str, float]:
@@ -138,7 +178,10 @@ def _status(
         name = signal.Signals(-ended.code).name
         more = ", as by the system where memory runs out" if ended.code == -signal.SIGKILL else ""
         return FAILED, f"its process was ended by {name}{more}"
-    return FAILED, said[-1] if said else f"its process ended with exit code {ended.code}"
+    # of the name of an error its last part
+    return FAILED, _PLACE.sub(
+        "", said[-1]
+    ) if said else f"its process ended with exit code {ended.code}"
 
 
 def _run(arguments: list[str], most_s: float | None, errors: IO[bytes]) -> _Ended:

@@ -13,7 +13,7 @@ from fiberbend.ladder.advice import advice, pareto
 from fiberbend.ladder.errors import FamilyLimit, Judged, Judgement
 from fiberbend.ladder.record import Record
 from fiberbend.ladder.rungs import Missing, Rung
-from fiberbend.ladder.words import full_name, percent, seconds, settings, title
+from fiberbend.ladder.words import brief, full_name, percent, seconds, settings, title
 
 _COUNTS = ("wall_s", "cpu_s", "once_s", "solve_wall_s", "solve_cpu_s", "unknowns", "load_steps")
 _MORE = ("iterations", "peak_memory_MB")
@@ -168,7 +168,7 @@ def _remarks(found: Any) -> str:
     parts = []
     for direction, values in orders.items():
         low, high = min(values), max(values)
-        span = f"{low:.1f}" if high - low < 0.05 else f"{low:.1f} to {high:.1f}"
+        span = " to ".join(dict.fromkeys((f"{low:.1f}", f"{high:.1f}")))
         parts.append(f"{direction}: {span}")
     return "; ".join([*parts, *remarks]) or "no mesh"
 
@@ -202,7 +202,7 @@ def _ended(head: str, records: Sequence[Record]) -> Iterator[str]:
     if records:
         yield head
         yield ""
-        yield from (f"- {each.name}: {each.status}, {each.reason}" for each in records)
+        yield from (f"- {each.name}: {each.status}, {brief(each.reason)}" for each in records)
         yield ""
 
 

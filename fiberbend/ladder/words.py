@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import shlex
+import textwrap
 from collections.abc import Sequence
 
 from fiberbend.answer.numbers import number as _number
@@ -18,6 +19,10 @@ WINDINGS = {
     "turns": "every turn",
 }
 """How a winding is represented, in the words of tables and sentences."""
+
+
+_LONGEST = 200
+"""Letters of a reason; the record of a rung has the whole."""
 
 
 def title(family: Family) -> str:
@@ -66,6 +71,11 @@ def short_mesh(rung: Rung) -> str:
 def settings(rung: Rung, before: Sequence[str] = ()) -> str:
     """The options of a rung as they are typed, after others that the case was changed by."""
     return " ".join(f"--set {shlex.quote(setting)}" for setting in (*before, *rung.settings))
+
+
+def brief(reason: str) -> str:
+    """A reason in a line or two: what other programs have said may be long."""
+    return textwrap.shorten(reason, _LONGEST, placeholder=" …")
 
 
 def number(value: float) -> str:

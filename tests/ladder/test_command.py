@@ -12,6 +12,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -20,7 +21,7 @@ from fiberbend.ladder.asked import asked
 from fiberbend.ladder.command import Options, duration, run_ladder
 from fiberbend.ladder.record import FAILED, LATE, Record, Store
 from fiberbend.ladder.rungs import Ladder, Rung, ladder
-from fiberbend.ladder.solve import _once_s, solve
+from fiberbend.ladder.solve import Processes, _Found, _once_s, solve
 from fiberbend.ladder.words import seconds
 from fiberbend.models.costs.price import price
 from fiberbend.plan.memory import Room, gigabytes
@@ -331,6 +332,41 @@ def test_a_folder_of_something_else_is_refused(tmp_path: Path) -> None:
             run(held, Solver())
     finally:
         store.close()
+
+
+@pytest.mark.parametrize(
+    ("first", "runs", "forgotten"),
+    [
+        ({"compiled": False, "calibration": "", "made": False}, 1, []),
+        ({"compiled": True, "calibration": "", "made": False}, 2, []),
+        # made here, without a compiler beside it: its time is that of this ladder
+        ({"compiled": False, "calibration": "abc", "made": True}, 1, []),
+        ({"compiled": True, "calibration": "abc", "made": True}, 2, ["abc"]),
+        ({"compiled": False, "calibration": "abc", "made": False}, 2, ["abc"]),
+    ],
+)
+def test_a_calibration_of_another_day_is_made_again_once(
+    first: dict[str, Any], runs: int, forgotten: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rung = rungs_of(CASE, ()).rungs[1]
+    calls: list[_Found] = []
+    gone: list[str] = []
+
+    def once(rung: Rung, most_s: float | None, verbose: bool) -> tuple[Record, _Found]:
+        calls.append(_Found(**first))
+        return record(rung, {}), calls[-1]
+
+    monkeypatch.setattr("fiberbend.ladder.solve._once", once)
+    monkeypatch.setattr(
+        "fiberbend.ladder.solve.Store.forget", lambda _, digest: gone.append(digest)
+    )
+    processes = Processes()
+    processes(rung)
+    assert (len(calls), gone) == (runs, forgotten)
+    # the next rung takes what this ladder has made
+    first = first | {"compiled": False, "made": False}
+    processes(rung)
+    assert (len(calls), gone) == (runs + 1, forgotten)
 
 
 def test_duration() -> None:

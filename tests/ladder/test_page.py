@@ -59,6 +59,7 @@ def test_the_page_begins_with_the_advice(tmp_path: Path, monkeypatch: pytest.Mon
 
 def test_scenes_say_the_sizes_of_the_baseline() -> None:
     actuator = read_case(prices.CASE).actuator
+    assert actuator.sheath is not None
     effects = {scene.effect for scene in prices.SCENES}
     assert f"sheath of {show(actuator.sheath, 'length')}" in effects
     assert f"caps of {show(actuator.cap, 'length')}, instead of 1 mm" in effects

@@ -16,7 +16,6 @@ from fiberbend.ladder.asked import asked
 from fiberbend.ladder.errors import Judgement, judge
 from fiberbend.ladder.rungs import Rung, ladder
 from fiberbend.ladder.words import WINDINGS, short, short_mesh
-from fiberbend.states.snapshot import Target
 from tests.conftest import ROOT
 from tests.ladder.parts import CASE, judged, record, truth
 
@@ -136,6 +135,6 @@ def test_the_band_of_the_reference_ends_within_the_axes() -> None:
 
 
 def test_it_is_a_file() -> None:
-    target: Target = io.BytesIO()
+    target = io.BytesIO()
     picture.draw(judged(), "A ladder", target)
     assert target.getvalue().startswith(b"\x89PNG")
