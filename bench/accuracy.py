@@ -51,7 +51,8 @@ The error has two parts:
 - The **mesh error** falls with smaller elements. It is the distance of a run from the limit of
   its own family, which is the same model with ever finer meshes. The limit is extrapolated from
   several meshes in each direction, across the section and along the axis (Richardson's
-  extrapolation; Roache 1994, doi 10.1115/1.2910291).
+  extrapolation; Roache 1994, doi 10.1115/1.2910291). No mesh error is taken as less than what the
+  limit itself is unsure of.
 - The **modelling error** stays whatever the mesh. It is the distance between the limit of the
   family and the limit of the finest family, which is the body with every turn of the winding. A
   section leaves out the caps, and unless its winding is calibrated what rubber does between the

@@ -25,6 +25,8 @@ _GAP = 1.5
 """Points of paper between two texts: the paper behind the one covers no letter of the other."""
 _NEAR = 22.0
 """A text farther from its point, in points of paper, is joined to it by a thin line."""
+_CROSSED = 8.0
+"""Points of paper that a text goes farther away for each point of its line that would cross."""
 _DISTANCES = (9.0, 15.0, 22.0, 36.0, 54.0, 76.0, 100.0, 130.0, 170.0, 220.0)
 _DIRECTIONS = (135, 315, 155, 115, 335, 295, 180, 90, 0, 270, 45, 225, 60, 30, 15, 75)
 """Degrees; over a rising curve to its left, and under it to its right, come first."""
@@ -203,6 +205,7 @@ class Room:
     def __init__(self, axes: Any, style: Style) -> None:
         self._axes, self._style = axes, style
         self._taken: list[Floats] = []
+        self._joints: list[Floats] = []
         self._gap = _pixels(_GAP * style.scale, axes.figure)
         self._pad = _pixels(_PAD * style.scale, axes.figure)
         self.look()
@@ -281,32 +284,36 @@ class Room:
         places = [place for place in around if place[0] <= reach]
         costs = []
         for distance, middle in places:
-            costs.append(self._cost((*(middle - half), *(middle + half))))
-            if distance > _NEAR:
-                costs[-1] += self._crossed(at, np.clip(at, middle - half, middle + half))
-            if costs[-1] == 0:
+            covered = self._cost((*(middle - half), *(middle + half)))
+            crossed = self._crossed(at, middle, half) if distance > _NEAR else 0.0
+            costs.append((covered, _CROSSED * crossed + distance))
+            if covered == crossed == 0:
+                # all that follow are farther away
                 break
-        if costs[-1] > 0 and reach < math.inf:
+        best = min(range(len(costs)), key=costs.__getitem__)
+        if costs[best][0] > 0 and reach < math.inf:
             note.remove()
             return
-        distance, middle = places[int(np.argmin(costs))]
+        distance, middle = places[best]
         self.take((*(middle - half), *(middle + half)))
         shift = (middle - at) * 72 / figure.dpi
         note.set_position(tuple(shift))
         if distance > _NEAR:
             from matplotlib.collections import LineCollection
 
-            # from the point to the nearest side of the text
-            end = np.clip(at, middle - half, middle + half)
-            self._points = np.concatenate([self._points, _densely(np.stack([at, end]))])
-            way = self._axes.transData.inverted().transform(np.stack([at, end]))
+            line = _joined(at, middle, half)
+            self._joints.append(line)
+            self._points = np.concatenate([self._points, line])
+            way = self._axes.transData.inverted().transform(line[[0, -1]])
             thin = LineCollection([way], colors="0.45", linewidths=0.8 * scale, zorder=2.5)
             self._axes.add_collection(thin, autolim=False)
 
-    def _crossed(self, at: Floats, end: Floats) -> float:
-        """How much of a line between two points in pixels lies under texts."""
-        way = _densely(np.stack([at, end]))
-        return float(sum(_within(way, box[:2], box[2:]) for box in self._taken))
+    def _crossed(self, at: Floats, middle: Floats, half: Floats) -> float:
+        """How many points of the line that joins a text would lie under texts and on such lines."""
+        way = _joined(at, middle, half)
+        under = sum(_within(way, box[:2], box[2:]) for box in self._taken)
+        apart = (np.abs(way[:, None] - other).max(axis=2) < _STEP for other in self._joints)
+        return float(under + sum(int(near.any(axis=1).sum()) for near in apart))
 
     def between(self, one: tuple[float, float], other: tuple[float, float]) -> float:
         """Distance of two points of the axes on the page, in points of paper."""
@@ -329,6 +336,11 @@ class Room:
 def _within(points: Floats, low: Floats, high: Floats) -> int:
     inside: NDArray[np.bool_] = ((points > low) & (points < high)).all(axis=1)
     return int(inside.sum())
+
+
+def _joined(at: Floats, middle: Floats, half: Floats) -> Floats:
+    """Points of the line from a point to the nearest side of its text."""
+    return _densely(np.stack([at, np.clip(at, middle - half, middle + half)]))
 
 
 def _around(

@@ -49,7 +49,7 @@ def advice(judgement: Judgement, goals: Sequence[float] = GOALS) -> str:
         if fits:
             parts.append(f"for {number(goal)} % {'' if choice in named else 'take '}{known_as}")
         else:
-            best = f"the best has {percent(choice.worst())}"
+            best = f"the best is sure to {percent(choice.worst() + known)}"
             name = "" if choice in named else f": {known_as}"
             parts.append(f"for {number(goal)} % {_why_none(goal, known)}, and {best}{name}")
         named.append(choice)

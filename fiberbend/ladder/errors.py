@@ -46,16 +46,27 @@ class RungError:
         total: the value against the reference.
         mesh: the value against its family's limit; not a number where that is not known.
         model: that limit against the reference.
+        unsure: how far the family's own limit may be off; nothing in the family of the reference,
+            where it is what all errors are known to.
     """
 
     total: float
     mesh: float
     model: float
+    unsure: float = 0.0
+
+    @property
+    def mesh_size(self) -> float:
+        """|mesh|, but no less than the limit is unsure.
+
+        The last of values that do not settle is not exact because it is taken for their limit.
+        """
+        return max(abs(self.mesh), self.unsure) if math.isfinite(self.mesh) else math.nan
 
     @property
     def size(self) -> float:
         """|mesh| + |model|: no credit for errors that cancel. |total| where they are not known."""
-        both = abs(self.mesh) + abs(self.model)
+        both = self.mesh_size + abs(self.model)
         return both if math.isfinite(both) else abs(self.total)
 
 
@@ -169,7 +180,11 @@ def _errors(
         known = math.isfinite(limit.uncertainty)
         mesh = (value - limit.value) / goal if known else math.nan
         model = (limit.value - goal) / goal if known else math.nan
-        yield name, RungError(100 * (value - goal) / goal, 100 * mesh, 100 * model)
+        unsure = limit.uncertainty / abs(goal) if known and own is not reference else 0.0
+        yield (
+            name,
+            RungError(*(100 * part for part in ((value - goal) / goal, mesh, model, unsure))),
+        )
 
 
 def _limits(

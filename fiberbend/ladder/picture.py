@@ -35,7 +35,7 @@ PAGE = Style(height=185.0)
 """The legend of the families stands below, and makes the page higher."""
 _ROOM = 1.5
 """Factor of time and error that the axes leave free around the points."""
-_UNDER = (180, 200, 215, 230, 250, 270, 165, 290, 135, 315, 90, 0, 45)
+_UNDER = (180, 195, 210, 225, 240, 255, 270, 165, 285, 150, 135, 315, 110, 90, 70, 0, 45)
 """Degrees: to the left of the front and under it there is no other rung."""
 _TOUCHING = 18.0
 """Points of paper between two rungs of the front that get one name."""

@@ -46,7 +46,7 @@ def _csv_row(
     row |= {"section": record.mesh.get("section", ""), "axial_mm": record.mesh.get("axial_mm", "")}
     row |= {"status": record.status, "reason": record.reason}
     row |= {name: getattr(record, name) for name in (*_COUNTS, *_MORE)}
-    for name, part in (("error", "size"), ("mesh_error", "mesh"), ("model_error", "model")):
+    for name, part in (("error", "size"), ("mesh_error", "mesh_size"), ("model_error", "model")):
         row[f"{name}_percent"] = _cell(judged.worst(part)) if judged else ""
     for each in judgement.asked:
         error = judged.errors.get(each.name) if judged else None
@@ -100,7 +100,7 @@ def rung_table(judgement: Judgement) -> list[str]:
         record = each.record
         name = full_name(each.rung)
         cells = [f"**{name}**" if record.name in best else name]
-        cells += [_percent(each.worst(part)) for part in ("size", "mesh", "model")]
+        cells += [_percent(each.worst(part)) for part in ("size", "mesh_size", "model")]
         cells += [_seconds(value) for value in _times(record)]
         cells += [str(record.unknowns or "–"), str(record.load_steps), str(record.iterations)]
         lines.append(f"| {' | '.join([*cells, f'{record.peak_memory_MB:.0f}'])} |")

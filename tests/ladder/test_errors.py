@@ -61,6 +61,32 @@ def test_mesh_and_model_apart() -> None:
         assert not each.flaw
 
 
+def test_values_that_do_not_settle_are_not_exact_at_the_last() -> None:
+    """Tetrahedra whose steps turn round: the last value is taken for the limit, not for exact."""
+
+    def wild(rung: Rung, each: Asked) -> float:
+        found = truth(rung, each)
+        if rung.family.element != "tetrahedron" or rung.family.winding != "turns":
+            return found
+        sizes = sorted({1.5, 3.0, 6.0})
+        return 99.0 * (1.0, 0.97, 1.05)[sizes.index(rung.case.mesh.axial)]
+
+    judgement = judged(wild)
+    last = next(
+        each
+        for each in judgement.rungs
+        if each.rung.family.element == "tetrahedron" and each.rung.case.mesh.axial == 1.5
+    )
+    assert last.worst("mesh") == pytest.approx(0.0, abs=1e-9)
+    assert last.worst() == pytest.approx(3.0, rel=1e-3)
+    assert last not in pareto(judgement)
+    # of the reference's own family it is said apart
+    own = [
+        each for each in judgement.rungs if each.rung.family.discretisation == judgement.reference
+    ]
+    assert not any(error.unsure for each in own for error in each.errors.values())
+
+
 def test_whole_and_half_share_their_limit() -> None:
     halves = {each.rung.name: each for each in judged().rungs}
     pairs = [name for name in halves if "-full-" in name]
