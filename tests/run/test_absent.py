@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from bench import absent
+from fem.kernels import cache_folder
 from fem.kinematics.domain import Domain
 from fem.scene import Scene
 from fiberbend.case import convert
@@ -17,6 +20,7 @@ from fiberbend.models.parts import build
 from fiberbend.reader.reader import as_case
 from geometry.bodies.extrude import hexahedral_body
 from geometry.mesh.data import MeshData
+from machine.folders import CACHE, cache_root
 from tests.run.conftest import small
 
 DENSE = {
@@ -99,3 +103,18 @@ def test_an_absent_effect_is_not_even_asked() -> None:
     assert free["calls"] != straight["calls"]
     with pytest.raises(subprocess.CalledProcessError):
         absent.counted(case, [*output, f"effects=[{listed}, {{straight: {{}}}}]"], others)
+
+
+def test_what_others_compile_is_not_counted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Tests side by side share a folder of kernels: the count is that of one program all the same."""
+    folder = cache_folder()
+    copy = tmp_path / cache_root().path.name / folder.name
+    shutil.copytree(folder, copy)
+    monkeypatch.setenv(CACHE, str(tmp_path))
+    case, *settings = absent.CASES["section"]
+    before = absent.counted(case, [*absent.QUIET, *settings])
+    for number in range(30):
+        (copy / f"of_another_program_{number}.txt").touch()
+    assert absent.counted(case, [*absent.QUIET, *settings]) == before
