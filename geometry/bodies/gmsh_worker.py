@@ -7,7 +7,6 @@ physical group is known by construction.
 from __future__ import annotations
 
 import ctypes
-import dataclasses
 import itertools
 import json
 import signal
@@ -20,6 +19,8 @@ import numpy as np
 
 from geometry.bodies.gmsh_read import read_mesh
 from geometry.bodies.stations import Stations, body_stations
+from geometry.checks import determinants
+from geometry.mesh.data import MeshData
 from geometry.sections.blocks import SIDES, Layout, Point
 from geometry.sections.size import MeshSize, Strips
 from geometry.sections.table import make_actuator, section_layout
@@ -31,6 +32,8 @@ _HXT = 10
 _FLAT = 1e-4
 """Volume of a tetrahedron, over the median of all, that is flat; round-off of gmsh leaves some."""
 _TRIES = 3
+_UNFOLDING = ("HighOrderElastic", "HighOrder")
+"""gmsh's ways to move the middles of edges, the quicker one first."""
 _DEATH_SIGNAL = 1
 """PR_SET_PDEATHSIG of Linux: the signal to a process whose parent ends."""
 
@@ -180,12 +183,13 @@ def add_winding(curves: list[list[list[float]]]) -> None:
     gmsh.model.setPhysicalName(1, gmsh.model.addPhysicalGroup(1, entities), "winding")
 
 
-def _generate(element: str) -> None:
-    """Mesh the model, tetrahedra until none is flat: they differ from process to process."""
+def _generate(element: str, first: int) -> None:
+    """Mesh the model, tetrahedra until none is flat, from one seed on."""
     # the default algorithm leaves slivers in the thin walls (Jacobians of 1e-4 mm³)
     gmsh.option.setNumber("Mesh.Algorithm3D", _HXT)
+    gmsh.option.setNumber("Mesh.RandomSeed", first)
     gmsh.model.mesh.generate(3)
-    for seed in range(2, 2 + _TRIES):
+    for seed in range(first + 1, first + 1 + _TRIES):
         if element != "tetrahedron" or _flattest() > _FLAT:
             return
         gmsh.model.mesh.optimize("")
@@ -194,6 +198,32 @@ def _generate(element: str) -> None:
         gmsh.model.mesh.clear()
         gmsh.option.setNumber("Mesh.RandomSeed", seed)
         gmsh.model.mesh.generate(3)
+
+
+def _unfolded(body: GmshBody) -> MeshData:
+    """The mesh of order 2, no element of it folded.
+
+    Where edges are long beside the radius of an arc and the thickness of a wall, their middles on
+    the arc turn tetrahedra inside out: gmsh then moves the middles within the body.
+
+    Raises:
+        SystemExit: it moves them to no avail.
+    """
+
+    def read() -> tuple[MeshData, bool]:
+        size = body.size
+        mesh = read_mesh(size.element, body.regions, body.groups, body.points, size.half)
+        return mesh, float(determinants(mesh).min()) > 0
+
+    mesh, sound = read()
+    for method in _UNFOLDING:
+        if sound:
+            break
+        gmsh.model.mesh.optimize(method)
+        mesh, sound = read()
+    if not sound:
+        raise SystemExit("elements are folded at arcs; shorter ones may do")
+    return mesh
 
 
 def _flattest() -> float:
@@ -212,22 +242,22 @@ def mesh_body(spec: dict[str, Any], out: Path) -> None:
 
     Args:
         spec: dictionaries "actuator", "size", "strips" and lists "winding", all lengths of them in
-            the "unit" (mm), in which the mesh too is written; path "msh_path" of a file in mm.
+            the "unit" (mm), in which the mesh too is written; path "msh_path" of a file in mm;
+            "seed" of random numbers.
         out: .npz file for `MeshData.load`.
     """
     actuator, size = make_actuator(spec["actuator"]), MeshSize(**spec["size"])
     strips = Strips(**spec["strips"]) if spec["strips"] else None
     gmsh.model.add("fiberbend")
-    coarse = dataclasses.replace(size, section=1, axial=size.axial / size.section)
-    size = coarse if size.element == "tetrahedron" else size
+    size = size.of_edges() if size.element == "tetrahedron" else size
     layout = section_layout(actuator, size, strips)
     stations = body_stations(actuator, size, strips)
     body = GmshBody(layout, stations, size)
     geo.synchronize()
     body.add_groups()
-    _generate(size.element)
+    _generate(size.element, spec["seed"])
     gmsh.model.mesh.setOrder(2)
-    mesh = read_mesh(size.element, body.regions, body.groups, body.points, size.half)
+    mesh = _unfolded(body)
     mesh.save(out)
     if spec["winding"]:
         add_winding(spec["winding"])

@@ -47,6 +47,10 @@ class MeshSize:
         if self.element not in ("hexahedron", "tetrahedron"):
             raise ValueError(f"element {self.element!r}: expected 'hexahedron' or 'tetrahedron'")
 
+    def of_edges(self) -> MeshSize:
+        """The same for tetrahedra: blocks as coarse as they may be, in edges of axial / section."""
+        return dataclasses.replace(self, section=1, axial=self.axial / self.section)
+
 
 @dataclasses.dataclass(frozen=True)
 class Strips:
