@@ -7,22 +7,42 @@ import sys
 import types
 from collections.abc import Iterator
 from importlib import metadata
+from types import TracebackType
 from typing import Any
 
 from machine import folders
+
+_FAILED, _INTERRUPTED = 1, 130
+"""Exit codes of Python, and of a shell after Ctrl-C."""
 
 
 def start_petsc() -> None:
     """Start MPI and PETSc; a file .petscrc of the working folder sets nothing.
 
+    From here on an error that nobody catches ends all ranks, unless somebody sees to such errors:
+    a rank that ends alone waits in MPI's own end for the others, which wait for it.
+
     Raises:
         MachineError: the folders that MPI and dolfinx need cannot be used.
     """
     folders.settle()
-    import mpi4py.MPI  # noqa: F401
+    from mpi4py import MPI
+
+    if MPI.COMM_WORLD.size > 1 and sys.excepthook is sys.__excepthook__:
+        sys.excepthook = _end_all
     import petsc4py
 
     petsc4py.init(["fiberbend", "-skip_petscrc"])
+
+
+def _end_all(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+    """Print an error that nobody has caught, and end all ranks."""
+    from mpi4py import MPI
+
+    sys.__excepthook__(kind, error, trace)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    MPI.COMM_WORLD.Abort(_INTERRUPTED if issubclass(kind, KeyboardInterrupt) else _FAILED)
 
 
 class _Versions(types.ModuleType):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 from mpi4py import MPI
@@ -21,3 +22,39 @@ def test_two_ranks_equal_one(mpirun: MpiRun) -> None:
     assert found.keys() == serial.keys()
     for name, value in serial.items():
         assert found[name] == pytest.approx(value, rel=1e-8), name
+
+
+ALONE = """
+import os, signal, sys
+import fem
+from mpi4py import MPI
+
+print("begun", MPI.COMM_WORLD.rank)
+if MPI.COMM_WORLD.rank == {rank}:
+    {fault}
+MPI.COMM_WORLD.Barrier()
+"""
+FAULTS = {
+    "raise RuntimeError('out of luck')": (1, "RuntimeError: out of luck"),
+    "os.kill(os.getpid(), signal.SIGINT)": (130, "KeyboardInterrupt"),
+    "os.kill(os.getpid(), signal.SIGTERM)": (143, ""),
+    "os.kill(os.getpid(), signal.SIGKILL)": (137, ""),
+}
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("fault", FAULTS)
+@pytest.mark.parametrize("rank", [0, 1])
+def test_what_ends_one_rank_of_a_program_ends_all(
+    rank: int, fault: str, mpirun: MpiRun, tmp_path: Path
+) -> None:
+    """Whoever uses `fem` alone: the other rank would wait for ever, and mpirun with it."""
+    script = tmp_path / "alone.py"
+    script.write_text(ALONE.format(rank=rank, fault=fault), encoding="utf-8")
+    run = mpirun(2, [script], timeout=60)
+    code, said = FAULTS[fault]
+    assert run.returncode == code
+    assert run.stderr.count(said) == 1 or not said
+    if said:
+        assert "Traceback" in run.stderr
+        assert f"begun {rank}" in run.stdout
