@@ -13,7 +13,7 @@ from fem.march.increments import first_size, guess
 from fem.march.limit_points import crossing, last_limit, limit_between, passed
 from fem.march.position import Position
 from fem.march.predictor import distinct
-from fem.march.records import MODES, Ramp, Rules, State, measure
+from fem.march.records import MODES, Ramp, Report, Rules, State, measure
 from fem.march.turning import leads_nowhere, toward
 from fem.solver.newton import Outcome
 
@@ -24,8 +24,22 @@ BEYOND = "the load falls from here on"
 
 
 def unstable(new: State, old: State, scalar: str) -> bool:
-    """Whether a mode that is stable at a state is not at the next, its conjugate given."""
+    """Whether a mode that is stable at a state is not at the next, its conjugate given.
+
+    Where the solver tells no modes none is seen: such a run says that nobody has looked.
+    """
     return excess(new, scalar) > max(0, excess(old, scalar))
+
+
+def suspect(new: State, report: Report) -> bool:
+    """Whether a mode may have been lost on the way to a state: one was, or nobody has looked.
+
+    Args:
+        new: the state, its stability assessed.
+        report: of the march up to there.
+    """
+    modes = new.measures.get(MODES)
+    return bool(report.critical) or modes is None or modes > 0
 
 
 class Attempts:
@@ -127,8 +141,8 @@ class Attempts:
         if kind == "value" and self._jumped(position.states, scalar, aim, new):
             return JUMPED
         # a path without a critical point may have kinks: threads that go slack
-        critical = bool(position.report.critical) or new.measures.get(MODES, 0) > 0
-        if kind == "conjugate" and position.path_following and critical:
+        followed = kind == "conjugate" and position.path_following
+        if followed and suspect(new, position.report):
             strayed = self._equilibrium.strayed(new, position.states)
             return JUMPED if strayed > STRAY else ""
         falls = new.measures[measure("rate", scalar)] < 0

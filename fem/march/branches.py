@@ -49,7 +49,8 @@ def excess(state: State, scalar: str) -> int:
     """Unstable modes that stay where the work-conjugate of a load is given in place of its value.
 
     Args:
-        state: of assessed stability; at rest without any.
+        state: of assessed stability; at rest without any. Of a solver that tells no modes the
+            count says nothing.
         scalar: the load that is driven.
     """
     falls = state.measures.get(measure("rate", scalar), 1.0) < 0

@@ -58,6 +58,11 @@ class Equilibrium:
         self.displacements = np.zeros(body.owned, dtype=bool)
         self.displacements[dofs[dofs < body.owned]] = True
 
+    @property
+    def tells_stability(self) -> bool:
+        """Whether the solver counts negative pivots, and with them unstable modes."""
+        return self.newton.factor.counts
+
     def capture(self) -> State:
         """The present state of the scene."""
         scene = self.scene
@@ -194,7 +199,7 @@ class Equilibrium:
         conjugate, value = (state.measures[name] - before.measures[name] for name in kinds)
         # where the load has turned and another mode is lost, the count stays as it is
         turned = conjugate * value * state.measures[rate] < 0
-        if not self._counts():
+        if not self.tells_stability:
             if turned:
                 raise RefusedError(f"a limit point of {scalar}, where negative pivots must be told")
             return
@@ -210,10 +215,11 @@ class Equilibrium:
     def opposite_modes(self, state: State, rest: State) -> int:
         """Unstable modes that half a body does not know; of a whole one none. Collective.
 
+        None too where the solver tells no modes: such a run says that nobody has looked.
         Those of the opposite symmetry, with the loads at given values. A round body may turn its
         buckles about its axis at no cost: what costs less than the mesh knows is no instability.
         """
-        if self.scene.free_opposite is None or not self._counts():
+        if self.scene.free_opposite is None or not self.tells_stability:
             return 0
         self.restore(state)
         modes = opposite_modes(self.newton) - self._volumetric
@@ -253,10 +259,6 @@ class Equilibrium:
         start = np.zeros(body.owned)
         start[body.node_dofs[nodes]] = values[nodes]
         return start
-
-    def _counts(self) -> bool:
-        """Whether the solver tells negative pivots."""
-        return self.newton.factor.counts
 
     def _modes(self) -> int:
         return self.newton.negative_pivots(self.scene.natural) - self._volumetric

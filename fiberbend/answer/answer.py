@@ -281,7 +281,9 @@ def _contacts(case: Case, rows: Sequence[col.Row]) -> Iterator[Entry]:
 
 
 def _critical(run: Mapping[str, Any]) -> Iterator[Entry]:
-    """Limit points, and where stability is lost."""
+    """Limit points, and where stability is lost; or that nobody has looked for it."""
+    if run.get("stability_checked") is False:
+        yield Entry("stability", "not checked", "solver.linear: iterative counts no unstable modes")
     for point in run.get("critical_points") or ():
         before, beyond = point["unstable_modes_before"], point["unstable_modes_beyond"]
         if beyond <= before:

@@ -171,6 +171,7 @@ def counted(assembly: Assembly, warnings: Sequence[str]) -> dict[str, Any]:
         "factorisations": report.factorisations,
         "cutbacks": report.cutbacks,
         "warnings": list(warnings),
+        "stability_checked": assembly.march.equilibrium.tells_stability,
         "critical_points": messages.critical_points(report, scene.body.symmetry_factor),
     }
 

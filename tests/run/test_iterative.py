@@ -6,10 +6,15 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from fem.march.attempts import suspect
+from fem.march.records import MODES as MODES_MEASURE
+from fem.march.records import Critical, Report, State
 from fem.solver import slabs
 from fiberbend import run
+from fiberbend.answer.answer import answer
 from fiberbend.models.choice import choose_model
 from fiberbend.plan.plan import make_plan, unused
 from fiberbend.reader.reader import as_case
@@ -46,6 +51,23 @@ def test_the_same_states(direct: list[dict[str, Any]]) -> None:
     assert result.status == "converged"
     _same(result.rows, direct)
     assert any("no stability is told" in line for line in result.run["warnings"])
+    assert result.run["stability_checked"] is False
+    assert run(CASE).run["stability_checked"] is True
+    said = answer(as_case(ITERATIVE), result.rows, result.run)
+    assert next(e.value for e in said.entries if e.label == "stability") == "not checked"
+
+
+def test_what_is_not_known_to_be_stable_may_be_lost() -> None:
+    """A step that strays is refused where a mode may have been lost on the way."""
+
+    def state(**measures: float) -> State:
+        return State(np.zeros(1), {}, measures, None, {})
+
+    limit = Critical("limit", "pressure", 1.0, 1.0, None, 0, 1)
+    assert suspect(state(), Report())
+    assert suspect(state(**{MODES_MEASURE: 1}), Report())
+    assert not suspect(state(**{MODES_MEASURE: 0}), Report())
+    assert suspect(state(**{MODES_MEASURE: 0}), Report(critical=[limit]))
 
 
 @pytest.mark.mpi
