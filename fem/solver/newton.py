@@ -14,8 +14,9 @@ from petsc4py import PETSc
 from fem.solver.bordered import BorderedSystem, SideCondition
 from fem.solver.factor import Factor
 from fem.solver.problem import LinearSolver, Problem
-from fem.solver.reuse import LARGE, Reuse
+from fem.solver.reuse import Reuse
 from fem.solver.slabs import Slabs
+from machine.factors import LARGE
 
 Floats = npt.NDArray[np.float64]
 

@@ -15,8 +15,8 @@ History = Sequence[tuple[float, float, float]]
 
 NEAR, NEAR_RATIO, CHORD_RATIO = 1e-3, 0.02, 0.1
 """A factor is used again below this residual, after this reduction, and while it reduces so."""
-LARGE, POOR = 20_000, 0.5
-"""Unknowns from which on one factor is to serve a whole solve, while its steps shrink so."""
+POOR = 0.5
+"""One factor is to serve a whole solve while its steps shrink so."""
 
 
 class Reuse:

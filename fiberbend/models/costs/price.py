@@ -8,9 +8,9 @@ import json
 from pathlib import Path
 from typing import Any
 
+from machine.factors import LARGE
+
 FILE = Path(__file__).parent / "prices.json"
-LARGE = 20_000
-"""Unknowns from which a factor serves several steps: more iterations, fewer factorisations."""
 AT_REST = 2
 """Factorisations beside those of Newton's method: of the response at rest, and of the last state,
 whose stability is looked at."""
@@ -35,7 +35,8 @@ class Price:
         solve: (c, p) in s, of an iteration.
         memory: (c, p) in MB, beside `base_mb`.
         base_mb: of libraries and program, MB.
-        iterations: of Newton's method in a step, below `LARGE` unknowns and from there on.
+        iterations: of Newton's method in a step, below `LARGE` unknowns and from there on: there
+            are more of them, as a factor serves several.
         factorisations: in an iteration, likewise.
     """
 
