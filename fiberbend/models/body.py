@@ -134,21 +134,22 @@ class Body(MeshedModel):
         return 0.0 if ratio > _END * sizes[-1] else float(np.interp(ratio, sizes, parts))
 
     def size(self, case: Case) -> ProblemSize:
-        """Of a body from the block layout, which is that of gmsh's hexahedra."""
+        """From the block layout: as many hexahedra as gmsh makes, about as many tetrahedra."""
         from geometry.bodies.counts import body_counts, winding_sides
 
         actuator = convert.dimensions(case.actuator)
         half, _ = self.half(case)
         size = self.mesh_size(case, half)
         counts = body_counts(actuator, size, tip_strips(case.effects))
-        kind, pressures = "hexahedra", 4
+        kind, pressures, edge, exact = "hexahedra", 4, size.axial, True
         if case.mesh.element == "tetrahedron":
-            kind, pressures = "tetrahedra", 0
-        layers = actuator.total_length / case.mesh.axial
+            kind, pressures, edge, exact = "tetrahedra", 0, size.of_edges().axial, False
+        layers = actuator.total_length / edge
         unknowns = count(counts, 3, pressures)
         around, length = winding_sides(actuator, size), actuator.length
         segments = pieces(case, half, around, length, length / size.axial)
-        return ProblemSize(counts.cells, kind, unknowns, found_pressure(case), layers, segments)
+        scalars = found_pressure(case)
+        return ProblemSize(counts.cells, kind, unknowns, scalars, layers, segments, exact)
 
     def step_seconds(self, case: Case, size: ProblemSize) -> float:
         """More iterations where it touches."""

@@ -99,6 +99,7 @@ class ProblemSize:
         scalars: global unknowns beside them.
         layers: elements along the axis.
         segments: pieces of thread, each within an element.
+        exact: elements and unknowns are those of the run; else about as many.
     """
 
     elements: int
@@ -107,6 +108,7 @@ class ProblemSize:
     scalars: tuple[str, ...]
     layers: float
     segments: float
+    exact: bool = True
 
 
 class ModelKind(ABC):

@@ -105,10 +105,11 @@ def _finite_elements(
     size = model.size(case)
     cost = cost_of(case, model, size)
     beside = f", and {', '.join(size.scalars)}" if size.scalars else ""
+    about = "" if size.exact else "about "
     body = {
         "half": [f"{'half' if half else 'full'} ({why_half})"],
-        "elements": [f"{size.elements} {size.kind}"],
-        "unknowns": [f"{size.unknowns}{beside}"],
+        "elements": [f"{about}{size.elements} {size.kind}"],
+        "unknowns": [f"{about}{size.unknowns}{beside}"],
         **cost.rows(case, model),
     }
     short = shortage([cost.memory_mb], cost.free)

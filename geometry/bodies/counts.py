@@ -1,6 +1,7 @@
 """How many elements and nodes a mesh will have, from its blocks: nothing is meshed for it.
 
-The counts are those of `geometry.bodies.extrude`, whatever the size; no numpy.
+The counts of hexahedra are those of `geometry.bodies.extrude`, whatever the size; those of gmsh's
+tetrahedra are an estimate (`geometry.bodies.tetrahedra`). No numpy.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ import dataclasses
 import itertools
 
 from geometry.bodies.stations import Stations, body_stations, slice_stations
+from geometry.bodies.tetrahedra import Tetrahedra
 from geometry.sections.blocks import SIDES, Layout
 from geometry.sections.shape import ShapedActuator
 from geometry.sections.size import MeshSize, Strips
@@ -75,11 +77,6 @@ def _larger(parts: list[Counts]) -> list[Counts]:
     return [max(pair, key=lambda part: part.nodes) for pair in itertools.pairwise(parts)]
 
 
-def of_tetrahedra(hexahedra: Counts) -> Counts:
-    """Of 10-node tetrahedra, six in every hexahedron, which use all its nodes."""
-    return dataclasses.replace(hexahedra, cells=6 * hexahedra.cells)
-
-
 def winding_sides(actuator: ShapedActuator, size: MeshSize) -> int:
     """Sides of the section's quadrilaterals on which the winding lies."""
     ends = ("bottom", "left", "right", "top")
@@ -93,12 +90,14 @@ def winding_sides(actuator: ShapedActuator, size: MeshSize) -> int:
 
 
 def body_counts(actuator: ShapedActuator, size: MeshSize, strips: Strips | None = None) -> Counts:
-    """Of the whole body in hexahedra, or in the tetrahedra that these split into."""
-    layout = section_layout(actuator, size, strips)
-    counts = of_extrusion(
-        of_layout(layout.without_fill()), of_layout(layout), body_stations(actuator, size, strips)
-    )
-    return of_tetrahedra(counts) if size.element == "tetrahedron" else counts
+    """Of the whole body in hexahedra, or in about as many tetrahedra as gmsh makes of it."""
+    if size.element == "tetrahedron":
+        size = size.of_edges()
+    layout, stations = section_layout(actuator, size, strips), body_stations(actuator, size, strips)
+    if size.element == "tetrahedron":
+        mesh = Tetrahedra(layout, stations, size.axial)
+        return Counts(mesh.cells, mesh.vertices + mesh.edges, mesh.vertices)
+    return of_extrusion(of_layout(layout.without_fill()), of_layout(layout), stations)
 
 
 def slice_counts(actuator: ShapedActuator, size: MeshSize, length: float, number: int) -> Counts:

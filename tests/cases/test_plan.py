@@ -77,6 +77,15 @@ def test_size_is_that_of_the_run(settings: list[str], elements: int, unknowns: i
     assert (made.elements, made.unknowns) == (elements, unknowns)
 
 
+def test_tetrahedra_are_about_as_many_as_in_the_run() -> None:
+    """`make times` has run it: 9428 elements, 49640 unknowns."""
+    made = plan(SMEARED, "mesh.axial=4 mm", "mesh.element=tetrahedron")
+    assert made.elements == pytest.approx(9428, rel=0.05)
+    assert made.unknowns == pytest.approx(49640, rel=0.05)
+    assert row(made, "unknowns") == f"about {made.unknowns}"
+    assert row(made, "elements") == f"about {made.elements} tetrahedra"
+
+
 def test_global_unknowns_are_named() -> None:
     by_angle = "effects.0={pressure: {angle: 90 deg}}"
     assert row(plan("model=section", SINGLE, by_angle, "output={}"), "unknowns") == (

@@ -108,7 +108,7 @@ def test_an_absent_effect_is_not_even_asked() -> None:
 def test_what_others_compile_is_not_counted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Tests side by side share a folder of kernels: the count is that of one program all the same."""
+    """Tests side by side share a folder of kernels: what is counted is one program's."""
     folder = cache_folder()
     copy = tmp_path / cache_root().path.name / folder.name
     shutil.copytree(folder, copy)
