@@ -5,31 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from geometry.actuator import Actuator
-from geometry.mesh.data import (
-    Floats,
-    MeshData,
-    reference_nodes,
-    vertex_positions,
-)
+from geometry.mesh.data import Floats, MeshData
 from geometry.mesh.errors import MeshError
-from geometry.mesh.reference import area_vectors, cell_rule, jacobians
+from geometry.mesh.reference import area_vectors, cell_rule, determinants
 from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
-
-_CHUNK = 20_000
-
-
-def determinants(mesh: MeshData) -> Floats:
-    """Jacobian determinants at quadrature points and vertices, (cells, points), in mm^d."""
-    points = np.vstack([cell_rule(mesh.cell_type)[0], _vertices(mesh.cell_type)])
-    starts = range(0, len(mesh.cells), _CHUNK)
-    cells = np.arange(len(mesh.cells))
-    parts = [jacobians(mesh, cells[i : i + _CHUNK], points)[1] for i in starts]
-    return np.concatenate([np.linalg.det(part) for part in parts])
-
-
-def _vertices(cell_type: str) -> Floats:
-    return reference_nodes(cell_type)[vertex_positions(cell_type)]
 
 
 def region_volumes(mesh: MeshData) -> dict[str, float]:

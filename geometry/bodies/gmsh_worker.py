@@ -19,8 +19,8 @@ import numpy as np
 
 from geometry.bodies.gmsh_read import read_mesh
 from geometry.bodies.stations import Stations, body_stations
-from geometry.checks import determinants
 from geometry.mesh.data import MeshData
+from geometry.mesh.reference import determinants
 from geometry.sections.blocks import SIDES, Layout, Point
 from geometry.sections.size import MeshSize, Strips
 from geometry.sections.table import make_actuator, section_layout

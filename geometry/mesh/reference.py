@@ -13,6 +13,9 @@ from geometry.mesh.data import (
     vertex_positions,
 )
 
+_CHUNK = 20_000
+"""Elements whose Jacobians are held at once."""
+
 
 def _line(x: Floats) -> tuple[Floats, Floats]:
     values = np.stack([(1 - x) * (1 - 2 * x), 4 * x * (1 - x), x * (2 * x - 1)], axis=-1)
@@ -176,3 +179,16 @@ def surface_weights(mesh: MeshData, name: str) -> Floats:
     parts = np.einsum("kq,kqa->ka", areas, values)
     np.add.at(weights, mesh.cells[cell[:, None], positions], parts)
     return weights
+
+
+def determinants(mesh: MeshData) -> Floats:
+    """Jacobian determinants at quadrature points and vertices, (cells, points), in mm^d."""
+    points = np.vstack([cell_rule(mesh.cell_type)[0], _vertices(mesh.cell_type)])
+    starts = range(0, len(mesh.cells), _CHUNK)
+    cells = np.arange(len(mesh.cells))
+    parts = [jacobians(mesh, cells[i : i + _CHUNK], points)[1] for i in starts]
+    return np.concatenate([np.linalg.det(part) for part in parts])
+
+
+def _vertices(cell_type: str) -> Floats:
+    return reference_nodes(cell_type)[vertex_positions(cell_type)]

@@ -8,8 +8,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from geometry.checks import determinants, region_volumes, surface_area
+from geometry.checks import region_volumes, surface_area
 from geometry.mesh.data import MeshData
+from geometry.mesh.reference import determinants
 from geometry.mesh.tets import to_tetrahedra
 from tests.exact.solids import (
     box,

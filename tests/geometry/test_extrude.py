@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from geometry.bodies.extrude import hexahedral_body, hexahedral_slice, section_quadrilaterals
-from geometry.checks import chamber_gap, check, determinants, region_volumes, surface_area
+from geometry.checks import chamber_gap, check, region_volumes, surface_area
 from geometry.mesh.data import MeshData
 from geometry.mesh.errors import MeshError
+from geometry.mesh.reference import determinants
 from geometry.mesh.tets import to_tetrahedra
 from geometry.sections.hemicircle import HemicircleActuator
 from geometry.sections.size import MeshSize, Strips
