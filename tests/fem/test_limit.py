@@ -288,7 +288,8 @@ class _Told(Equilibrium):
     def __init__(self, rate: float | None) -> None:
         self._rate = rate
 
-    def _counts(self) -> bool:
+    @property
+    def tells_stability(self) -> bool:
         return True
 
     def _modes(self) -> int:
