@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -88,9 +88,7 @@ class Scene(OwnCode):
         fixed: dict[str, float] = {}
         for effect in ordered:
             fixed |= effect.fixed_scalars()
-        for name, value in fixed.items():
-            self.set_scalar(name, value)
-        self.natural = tuple(name for name in self.body.natural if name not in fixed)
+        self.hold(fixed)
         self._compile(potentials)
         self._constrain(constraints)
         self.solid_noise = self._solid_noise()
@@ -181,6 +179,12 @@ class Scene(OwnCode):
         self._fixed["prescribed"] = np.union1d(
             self._fixed.get("prescribed", np.zeros(0, dtype=np.int32)), dofs
         ).astype(np.int32)
+
+    def hold(self, scalars: Mapping[str, float]) -> None:
+        """Hold these natural scalars at given values, and no others: no kernel hangs on that."""
+        for name, value in scalars.items():
+            self.set_scalar(name, value)
+        self.natural = tuple(name for name in self.body.natural if name not in scalars)
 
     # --- state ---------------------------------------------------------------------------------
 

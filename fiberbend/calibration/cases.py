@@ -61,8 +61,9 @@ def straight_section(case: Case, reach: Reach, pressure: float) -> Case:
 
 def _straight(case: Case, model: str, reach: Reach, pressure: float) -> Case:
     effects = (inflate(to=PRESSED[-1] * pressure), straight_of(()))
-    output = _asked(at_pressures=tuple(part * pressure for part in PRESSED))
-    return _small(case, model, _length(case, reach), effects, output)
+    asked = tuple(part * pressure for part in PRESSED)
+    length, output = _length(case, reach), _asked(at_pressures=asked)
+    return _small(case, model, length, effects, output, first=asked[0])
 
 
 def _length(case: Case, reach: Reach) -> float:
@@ -80,13 +81,15 @@ def _small(
     loads: tuple[Effect, ...],
     output: Output,
     turn: float | None = None,
+    first: float | None = None,
 ) -> Case:
     cell = model == "cell"
     kept = (effect.in_cell() if cell else effect.beside() for effect in case.effects)
     wound = tuple(e for e in kept if e is not None and e.turns() is not None)
     axial = turns_of(case).pitch / (2 * LAYERS)
     mesh = {"section": CELL, "axial": axial} if cell else {"section": SECTION}
-    solver = {"tolerance": TOLERANCE, "max_turn": None if turn is None else abs(turn)}
+    most = None if turn is None else abs(turn)
+    solver = {"tolerance": TOLERANCE, "max_turn": most, "first_step": first}
     return case.model_copy(
         update={
             "model": model,

@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from fem.effects.effect import Discrete
 from fem.march.records import State
 from fiberbend.calibration import cases
 from fiberbend.calibration.reach import Reach, height
@@ -72,15 +73,15 @@ def cell_states(case: Case, reach: Reach) -> CellStates:
     Raises:
         CalibrationError: it has too few states.
     """
-    bent, whole, reason = _bent(case, reach, 1.0)
+    small, bent, whole, reason = _bent(case, reach, 1.0)
     if bent and bent[0].pressure < 0:
         # it bends up, toward a soft floor
-        bent, whole, reason = _bent(case, reach, -1.0)
+        small, bent, whole, reason = _bent(case, reach, -1.0)
     if not bent or bent[0].pressure <= 0:
         raise CalibrationError(f"no pressure bends the cell of this section far enough: {reason}")
     straight: tuple[Reading, ...] = ()
     if not twists(case):
-        small = Small(cases.straight_cell(case, reach, max(r.pressure for r in bent)))
+        small = Small(cases.straight_cell(case, reach, max(r.pressure for r in bent)), small)
         states, report = small.march()
         straight = tuple(small.read(state) for state in states)
         whole, reason = whole and report.status == "converged", reason or report.reason
@@ -89,10 +90,11 @@ def cell_states(case: Case, reach: Reach) -> CellStates:
     return CellStates(bent, straight, whole, reason)
 
 
-def _bent(case: Case, reach: Reach, sign: float) -> tuple[tuple[Reading, ...], bool, str]:
+def _bent(case: Case, reach: Reach, sign: float) -> tuple[Small, tuple[Reading, ...], bool, str]:
     small = Small(cases.bent_cell(case, reach, sign))
     states, report = small.march()
-    return tuple(small.read(s) for s in states), report.status == "converged", report.reason
+    whole = report.status == "converged"
+    return small, tuple(small.read(state) for state in states), whole, report.reason
 
 
 def fit(case: Case, reach: Reach, cell: CellStates, began: float) -> Calibration:
@@ -108,7 +110,7 @@ def fit(case: Case, reach: Reach, cell: CellStates, began: float) -> Calibration
         CalibrationError: the section comes to fewer states than the cell.
     """
     model = _Sections(case, reach, cell)
-    numbers = model.rounded(least_squares(model.residual, np.zeros(3)))
+    numbers = model.rounded(least_squares(model.residual, np.zeros(3), model.slopes))
     bent_left, straight_left = (
         round(float(100 * np.max(np.abs(part), initial=0.0)), 4) for part in model.parts(numbers)
     )
@@ -130,19 +132,19 @@ def fit(case: Case, reach: Reach, cell: CellStates, began: float) -> Calibration
     )
 
 
-def least_squares(residual: Callable[[Floats], Floats], x: Floats) -> Floats:
+def least_squares(
+    residual: Callable[[Floats], Floats], x: Floats, slopes_at: Callable[[Floats], Floats]
+) -> Floats:
     """Where a sum of squares is least, by Levenberg's and Marquardt's method.
-
-    A residual here costs tens of milliseconds and its numbers are of order one: slopes are taken by
-    forward differences of a size known to be right.
 
     Args:
         residual: of m numbers at n, (m,).
         x: the start, (n,).
+        slopes_at: its derivatives at the point where it was taken last, (m, n).
     """
     value, damping = residual(x), _DAMPING
     for _ in range(_ITERATIONS):
-        slopes = np.array([residual(x + _STEP * e) - value for e in np.eye(len(x))]).T / _STEP
+        slopes = slopes_at(x)
         square = slopes.T @ slopes
         while True:
             scale = damping * np.diag(square).max() * np.eye(len(x))
@@ -177,8 +179,9 @@ class _Sections:
             end = max(r.pressure for r in cell.bent)
             asked.append((cases.straight_section(wound, reach, end), cell.straight))
         self._parts: list[tuple[Small, list[State], Sequence[Reading]]] = []
+        small: Small | None = None
         for small_case, readings in asked:
-            small = Small(small_case)
+            small = Small(small_case, small)
             states, report = small.march()
             if len(states) < len(readings):
                 raise CalibrationError(
@@ -205,7 +208,27 @@ class _Sections:
 
     def residual(self, x: Floats) -> Floats:
         """Weighted relative differences from the cell at a point."""
-        bent, straight = self.parts(self.bulging(x))
+        return self._weighted(self.parts(self.bulging(x)))
+
+    def slopes(self, x: Floats) -> Floats:
+        """Its derivatives at the point where it was taken last, (m, 3)."""
+        others = [self._potentials(self.bulging(x + _STEP * e)) for e in np.eye(3)]
+        here = self._potentials(self.bulging(x))
+        found: list[Floats] = []
+        for small, states, readings in self._parts:
+            values = np.empty((3, len(readings)))
+            for index, (state, cell) in enumerate(zip(states, readings, strict=True)):
+                now = _difference(small.read(state), cell)
+                small.wind(here)
+                for number, other in enumerate(small.near(state, others)):
+                    values[number, index] = (_difference(small.read(other), cell) - now) / _STEP
+            found.append(values)
+        rows = [self._weighted([part[k] for part in found]) for k in range(3)]
+        return np.array(rows).T
+
+    def _weighted(self, parts: Sequence[Floats]) -> Floats:
+        """In one, weighted: of states bent, and kept straight if there are any."""
+        bent, straight = parts[0], parts[1] if len(parts) > 1 else np.zeros(0)
         if self._kept and len(straight):
             return np.r_[_OTHER * bent, straight]
         return np.r_[bent, _OTHER * straight]
@@ -213,9 +236,8 @@ class _Sections:
     def parts(self, numbers: Bulging) -> tuple[Floats, Floats]:
         """Relative differences between section and cell: of states bent, and kept straight."""
         found: list[Floats] = []
+        self._parts[0][0].wind(self._potentials(numbers))
         for small, states, readings in self._parts:
-            for winding in self._windings:
-                small.wind(winding.with_bulging(numbers))
             values: list[float] = []
             for index, cell in enumerate(readings):
                 state = small.again(states[index])
@@ -226,6 +248,15 @@ class _Sections:
                 values.append(_difference(small.read(state), cell))
             found.append(np.array(values))
         return found[0], found[1] if len(found) > 1 else np.zeros(0)
+
+    def _potentials(self, numbers: Bulging) -> dict[str, Discrete]:
+        """Windings with these numbers, as the scene that all parts share takes them."""
+        small = self._parts[0][0]
+        return {
+            key: potential
+            for winding in self._windings
+            for key, potential in small.windings(winding.with_bulging(numbers)).items()
+        }
 
 
 def _difference(section: Reading, cell: Reading) -> float:

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from mpi4py import MPI
 
+from fem.effects.effect import Discrete
 from fem.kinematics.domain import Domain
 from fem.kinematics.uniform import CURVATURE, STRETCH
 from fem.march.hooks import AfterStep
 from fem.march.march import March
 from fem.march.records import Report, Rules, State
 from fem.scene import Scene
+from fem.solver.bordered import SideCondition
 from fem.solver.newton import Newton, Outcome, Settings
 from fem.solver.side_conditions import Functional, GivenFunctional, Stationary
+from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.effect import Effect
 from fiberbend.models.choice import meshed
@@ -51,22 +55,34 @@ class Small:
 
     Args:
         case: model section or cell.
+        like: the same section with the same winding under another load, whose scene it shares.
     """
 
-    def __init__(self, case: Case) -> None:
+    def __init__(self, case: Case, like: Small | None = None) -> None:
         model = meshed(case)
-        self._case, mesh = case, model.mesh(case)
+        self._case, mesh = case, model.mesh(case) if like is None else like.scene.domain.data
         parts = build(case, mesh, model)
-        self.scene = Scene(Domain(mesh, MPI.COMM_SELF), parts.effects, model.kinematics(case))
+        self._held = {k: v for term in parts.effects for k, v in term.fixed_scalars().items()}
+        if like is None:
+            self.scene = Scene(Domain(mesh, MPI.COMM_SELF), parts.effects, model.kinematics(case))
+            settings = Settings(tolerance=case.solver.tolerance)
+            self._newton = Newton(self.scene, MPI.COMM_SELF, settings)
+        else:
+            self.scene, self._newton = like.scene, like._newton
+            like._march.equilibrium.restore(like._march.rest)
+            self.scene.predict(None)
+            self.scene.hold(self._held)
         self._ramps = parts.ramps(self.scene.body.symmetry_factor)
         self._control: Functional = model.observables(case, self.scene).control
-        self._newton = Newton(self.scene, MPI.COMM_SELF, Settings(tolerance=case.solver.tolerance))
         turn = model.largest_turn(case)
         rules = Rules(turn=turn, first_turn=min(turn, _FIRST), memory=model.memory, grow=_GROW)
         self._march = March(self.scene, self._newton, rules, control=self._control)
 
     def march(self) -> tuple[list[State], Report]:
-        """States that the case asks for by angle or pressure, in their order, and how it ended."""
+        """States that the case asks for by angle or pressure, in their order, and how it ended.
+
+        It begins where it was made, at rest: before another that shares its scene is made.
+        """
         found: list[State] = []
         asked = (*self._case.output.at_angles, *self._case.output.at_pressures)
 
@@ -89,32 +105,62 @@ class Small:
             angle=state.measures["control"],
         )
 
-    def wind(self, winding: Effect) -> None:
-        """Give the winding of the scene other numbers; mesh and kernels stay.
+    def windings(self, winding: Effect) -> dict[str, Discrete]:
+        """Potentials of the winding with other numbers; mesh and kernels stay.
 
         Args:
             winding: of the same thread.
         """
-        from fiberbend.case import convert
-
         site, requests = convert.site(self._case), convert.requests(self._case)
         built = winding.build(site, self.scene.domain.data, requests)
-        for term in built.terms:
-            potential = term.discrete(self.scene.body)
-            assert potential is not None
-            self.scene.discrete[term.key] = potential
+        found = {term.key: term.discrete(self.scene.body) for term in built.terms}
+        return {key: potential for key, potential in found.items() if potential is not None}
+
+    def wind(self, potentials: Mapping[str, Discrete]) -> None:
+        """Give the windings of the scene other numbers."""
+        self.scene.discrete.update(potentials)
         # away from the present state, which the scene would take as evaluated
         self.scene.set(np.zeros_like(self.scene.w))
 
     def again(self, state: State) -> State | None:
         """The state at the same angle, or kept straight at the same pressure; None: none found."""
-        scene, natural = self.scene, list(self.scene.natural)
+        unknown, conditions = self._back(state)
+        outcome = self._newton.solve(state.w, unknown, conditions)
+        return self._march.equilibrium.capture() if outcome.converged else None
+
+    def near(self, state: State, others: Sequence[Mapping[str, Discrete]]) -> Iterator[State]:
+        """A state with windings of slightly other numbers, by a step with one tangent.
+
+        Args:
+            state: found with the present winding.
+            others: potentials of the windings; the last ones stay.
+        """
+        unknown, conditions = self._back(state)
+        scene, newton = self.scene, self._newton
+        scene.residual()  # whose forces scale the conditions
+        newton.assemble()
+        system = newton.factorise(unknown, conditions)
+        for potentials in others:
+            self.wind(potentials)
+            self._back(state)
+            forces, _ = scene.residual()
+            left = np.array([condition.value() for condition in conditions])
+            step = newton.solve_linear(np.where(scene.free[: len(forces)], forces, 0.0))
+            step, change = system.eliminate(step, left)
+            for name, value in zip(unknown, change, strict=True):
+                scene.set_scalar(name, scene.scalar(name) - float(value))
+            scene.set(state.w - step)
+            yield self._march.equilibrium.capture()
+
+    def _back(self, state: State) -> tuple[list[str], list[SideCondition]]:
+        """Put the scene to a state; the scalars that are found there, by which conditions."""
+        scene = self.scene
+        scene.hold(self._held)
         self._march.equilibrium.restore(state)
         scene.predict(None)
-        conditions: list = [Stationary(scene, name) for name in natural]
-        if self._case.straight:
-            outcome = self._newton.solve(state.w, natural, conditions)
-        else:
+        unknown = list(scene.natural)
+        conditions: list[SideCondition] = [Stationary(scene, name) for name in unknown]
+        if not self._case.straight:
+            unknown.append(PRESSURE)
             conditions.append(GivenFunctional(self._control, state.measures["control"]))
-            outcome = self._newton.solve(state.w, [*natural, PRESSURE], conditions)
-        return self._march.equilibrium.capture() if outcome.converged else None
+        return unknown, conditions
