@@ -186,6 +186,11 @@ class Scene(OwnCode):
             self.set_scalar(name, value)
         self.natural = tuple(name for name in self.body.natural if name not in scalars)
 
+    def exchange(self, potentials: Mapping[str, Discrete]) -> None:
+        """Take other potentials with own code of the same effects; a state is to be set then."""
+        self._forget()
+        self.discrete |= potentials
+
     # --- state ---------------------------------------------------------------------------------
 
     @property

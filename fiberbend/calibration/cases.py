@@ -17,7 +17,7 @@ PRESSED = (0.3, 0.6)
 """Of the pressure there: states that are kept straight, where pressure comes without curvature.
 Further on, turns 6 mm apart let the rubber between them wrinkle."""
 _TURN = 0.25
-"""Greatest step of the cell, of the way."""
+"""Greatest step of the way, bent."""
 
 
 def turns_of(case: Case) -> Turns:
@@ -50,8 +50,9 @@ def straight_cell(case: Case, reach: Reach, pressure: float) -> Case:
 
 def bent_section(case: Case, reach: Reach, angles: tuple[float, ...]) -> Case:
     """The section at angles of its cell, rad, in their order; its winding has its numbers."""
-    output = _asked(at_angles=angles)
-    return _small(case, "section", _length(case, reach), (inflate(angle=angles[-1]),), output)
+    end, output = angles[-1], _asked(at_angles=angles)
+    loads = (inflate(angle=end),)
+    return _small(case, "section", _length(case, reach), loads, output, _TURN * end)
 
 
 def straight_section(case: Case, reach: Reach, pressure: float) -> Case:

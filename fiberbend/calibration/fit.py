@@ -28,11 +28,15 @@ _START = 8.0
 """K0 times pitch over the wall's shear modulus: 6 to 10 on the geometries of
 docs/evidence/calibration.md."""
 _QUADRATIC = 4.0
+_BEGIN = (0.0, 1.0, 0.0)
+"""With a1 = 1: −0.1 to 2 there."""
 _STEP = 1e-3
-"""Difference by which a slope is taken; residuals are good to 1e-7."""
+"""Difference by which a slope is taken; its square, which one tangent misses, is lost."""
 _ITERATIONS = 12
 _STILL = 2e-3
 """Change of the numbers, relative, that moves no pressure by 0.01 %."""
+_NEAR = 0.1
+"""Change of the numbers across which slopes serve again: they change by a few percent."""
 _DAMPING = 1e-6
 _OTHER = 0.1
 """Weight of states of the other kind than a case asks for. Three numbers give both kinds to 0.1 %
@@ -110,7 +114,7 @@ def fit(case: Case, reach: Reach, cell: CellStates, began: float) -> Calibration
         CalibrationError: the section comes to fewer states than the cell.
     """
     model = _Sections(case, reach, cell)
-    numbers = model.rounded(least_squares(model.residual, np.zeros(3), model.slopes))
+    numbers = model.rounded(least_squares(model.residual, np.array(_BEGIN), model.slopes))
     bent_left, straight_left = (
         round(float(100 * np.max(np.abs(part), initial=0.0)), 4) for part in model.parts(numbers)
     )
@@ -142,10 +146,11 @@ def least_squares(
         x: the start, (n,).
         slopes_at: its derivatives at the point where it was taken last, (m, n).
     """
-    value, damping = residual(x), _DAMPING
+    value, damping, moved = residual(x), _DAMPING, np.inf
     for _ in range(_ITERATIONS):
-        slopes = slopes_at(x)
-        square = slopes.T @ slopes
+        if moved > _NEAR:
+            slopes = slopes_at(x)
+            square = slopes.T @ slopes
         while True:
             scale = damping * np.diag(square).max() * np.eye(len(x))
             step = np.linalg.solve(square + scale, -slopes.T @ value)
@@ -157,7 +162,8 @@ def least_squares(
         if trial @ trial < value @ value:
             x, value = x + step, trial
         damping /= 3
-        if np.abs(step).max() < _STILL:
+        moved = float(np.abs(step).max())
+        if moved < _STILL:
             break
     return x
 
@@ -170,7 +176,7 @@ class _Sections:
         modulus = convert.site(case).materials["wall"].initial_shear_modulus
         self._start = _START * modulus / turns.pitch
         self._kept = case.straight
-        begin = self.bulging(np.zeros(3))
+        begin = self.bulging(np.array(_BEGIN))
         wound = self._wound(case, begin)
         self._windings = [e for e in wound.effects if e.turns() is not None]
         angles = tuple(r.angle for r in cell.bent)
@@ -219,7 +225,7 @@ class _Sections:
             values = np.empty((3, len(readings)))
             for index, (state, cell) in enumerate(zip(states, readings, strict=True)):
                 now = _difference(small.read(state), cell)
-                small.wind(here)
+                small.scene.exchange(here)
                 for number, other in enumerate(small.near(state, others)):
                     values[number, index] = (_difference(small.read(other), cell) - now) / _STEP
             found.append(values)
@@ -236,7 +242,7 @@ class _Sections:
     def parts(self, numbers: Bulging) -> tuple[Floats, Floats]:
         """Relative differences between section and cell: of states bent, and kept straight."""
         found: list[Floats] = []
-        self._parts[0][0].wind(self._potentials(numbers))
+        self._parts[0][0].scene.exchange(self._potentials(numbers))
         for small, states, readings in self._parts:
             values: list[float] = []
             for index, cell in enumerate(readings):

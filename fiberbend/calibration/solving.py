@@ -116,12 +116,6 @@ class Small:
         found = {term.key: term.discrete(self.scene.body) for term in built.terms}
         return {key: potential for key, potential in found.items() if potential is not None}
 
-    def wind(self, potentials: Mapping[str, Discrete]) -> None:
-        """Give the windings of the scene other numbers."""
-        self.scene.discrete.update(potentials)
-        # away from the present state, which the scene would take as evaluated
-        self.scene.set(np.zeros_like(self.scene.w))
-
     def again(self, state: State) -> State | None:
         """The state at the same angle, or kept straight at the same pressure; None: none found."""
         unknown, conditions = self._back(state)
@@ -141,7 +135,7 @@ class Small:
         newton.assemble()
         system = newton.factorise(unknown, conditions)
         for potentials in others:
-            self.wind(potentials)
+            scene.exchange(potentials)
             self._back(state)
             forces, _ = scene.residual()
             left = np.array([condition.value() for condition in conditions])
