@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from analytic.bending import Hemicircle
 from analytic.stress import Floats
@@ -106,6 +105,8 @@ def through_rows(
         key: the column of the arguments.
         value: the column of the values.
     """
+    from scipy.interpolate import PchipInterpolator
+
     pairs = {row[key]: row[value] for row in rows if row.get(value) is not None}
     at = np.array(sorted(pairs))
     if len(at) < 2:
@@ -115,6 +116,8 @@ def through_rows(
 
 
 def _through_curve(curve: Curve) -> Callable[[Floats], Floats]:
+    from scipy.interpolate import CubicSpline
+
     order = np.argsort(curve.angle)
     low, high = np.degrees(curve.angle[order[[0, -1]]])
     spline = CubicSpline(curve.angle[order], 1e3 * curve.pressure[order])
@@ -131,6 +134,8 @@ def _closed(closed: Hemicircle) -> Callable[[Floats], Floats]:
 
 
 def _straight_force(straight: StraightSection, lever: float) -> Callable[[Floats], Floats]:
+    from scipy.interpolate import PchipInterpolator
+
     moment = PchipInterpolator(straight.pressure, straight.moment, extrapolate=False)
     return lambda kpa: np.asarray(moment(1e-3 * kpa) / lever)
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from analytic.spline import through
 from fem.march.records import MODES, State
 from fem.results.measures import fiber_forces
 from fem.results.volume import VolumeProbe
@@ -18,8 +19,6 @@ from fiberbend.models.model import Gauge
 
 Floats = npt.NDArray[np.float64]
 
-DEGREE = 3
-"""Of the spline through the steps."""
 UNCERTAINTIES, LEAST = 2.0, 2e-5
 """Unexplained energy: more than so many uncertainties, and than this part of the greatest."""
 
@@ -215,14 +214,11 @@ def _along(value: Floats, conjugate: Floats) -> Floats:
 
 def _parts(value: Floats, conjugate: Floats) -> Floats:
     """∫ q dQ between n states of one ramp by a spline through them, N mm, (n - 1,)."""
-    from scipy.interpolate import make_interp_spline
-
     parameter = _along(value, conjugate)
-    degree = min(DEGREE, len(value) - 1)
-    q = make_interp_spline(parameter, value, degree)
-    v = make_interp_spline(parameter, conjugate, degree)
     points, weights = np.polynomial.legendre.leggauss(6)
-    low, high = parameter[:-1, None], parameter[1:, None]
-    t = (low + high) / 2 + (high - low) / 2 * points
-    parts: Floats = np.sum((high - low) / 2 * weights * q(t) * v(t, 1), axis=1)
-    return parts
+    width = np.diff(parameter)
+    part = (1 + points) / 2
+    q, _ = through(parameter, value, part)
+    _, rate = through(parameter, conjugate, part)
+    found: Floats = np.sum(width[:, None] / 2 * weights * q * rate, axis=1)
+    return found
