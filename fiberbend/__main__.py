@@ -20,7 +20,7 @@ def entry() -> NoReturn:
     # of them, Python's default, a run of a section takes 3 % longer
     gc.set_threshold(NEW_OBJECTS)
     # Python looks for cycles among all that is left when it ends, which the system frees anyway:
-    # an eighth of a run of a section. Registered first, this comes after MPI and PETSc have ended
+    # an eighth of a run of a section. Registered first, this comes last
     atexit.register(gc.freeze)
     # pydantic would look through every installed package for plugins, which nothing here uses
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")

@@ -11,9 +11,9 @@ from fiberbend.case.case import Case
 from fiberbend.models.choice import meshed
 from fiberbend.models.uniform import twists
 
-_STEPS = (5, 4)
+_STEPS = (5, 2)
 """Load steps of a cell, bent and kept straight."""
-_FIT_S = 2.0
+_FIT_S = 1.0
 """Seconds for sections and fit."""
 
 

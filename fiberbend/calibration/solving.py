@@ -58,6 +58,10 @@ class Small:
         like: the same section with the same winding under another load, whose scene it shares.
     """
 
+    scene: Scene
+    _newton: Newton
+    _march: March
+
     def __init__(self, case: Case, like: Small | None = None) -> None:
         model = meshed(case)
         self._case, mesh = case, model.mesh(case) if like is None else like.scene.domain.data

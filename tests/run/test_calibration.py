@@ -78,7 +78,45 @@ def test_least_squares_find_a_known_minimum() -> None:
         lifted = np.array([np.exp(x[0]) - np.exp(target[0]), x[1] * x[2] - target[1] * target[2]])
         return np.r_[lifted, x - target, 0.1 * (x[0] - target[0])]
 
-    assert fit.least_squares(residual, np.zeros(3)) == pytest.approx(target, abs=1e-6)
+    def slopes(x: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+        columns = [(residual(x + h) - residual(x - h)) / 2e-6 for h in 1e-6 * np.eye(3)]
+        return np.array(columns).T
+
+    found = fit.least_squares(residual, np.zeros(3), slopes)
+    assert found == pytest.approx(target, abs=1e-6)
+
+
+def test_a_shared_scene_gives_the_states_of_one_of_its_own() -> None:
+    """Kept straight after it was bent, and bent again after that."""
+    case, reach = parse_case(wound()), Reach.of(0)
+    wound_case = calibrating.with_bulging(case, fit.Bulging(0.8, 0.6, 4.5))
+    bent = Small(cases.bent_section(wound_case, reach, (1.0, 2.0)))
+    first = bent.march()[0]
+    kept_case = cases.straight_section(wound_case, reach, bent.read(first[-1]).pressure)
+    shared, alone = Small(kept_case, bent), Small(kept_case)
+    pairs = zip(shared.march()[0], alone.march()[0], strict=True)
+    moments = [(shared.read(one).moment, alone.read(other).moment) for one, other in pairs]
+    assert len(moments) == len(cases.PRESSED)
+    for one, other in moments:
+        assert one == pytest.approx(other, rel=1e-7)
+    again = bent.again(first[0])
+    assert again is not None
+    assert bent.read(again).pressure == pytest.approx(bent.read(first[0]).pressure, rel=1e-7)
+
+
+def test_a_step_with_one_tangent_gives_a_neighbour() -> None:
+    """As Newton's method finds it, but for the square of what is changed."""
+    case, reach = parse_case(wound()), Reach.of(0)
+    numbers, other = fit.Bulging(0.8, 0.6, 4.5), fit.Bulging(0.8008, 0.601, 4.51)
+    small = Small(cases.bent_section(calibrating.with_bulging(case, numbers), reach, (1.0, 2.0)))
+    state = small.march()[0][0]
+    (winding,) = (effect for effect in case.effects if effect.turns() is not None)
+    changed = small.windings(winding.with_bulging(other))
+    (near,) = small.near(state, [changed])
+    exact = small.again(state)
+    assert exact is not None
+    moved = small.read(exact).pressure - small.read(state).pressure
+    assert small.read(near).pressure - small.read(state).pressure == pytest.approx(moved, rel=1e-2)
 
 
 def test_numbers_that_made_a_section_are_found_again(monkeypatch: pytest.MonkeyPatch) -> None:
