@@ -119,6 +119,50 @@ def field_dofs(space: Any, index: int) -> npt.NDArray[np.int32]:
     return np.asarray(parent, dtype=np.int32)[rows]
 
 
+def shared_space(
+    space: Any, rows: npt.NDArray[np.int32], owned: int, ghosts: Any, owners: Any
+) -> Any:
+    """The same elements with other dofs; bridges DofMap, IndexMap and adjacency lists.
+
+    Args:
+        space: a space with a block size of 1.
+        rows: local dofs of every local cell, (cells, dofs).
+        owned: number of dofs that this rank owns.
+        ghosts: global numbers of those that other ranks own, (ghosts,).
+        owners: these ranks, (ghosts,).
+    """
+    ghosts, owners = np.asarray(ghosts, dtype=np.int64), np.asarray(owners, dtype=np.int32)
+    index_map = dolfinx.cpp.common.IndexMap(space.mesh.comm, owned, ghosts, owners)
+    adjacency = dolfinx.cpp.graph.AdjacencyList_int32(np.ascontiguousarray(rows, dtype=np.int32))
+    layout = space._cpp_object.dofmap.dof_layout
+    dofmap = dolfinx.cpp.fem.DofMap(layout, index_map, 1, adjacency, 1)
+    made = dolfinx.cpp.fem.FunctionSpace(space._cpp_object.mesh, space.element, dofmap)
+    return dfem.FunctionSpace(space.mesh, space.ufl_element(), made)
+
+
+def owned_dofs(space: Any) -> int:
+    """Number of dofs that this rank owns; bridges index maps."""
+    return int(space.dofmap.index_map.size_local)
+
+
+def ghost_owners(space: Any) -> npt.NDArray[np.int32]:
+    """Ranks that own the dofs of `ghost_numbers`, (ghosts,); bridges index maps."""
+    return np.asarray(space.dofmap.index_map.owners, dtype=np.int32)
+
+
+def from_owners(space: Any, numbers: npt.NDArray[np.integer]) -> npt.NDArray[np.int64]:
+    """What other ranks say of the dofs that they own, (ghosts,); bridges scatters.
+
+    Args:
+        space: the space.
+        numbers: whole numbers below 2⁵³, one for each dof that this rank owns.
+    """
+    carrier = dfem.Function(space)
+    carrier.x.array[: len(numbers)] = numbers
+    carrier.x.scatter_forward()
+    return np.asarray(carrier.x.array[len(numbers) :], dtype=np.int64)
+
+
 def cell_field(mesh: Any, values: npt.NDArray[np.float64]) -> Any:
     """A piecewise constant field of one value a local cell; bridges FunctionSpace, dofmaps."""
     space = _jit(mesh.comm, lambda _: dfem.FunctionSpace(mesh, ("DG", 0)))

@@ -14,6 +14,7 @@ from mpi4py import MPI
 
 from fem import compat
 from fem.kinematics.domain import Domain
+from fem.kinematics.regions import continuous_by_region
 
 Floats = npt.NDArray[np.float64]
 Dofs = npt.NDArray[np.int32]
@@ -25,8 +26,8 @@ def _displacement(cell: str) -> Any:
 
 
 def _pressure(cell: str) -> Any:
-    """P1 discontinuous on bricks (Q2–P1disc), continuous on tetrahedra (Taylor–Hood)."""
-    family = "Lagrange" if cell == "tetrahedron" else "DPC"
+    """P1: an element's own on bricks (Q2–P1disc), by vertex and region on tetrahedra."""
+    family = "Discontinuous Lagrange" if cell == "tetrahedron" else "DPC"
     return compat.scalar_element(family, cell, 1)
 
 
@@ -98,6 +99,9 @@ class Kinematics:
         self.space = compat.mixed_space(
             domain.mesh, [element for element, count in elements.values() for _ in range(count)]
         )
+        if cell == "tetrahedron" and self.pressure_field is not None:
+            first = sum(counts[name] for name in self.names[: self.names.index(PRESSURE)])
+            self.space = continuous_by_region(domain, self.space, first)
         self.w = dfem.Function(self.space)
         self._scratch = dfem.Function(self.space)
         self._slices: dict[str, range] = {}
