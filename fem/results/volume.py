@@ -38,10 +38,10 @@ class VolumeProbe:
 
     An equilibrium has ∫ (J − 1 − p/κ) φ dX = 0 for every function φ of the pressure, not J = 1 at
     every point. On bricks (Q2–P1 discontinuous) φ may be 1 in one element and 0 elsewhere, so that
-    each keeps its volume; on tetrahedra (Taylor–Hood, P2–P1) φ is continuous, so that volume is
-    kept by all elements together, weighted about every vertex, and by a single one only as far as
-    the mesh is fine. Both in Boffi, Brezzi, Fortin 2013, Mixed Finite Element Methods and
-    Applications, chapter 8.
+    each keeps its volume; on tetrahedra (Taylor–Hood, P2–P1) φ is continuous in each region, so
+    that volume is kept by all elements of it together, weighted about every vertex, and by a single
+    one only as far as the mesh is fine. Both in Boffi, Brezzi, Fortin 2013, Mixed Finite Element
+    Methods and Applications, chapter 8.
 
     Args:
         scene: the scene.

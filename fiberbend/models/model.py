@@ -330,9 +330,9 @@ def count(counts: Counts, components: int, pressures: int) -> int:
     Args:
         counts: of quadrilaterals or hexahedra, or of tetrahedra.
         components: of the displacement.
-        pressures: an element's own; 0: one at each vertex, as tetrahedra have it.
+        pressures: an element's own; 0: those of tetrahedra, which share them in a region.
     """
-    constraints = pressures * counts.cells if pressures else counts.vertices
+    constraints = pressures * counts.cells if pressures else counts.pressures
     return components * counts.nodes + constraints
 
 

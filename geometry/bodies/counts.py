@@ -25,11 +25,13 @@ class Counts:
         cells: elements.
         nodes: of the displacement, all of the elements' own.
         vertices: corners of elements.
+        pressures: of tetrahedra, their vertices by region: one on a face between two counts twice.
     """
 
     cells: int
     nodes: int
     vertices: int
+    pressures: int = 0
 
 
 def of_layout(layout: Layout) -> Counts:
@@ -96,7 +98,8 @@ def body_counts(actuator: ShapedActuator, size: MeshSize, strips: Strips | None 
     layout, stations = section_layout(actuator, size, strips), body_stations(actuator, size, strips)
     if size.element == "tetrahedron":
         mesh = Tetrahedra(layout, stations, size.axial)
-        return Counts(mesh.cells, mesh.vertices + mesh.edges, mesh.vertices)
+        nodes = mesh.vertices + mesh.edges
+        return Counts(mesh.cells, nodes, mesh.vertices, mesh.pressures)
     return of_extrusion(of_layout(layout.without_fill()), of_layout(layout), stations)
 
 

@@ -9,9 +9,10 @@ the size: long tetrahedra in a thin wall are more than the hexahedra there would
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import math
-from collections import Counter
+from collections import Counter, defaultdict
 from typing import NamedTuple
 
 from geometry.bodies.stations import Segment, Stations
@@ -62,6 +63,28 @@ class Face(NamedTuple):
         return 2 * self.inside() + 2 * (self.u.edges + self.v.edges) - 2
 
 
+@dataclasses.dataclass
+class _Parts:
+    """Corners, curves and faces of blocks, each once, and vertices inside the blocks."""
+
+    points: set[tuple[int, int]] = dataclasses.field(default_factory=set)
+    curves: dict[tuple[int, ...], Line] = dataclasses.field(default_factory=dict)
+    faces: dict[tuple[int, ...], Face] = dataclasses.field(default_factory=dict)
+    inner: float = 0.0
+
+    def add(self, other: _Parts) -> None:
+        """Take another's too."""
+        self.points |= other.points
+        self.curves |= other.curves
+        self.faces |= other.faces
+        self.inner += other.inner
+
+    def vertices(self) -> float:
+        """All of them."""
+        on_curves = len(self.points) + sum(line.edges - 1 for line in self.curves.values())
+        return on_curves + sum(face.inside() for face in self.faces.values()) + self.inner
+
+
 class Tetrahedra:
     """Numbers of a mesh of order 1.
 
@@ -74,15 +97,15 @@ class Tetrahedra:
         vertices: corners of tetrahedra.
         edges: their edges.
         cells: tetrahedra.
+        pressures: vertices by region: one on a face between two regions counts twice.
     """
 
     def __init__(self, layout: Layout, stations: Stations, size: float) -> None:
         self._layout, self._size = layout, size
         faces: Counter[tuple[int, ...]] = Counter()
-        known: dict[tuple[int, ...], Face] = {}
-        points: set[tuple[int, int]] = set()
-        curves: dict[tuple[int, ...], Line] = {}
-        cells = inner = 0.0
+        whole = _Parts()
+        regions: defaultdict[str, _Parts] = defaultdict(_Parts)
+        cells = 0.0
         for (i, segment), (number, block) in itertools.product(
             enumerate(stations.segments), enumerate(layout.blocks)
         ):
@@ -91,28 +114,29 @@ class Tetrahedra:
             sides, axial = self._sides(block), self._axial(segment)
             end, lateral = _end(sides), [Face(side, axial) for side in sides]
             lines = self._lines(end)
-            inner += lines * axial.edges
             around = _AROUND + sum(face.inside() for face in lateral) / axial.edges
             ends = 2 * (end.inside() + sum(side.edges - 1 for side in sides))
             cells += _TO_PRISM * axial.edges * (around - 2) + _TO_END * ends
             cells += _TO_INNER * lines * axial.edges
             pairs = [tuple(sorted(block.corners[j] for j in pair)) for pair in SIDES]
-            for key, face in (
-                *(((number, i + j), end) for j in range(2)),
-                *(((*pair, i), face) for pair, face in zip(pairs, lateral, strict=True)),
-            ):
-                faces[key] += 1
-                known[key] = face
+            part = _Parts(inner=lines * axial.edges)
+            part.faces |= {(number, i + j): end for j in range(2)}
+            part.faces |= {(*pair, i): face for pair, face in zip(pairs, lateral, strict=True)}
+            faces.update(part.faces.keys())
             for j in range(2):
-                points |= {(corner, i + j) for corner in block.corners}
-                curves |= {(*pair, i + j): side for pair, side in zip(pairs, sides, strict=True)}
-            curves |= {(corner, i): axial for corner in block.corners}
-        on_curves = len(points) + sum(line.edges - 1 for line in curves.values())
-        vertices = on_curves + sum(face.inside() for face in known.values()) + inner
+                part.points |= {(corner, i + j) for corner in block.corners}
+                part.curves |= {
+                    (*pair, i + j): side for pair, side in zip(pairs, sides, strict=True)
+                }
+            part.curves |= {(corner, i): axial for corner in block.corners}
+            whole.add(part)
+            regions[block.region].add(part)
+        vertices = whole.vertices()
         # V − E + F − T is 1 or so, and 2 F − 4 T the number of triangles on the boundary
-        outer = sum(known[key].triangles() for key, uses in faces.items() if uses == 1)
+        outer = sum(whole.faces[key].triangles() for key, uses in faces.items() if uses == 1)
         self.vertices, self.cells = round(vertices), round(cells)
         self.edges = round(vertices + cells + outer / 2)
+        self.pressures = round(sum(part.vertices() for part in regions.values()))
 
     def _lines(self, end: Face) -> float:
         """Lines of vertices inside a block."""

@@ -98,6 +98,51 @@ class Tube:
         return self.radial_stress(R) - across + (across + around + along) / 3
 
 
+@dataclasses.dataclass(frozen=True)
+class LayeredTube:
+    """A thick tube in another: the outer one presses on the inner one, and the mean stress jumps.
+
+    Attributes:
+        within: the inner tube.
+        around: the outer tube.
+    """
+
+    within: Tube
+    around: Tube
+
+    @classmethod
+    def inflated(
+        cls,
+        laws: tuple[PrincipalStresses, PrincipalStresses],
+        radii: tuple[float, float, float],
+        deformed_inner: float,
+    ) -> LayeredTube:
+        """In plane strain.
+
+        Args:
+            laws: of the inner and of the outer rubber.
+            radii: at rest, from the cavity outwards, mm.
+            deformed_inner: radius of the cavity, mm.
+        """
+        bare = Tube(laws[0], radii[0], radii[1], deformed_inner)
+        around = Tube(laws[1], radii[1], radii[2], float(bare.radius(radii[1])))
+        return cls(dataclasses.replace(bare, outside=around.pressure), around)
+
+    @property
+    def pressure(self) -> float:
+        """Pressure inside, MPa."""
+        return self.within.pressure
+
+    def displacement(self, X: Floats) -> Floats:
+        """Displacement at reference points (n, 3)."""
+        return self.within.displacement(X)
+
+    def multiplier(self, X: Floats) -> Floats:
+        """Mean stress p at reference points (n, 3), on one side of the face between."""
+        inner = np.hypot(X[:, 0], X[:, 1]) < self.around.inner
+        return np.where(inner, self.within.multiplier(X), self.around.multiplier(X))
+
+
 def closed_tube(law: PrincipalStresses, inner: float, outer: float, deformed_inner: float) -> Tube:
     """A tube whose closed ends are free: λz follows from the thrust."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 
 import numpy as np
 from mpi4py import MPI
@@ -11,15 +12,17 @@ from fem.kinematics.domain import Domain
 from fem.march.march import Ramp
 from fem.results.volume import VolumeProbe
 from geometry.bodies.extrude import hexahedral_body
+from geometry.mesh.tets import to_tetrahedra
 from geometry.sections.size import MeshSize
 from tests.fem.parts import SHORT, bender, set_positions
 
 ANGLE = np.deg2rad(4.0)
 
 
-def measure(comm: MPI.Comm) -> dict[str, float]:
+def measure(comm: MPI.Comm, cell: str = "hexahedron") -> dict[str, float]:
     """Bend the short actuator to an angle and by a pressure."""
-    domain = Domain(hexahedral_body(SHORT, MeshSize(axial=6, section=1, half=True)), comm)
+    mesh = hexahedral_body(SHORT, MeshSize(axial=6, section=1, half=True))
+    domain = Domain(to_tetrahedra(mesh) if cell == "tetrahedron" else mesh, comm)
     body = bender(domain=domain)
     report = body.run([Ramp("pressure", 0.03, largest=0.01, at=(ANGLE,))])
     assert report.status == "converged", report.reason
@@ -53,6 +56,6 @@ def measure(comm: MPI.Comm) -> dict[str, float]:
 
 
 if __name__ == "__main__":
-    found = measure(MPI.COMM_WORLD)
+    found = measure(MPI.COMM_WORLD, *sys.argv[1:])
     if MPI.COMM_WORLD.rank == 0:
         print(json.dumps(found))

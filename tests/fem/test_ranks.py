@@ -13,12 +13,13 @@ from tests.fem.spread import measure
 
 
 @pytest.mark.mpi
-def test_two_ranks_equal_one(mpirun: MpiRun) -> None:
+@pytest.mark.parametrize(("cell", "ranks"), [("hexahedron", 2), ("tetrahedron", 3)])
+def test_ranks_equal_one(cell: str, ranks: int, mpirun: MpiRun) -> None:
     # both converge to 1e-8 of the forces by themselves; what remains is the order of sums
-    run = mpirun(2, ["-m", "tests.fem.spread"])
+    run = mpirun(ranks, ["-m", "tests.fem.spread", cell])
     assert run.returncode == 0, run.stderr
     found = json.loads(run.stdout.splitlines()[-1])
-    serial = measure(MPI.COMM_SELF)
+    serial = measure(MPI.COMM_SELF, cell)
     assert found.keys() == serial.keys()
     for name, value in serial.items():
         assert found[name] == pytest.approx(value, rel=1e-8), name

@@ -70,6 +70,7 @@ class Ladder:
         levels: refinements by cell type, coarse to fine.
         reference: numbers that are known, by name, and the relative error that the finest mesh
             may have: some ten times what it has, a hundredth of what the coarsest has.
+        rubbers: numbers of Yeoh's law by region.
         exact: the exact solution.
     """
 
@@ -77,6 +78,7 @@ class Ladder:
     text: ClassVar[str]
     levels: ClassVar[dict[str, tuple[int, ...]]]
     reference: ClassVar[dict[str, tuple[float, float]]]
+    rubbers: ClassVar[dict[str, dict[str, float]]] = {"solid": YEOH}
     exact: Exact
 
     def mesh(self, n: int) -> MeshData:
@@ -99,7 +101,7 @@ class Ladder:
         """Solve on one mesh."""
         mesh = self.mesh(n)
         domain = Domain(to_tetrahedra(mesh) if cell == "tetrahedron" else mesh, MPI.COMM_SELF)
-        rubber: list[Effect] = [Elastic("yeoh", {"solid": YEOH}), Incompressible()]
+        rubber: list[Effect] = [Elastic("yeoh", self.rubbers), Incompressible()]
         scene = Scene(domain, [*rubber, *self.effects(domain)])
         start_from(scene, self.exact)
         for surface, components in self.held().items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from typing import ClassVar
 
@@ -17,7 +18,7 @@ from fem.solver.newton import Newton, Outcome
 from geometry.mesh.data import MeshData
 from materials.material import Material
 from tests.exact.solids import box, cylinder, tube_sector
-from tests.exact.solutions import Flexure, Torsion, Tube, closed_tube, wound_tube
+from tests.exact.solutions import Flexure, LayeredTube, Torsion, Tube, closed_tube, wound_tube
 from tests.verify.hoops import hoops
 from tests.verify.ladder import (
     YEOH,
@@ -29,6 +30,8 @@ from tests.verify.ladder import (
 )
 
 LAW = Material("yeoh", YEOH).principal
+SOFT = {"c1": 0.0011, "c2": 0.0002}
+SOFT_LAW = Material("yeoh", SOFT).principal
 ORIGIN = np.zeros(3)
 HOOPS = 1e6
 """EA of hoops that all but cannot stretch, N; they move p by 2e-6."""
@@ -118,6 +121,36 @@ class WoundTubeLadder(TubeLadder):
         return outcome, {"p [MPa]": pressure}
 
 
+class LayeredTubeLadder(TubeLadder):
+    """The tube with an outer half a hundred times softer than the inner one."""
+
+    title = "Thick tube of two rubbers, plane strain"
+    text = (
+        "A = 8, B = 10, a/A = 1.25; beyond R = 9 the rubber is a hundred times softer. The mean "
+        "stress p jumps there; n = 1 has one element through each rubber."
+    )
+    reference: ClassVar = {"p [MPa]": (0.01539523, 3e-6)}
+    rubbers: ClassVar = {"inner": YEOH, "outer": SOFT}
+    exact = LayeredTube.inflated((LAW, SOFT_LAW), (8.0, 9.0, 10.0), 10.0)
+
+    def mesh(self, n: int) -> MeshData:
+        """n elements through each rubber, 4 n around the quarter."""
+        mesh = tube_sector(8.0, 10.0, math.pi / 2, self.length, (2 * n, 4 * n, n))
+        middle = mesh.nodes[mesh.cells].mean(axis=1)
+        beyond = np.hypot(middle[:, 0], middle[:, 1]) > 9.0
+        return dataclasses.replace(
+            mesh, regions={"inner": 0, "outer": 1}, cell_region=beyond.astype(np.int64)
+        )
+
+    def find(self, scene: Scene, newton: Newton) -> tuple[Outcome, dict[str, float]]:
+        """The pressure that belongs to the volume."""
+        ratio = (self.exact.within.deformed_inner / self.exact.within.inner) ** 2
+        condition = VolumeRatio(scene, volume_at_rest(scene), ratio)
+        scene.set_scalar("pressure", self.exact.pressure)
+        outcome = newton.solve(scene.w.copy(), ["pressure"], [condition])
+        return outcome, {"p [MPa]": scene.scalar("pressure")}
+
+
 class FlexureLadder(Ladder):
     """A block 2 mm thick and 62.83 mm long, bent until its ends meet."""
 
@@ -180,6 +213,7 @@ class TorsionLadder(Ladder):
 LADDERS: tuple[type[Ladder], ...] = (
     TubeLadder,
     ClosedTubeLadder,
+    LayeredTubeLadder,
     FlexureLadder,
     TorsionLadder,
     WoundTubeLadder,
