@@ -329,7 +329,7 @@ HARD: tuple[Hard, ...] = (
         {"mesh.element": "tetrahedron"},
         models=("body",),
         absent="section, cell: tetrahedra are for a body",
-        beside={"body": (0.9, 1.1)},
+        beside={"body": (0.97, 1.04)},
     ),
     Hard(
         "whole",

@@ -13,9 +13,10 @@ from fem.solver.layers import InaccurateError, Layers
 from fiberbend import run
 from fiberbend.columns import ANGLE, ITERATIONS, PRESSURE
 from fiberbend.effects.effect import Effect
+from fiberbend.models.choice import choose_model
 from fiberbend.models.result import RunResult
 from fiberbend.plan import doubts as known
-from fiberbend.plan.doubts import doubts
+from fiberbend.plan.doubts import doubts, errors
 from fiberbend.plan.memory import Room
 from fiberbend.plan.plan import make_plan
 from fiberbend.reader.reader import parse_case, read_case
@@ -42,7 +43,6 @@ BEFORE: dict[str, tuple[list[str], str]] = {
         "winding: rubber bulges between turns 9 mm apart, how much too low that makes the pressure "
         "is not known beyond 6 mm",
     ),
-    "tetrahedra": (["mesh.element=tetrahedron"], "tetrahedra are too stiff beside hexahedra"),
     "closed form": (
         ["model=analytic", "materials.wall={name: elastosil-m4601, bulk: 100 MPa}"],
         "model analytic leaves out materials.wall.bulk: in closed forms every material is",
@@ -181,3 +181,16 @@ def test_a_body_left_to_mumps_midway_ends_the_same_and_says_so(
     for mine, theirs in zip(found.rows, small_run.rows, strict=True):
         for key in (ANGLE, PRESSURE, ITERATIONS):
             assert mine[key] == pytest.approx(theirs[key], rel=1e-8, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("free_bending_smeared", "tetrahedra: P up to 1.3 % above"),
+        ("blocked_tip", "tetrahedra: tip force 3 to 4 % below"),
+    ],
+)
+def test_what_tetrahedra_cost_is_an_expected_error_and_no_warning(name: str, text: str) -> None:
+    case = read_case(ROOT / "cases" / f"{name}.yaml", ["mesh.element=tetrahedron"])
+    assert not any("tetrahedra" in line for line in doubts(case))
+    assert sum(line.startswith(text) for line in errors(case, choose_model(case)[0])) == 1
