@@ -35,7 +35,9 @@ def run(result: Result) -> str:
     number = len(rows) - 1
     steps = blocks.folded(
         f"{number} load step{'' if number == 1 else 's'}",
-        blocks.table([*map(axis_label, names)], [[row.get(name) for name in names] for row in rows]),
+        blocks.table(
+            [*map(axis_label, names)], [[row.get(name) for name in names] for row in rows]
+        ),
         blocks.words(f"All {len({key for row in rows for key in row})} columns: .frame"),
     )
     return blocks.block(title, *ended, *result.answer.shown(picture), steps, kept)

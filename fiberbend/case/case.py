@@ -345,7 +345,9 @@ class Case(Spec):
         rows = [(name, blocks.setting(value)) for name, value in said.items() if name != "effects"]
         at = 1 + [name for name, _ in rows].index("materials")
         rows[at:at] = [
-            (name, blocks.setting(value)) for effect in said["effects"] for name, value in effect.items()
+            (name, blocks.setting(value))
+            for effect in said["effects"]
+            for name, value in effect.items()
         ]
         folded = [row for row in rows if row[0] in seldom]
         return blocks.block(

@@ -7,7 +7,6 @@ trusted, and a page that shows one, take style sheets out.
 
 from __future__ import annotations
 
-import html
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -37,6 +36,9 @@ def block(title: str, *parts: str) -> str:
 
 def escaped(text: object) -> str:
     """A text that is not HTML, whatever signs are in it."""
+    # with its table of names it would take a millisecond of every start
+    import html
+
     return html.escape(str(text))
 
 

@@ -63,7 +63,9 @@ class Plan:
             for number, sentence in enumerate(sentences)
         ]
         refused = [blocks.warning(f"refused: {self.refusal}")] if self.refusal else []
-        return blocks.block(f"Plan of a run of the {self.model} model", *refused, blocks.pairs(pairs))
+        return blocks.block(
+            f"Plan of a run of the {self.model} model", *refused, blocks.pairs(pairs)
+        )
 
     def lines(self) -> list[str]:
         """The plan as lines of text, none longer than `WIDTH`."""

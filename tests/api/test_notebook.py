@@ -41,7 +41,7 @@ def result() -> fiberbend.Result:
     return fiberbend.run(case())
 
 
-# --- what is shown ---------------------------------------------------------------------------------
+# --- what is shown --------------------------------------------------------------------------------
 
 
 class _Tags(HTMLParser):
@@ -135,7 +135,7 @@ def test_a_table_keeps_its_first_and_last_rows() -> None:
     assert blocks.curve([(0.0, 0.0)], "x", "y") == blocks.curve([(0, 1)] * 9, "x", "y") == ""
 
 
-# --- where it runs ---------------------------------------------------------------------------------
+# --- where it runs --------------------------------------------------------------------------------
 
 
 def test_runs_in_threads_take_turns(result: fiberbend.Result) -> None:
@@ -189,7 +189,7 @@ def test_twenty_runs_take_no_more_memory_and_no_signals() -> None:
     assert not {*found["caught"]} & {1, 13, 15}, "SIGHUP, SIGPIPE, SIGTERM"
 
 
-# --- in a kernel -----------------------------------------------------------------------------------
+# --- in a kernel ----------------------------------------------------------------------------------
 
 CELLS = (
     "import asyncio, json, fiberbend\nfrom fiberbend.notebook.place import Place",

@@ -75,7 +75,9 @@ def test_the_site_builds_with_the_notebook_run_and_without_a_warning(tmp_path: P
         check=False,
     )
     assert built.returncode == 0, built.stdout + built.stderr
-    notebook = (tmp_path / "site" / "_generated" / "first_actuator.html").read_text(encoding="utf-8")
+    notebook = (tmp_path / "site" / "_generated" / "first_actuator.html").read_text(
+        encoding="utf-8"
+    )
     assert "first_actuator_1.png" in notebook, "the notebook draws something"
     front = (tmp_path / "site" / "index.html").read_text(encoding="utf-8")
     assert "actuator.svg" in front
