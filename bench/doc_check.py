@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import importlib
 import importlib.util
+import itertools
 import re
 import shlex
 from pathlib import Path
@@ -87,7 +88,7 @@ class Checker:
             ast.parse((ROOT / words[0]).read_text(encoding="utf-8"))
 
     def _pip(self, words: list[str]) -> None:
-        for option, name in zip(words, words[1:], strict=False):
+        for option, name in itertools.pairwise(words):
             if option == "--constraint" and not (ROOT / name).is_file():
                 raise ValueError(f"no file {name}")
 

@@ -179,6 +179,14 @@ def test_packages_of_others_are_refused(installed: Path, tmp_path: Path) -> None
     code, _, err = called(script, tmp_path, PYTHONPATH=path)
     assert code == 1
     assert err.splitlines()[-1].startswith(f"ImportError: {line}")
+    # installed into the same folder
+    (mine,) = installed.parent.parent.glob("lib/*/site-packages/geometry/__init__.py")
+    text = mine.read_text(encoding="utf-8")
+    mine.write_text("def area(): ...\n", encoding="utf-8")
+    code, _, err = called(version, tmp_path)
+    mine.write_text(text, encoding="utf-8")
+    assert code == 1
+    assert err.startswith("fiberbend: package geometry is that of another program, expected ")
     loaded: list[str | Path] = [installed, "-c", "import materials, fiberbend; fiberbend.run"]
     assert called(loaded, tmp_path, PYTHONPATH=path)[2].splitlines()[-1].startswith("ImportError")
 

@@ -45,7 +45,7 @@ def run(result: Result) -> str:
 
 def sweep(found: Sweep) -> str:
     """A sweep: how its points ended, and its table; of one without a table how many began."""
-    if not found.complete:
+    if not found.complete or not found.rows:
         began = f"{len(found.points)} points begun, no table yet"
         return blocks.block("A sweep", blocks.warning(began), blocks.words(f"In {found.folder}"))
     rows = found.rows

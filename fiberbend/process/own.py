@@ -11,6 +11,8 @@ import sys
 
 NAMES = ("analytic", "fem", "geometry", "machine", "materials")
 """Packages beside fiberbend that belong to it."""
+_MARK = b"Part of fiberbend."
+"""In the docstring of each: another package that was installed into the same folder has it not."""
 
 
 def shadowed() -> str:
@@ -23,11 +25,15 @@ def shadowed() -> str:
     for name in NAMES:
         own, found = os.path.join(root, name, "__init__.py"), _place(name)
         if found is None or not _same(own, found):
-            where = "is not there" if found is None else f"is {found}"
-            return (
-                f"fiberbend: package {name} {where}, expected {own}: fiberbend wants an "
-                "environment of its own, and no folder of that name before it in sys.path"
-            )
+            what = "is not there" if found is None else f"is {found}"
+        elif not _marked(own):
+            what = "is that of another program"
+        else:
+            continue
+        return (
+            f"fiberbend: package {name} {what}, expected {own}: fiberbend wants an "
+            "environment of its own, and no folder of that name before it in sys.path"
+        )
     return ""
 
 
@@ -45,5 +51,13 @@ def _place(name: str) -> str | None:
 def _same(own: str, found: str) -> bool:
     try:
         return own == found or os.path.samefile(own, found)
+    except OSError:
+        return False
+
+
+def _marked(own: str) -> bool:
+    try:
+        with open(own, "rb") as file:
+            return _MARK in file.read()
     except OSError:
         return False

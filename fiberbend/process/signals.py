@@ -64,24 +64,12 @@ def install() -> None:
 
     In a thread nothing is taken: the process belongs to who has started it.
     """
-    keep_from_petsc()
     if threading.current_thread() is not threading.main_thread():
         return
     for number in _SIGNALS:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, _handle)
     sys.unraisablehook = _lost
-
-
-def keep_from_petsc() -> None:
-    """Leave signals as they are when PETSc starts.
-
-    It would take SIGTERM, SIGHUP, SIGPIPE and more, print a page and end the process, also that of
-    a notebook.
-    """
-    options = os.environ.get("PETSC_OPTIONS", "")
-    if "-no_signal_handler" not in options:
-        os.environ["PETSC_OPTIONS"] = f"{options} -no_signal_handler".strip()
 
 
 @contextlib.contextmanager
