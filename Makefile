@@ -36,7 +36,7 @@ browser: tools ## open reports in headless Chromium and use them; part of make t
 	$(BIN)/python -m pytest tests/report/test_browser.py
 
 notebook: tools ## run the notebook in examples/; part of make test
-	$(BIN)/jupyter-execute examples/first_finger.ipynb
+	$(BIN)/jupyter-execute examples/first_actuator.ipynb
 
 verify: setup ## run the slow convergence ladders against exact solutions
 	$(BIN)/python -m pytest -m verify

@@ -1,1 +1,4 @@
-"""Closed-form models: what is known without finite elements."""
+"""Closed-form models: what is known without finite elements.
+
+Part of fiberbend.
+"""

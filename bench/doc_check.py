@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import importlib
 import importlib.util
+import itertools
 import re
 import shlex
 from pathlib import Path
@@ -50,11 +51,14 @@ class Checker:
             if words[1] != "-n" or not words[2].isdigit():
                 raise ValueError(f"{where}: {line}: expected mpirun -n NUMBER COMMAND")
             words = words[3:]
-        program, rest = words[0].removeprefix(".venv/bin/"), words[1:]
+        # of any environment
+        program, rest = re.sub(r"^\S+/bin/", "", words[0]), words[1:]
         known = {
             "fiberbend": self._fiberbend,
             "make": self._make,
             "python": self._python,
+            "python3": self._python,
+            "pip": self._pip,
             "source": self._source,
             "cd": lambda _: None,
             "git": lambda _: None,
@@ -82,6 +86,11 @@ class Checker:
                 raise ValueError(f"no module {words[1]}")
         else:
             ast.parse((ROOT / words[0]).read_text(encoding="utf-8"))
+
+    def _pip(self, words: list[str]) -> None:
+        for option, name in itertools.pairwise(words):
+            if option == "--constraint" and not (ROOT / name).is_file():
+                raise ValueError(f"no file {name}")
 
     def _source(self, words: list[str]) -> None:
         if words != [".venv/bin/activate"]:

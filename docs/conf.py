@@ -27,7 +27,7 @@ extensions = [
 ]
 exclude_patterns = ["_build"]
 html_math_renderer = "pictures"
-myst_enable_extensions = ["deflist", "dollarmath"]
+myst_enable_extensions = ["attrs_inline", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 
 autodoc_member_order = "bysource"

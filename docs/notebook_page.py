@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
-NOTEBOOK = ROOT / "examples" / "first_finger.ipynb"
-PAGE = ROOT / "docs" / "_generated" / "first_finger.md"
+NOTEBOOK = ROOT / "examples" / "first_actuator.ipynb"
+PAGE = ROOT / "docs" / "_generated" / f"{NOTEBOOK.stem}.md"
 SECONDS = 300
 """Longest time of a cell."""
 
@@ -79,9 +79,14 @@ def markdown(cells: Any, folder: Path) -> str:
             data = output.get("data", {})
             if "image/png" in data:
                 pictures += 1
-                name = f"first_finger_{pictures}.png"
+                name = f"{NOTEBOOK.stem}_{pictures}.png"
                 (folder / name).write_bytes(base64.b64decode(data["image/png"]))
-                lines += [f"![result {pictures}]({name})", ""]
+                size = output.metadata.get("image/png", {})
+                wide = f"{{width={size['width']}px}}" if size else ""
+                lines += [f"![result {pictures}]({name}){wide}", ""]
+                continue
+            if "text/html" in data:
+                lines += ["```{raw} html", data["text/html"], "```", ""]
                 continue
             text = output.get("text") or data.get("text/plain")
             if text:

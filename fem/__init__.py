@@ -1,4 +1,7 @@
-"""Finite elements: kinematics, effects, Newton, march, measures."""
+"""Finite elements: kinematics, effects, Newton, march, measures.
+
+Part of fiberbend.
+"""
 
 from fem import quick_start as quick_start  # before anything else loads PETSc or dolfinx
 

@@ -19,6 +19,9 @@ _FAILED, _INTERRUPTED = 1, 130
 def start_petsc() -> None:
     """Start MPI and PETSc; a file .petscrc of the working folder sets nothing.
 
+    PETSc would take SIGTERM, SIGHUP, SIGPIPE and more, print a page and end the process, also that
+    of a notebook.
+
     From here on an error that nobody catches ends all ranks, unless somebody sees to such errors:
     a rank that ends alone waits in MPI's own end for the others, which wait for it.
 
@@ -32,7 +35,7 @@ def start_petsc() -> None:
         sys.excepthook = _end_all
     import petsc4py
 
-    petsc4py.init(["fiberbend", "-skip_petscrc"])
+    petsc4py.init(["fiberbend", "-skip_petscrc", "-no_signal_handler"])
 
 
 def _end_all(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:

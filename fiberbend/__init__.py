@@ -82,6 +82,10 @@ def __getattr__(name: str) -> object:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     import importlib
 
+    from fiberbend.process import own
+
+    if line := own.shadowed():
+        raise ImportError(line)
     value: object = getattr(importlib.import_module(_PLACES[name]), name)
     globals()[name] = value
     return value

@@ -5,9 +5,13 @@ from __future__ import annotations
 import atexit
 import gc
 import os
+import sys
 from typing import NoReturn
 
-from fiberbend.process import signals
+from fiberbend.process import own, ranks, signals
+
+_WRONG_INPUT = 1
+"""The exit code, as of the command line."""
 
 NEW_OBJECTS = 50_000
 """Objects made beyond those freed before Python looks for unreachable cycles among them."""
@@ -16,6 +20,11 @@ NEW_OBJECTS = 50_000
 def entry() -> NoReturn:
     """The command; signals are taken before anything slow is loaded."""
     signals.install()
+    line = own.shadowed()
+    if line:
+        if ranks.rank() == 0:
+            print(line, file=sys.stderr)
+        sys.exit(_WRONG_INPUT)
     # imports and the derivation of forms make many objects that stay: looked at after every 700
     # of them, Python's default, a run of a section takes 3 % longer
     gc.set_threshold(NEW_OBJECTS)

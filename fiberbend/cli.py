@@ -55,6 +55,13 @@ app.command(
 )
 
 app.command(
+    "fiberbend.commands.cases:cases",
+    name="cases",
+    help="List the cases that come with the program, or copy some of them into a folder.",
+    help_epilogue=EXAMPLES["cases"],
+)
+
+app.command(
     "fiberbend.commands.show:show",
     name="show",
     help="Draw the actuator of a case at rest, with its dimensions; nothing is solved.",

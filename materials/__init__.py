@@ -1,1 +1,4 @@
-"""Material laws as pure functions, fibers, and named materials with their source."""
+"""Material laws as pure functions, fibers, and named materials with their source.
+
+Part of fiberbend.
+"""

@@ -15,6 +15,7 @@ from fiberbend.answer.touch import touches
 from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
 from fiberbend.models.model import ModelKind
+from fiberbend.notebook import blocks
 from fiberbend.plan.doubts import errors
 
 WIDTH = 100
@@ -63,6 +64,25 @@ class Answer:
     trust: str
     comparisons: tuple[str, ...]
     warnings: tuple[str, ...]
+
+    def _repr_html_(self) -> str:
+        """The answer as a notebook shows it."""
+        return blocks.block(self.title, *self.shown())
+
+    def shown(self, picture: str = "") -> tuple[str, ...]:
+        """Blocks of HTML, without the title.
+
+        Args:
+            picture: HTML that follows the sentence.
+        """
+        rows = [(e.label, f"{e.value} ({e.note})" if e.note else e.value) for e in self.entries]
+        return (
+            blocks.words(self.sentence),
+            picture,
+            blocks.pairs(rows),
+            blocks.words(self.trust),
+            *map(blocks.warning, self.warnings),
+        )
 
 
 def answer(case: Case, rows: Sequence[col.Row], run: Mapping[str, Any]) -> Answer:

@@ -7,6 +7,7 @@ import dataclasses
 import os
 import shutil
 import tempfile
+import threading
 import weakref
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from fiberbend.models.result import RunResult
     from fiberbend.plan.plan import Plan
 
+_TURN = threading.RLock()
+"""Held by the call that solves: MPI and PETSc serve one at a time, threads take turns."""
 AnyCase = Case | Mapping[str, Any] | Path | str
 """A checked case, a mapping as its YAML gives it, or the path of a case file."""
 Settings = Iterable[str] | Mapping[str, Any]
@@ -42,13 +45,16 @@ def run(
 ) -> Result:
     """Solve a case; under mpirun with all ranks together.
 
+    It may be called in a notebook, in a running event loop and in a thread; calls in several
+    threads follow one another.
+
     Args:
         case: a case, a mapping as its YAML gives it, or the path of a case file.
         out: run folder. Without one there are no pictures, no report and no comparison with other
             models, and `Result.mesh` reads the states from a temporary folder, which is removed
             with the result.
         overwrite: replace an earlier run in `out`.
-        quiet: report no progress.
+        quiet: report no progress; else there are lines, or a bar on a terminal and in a notebook.
         force: run whether the memory that it is expected to need is free or not.
         settings: changes to the case, such as `["actuator.wall=3 mm"]` or
             `{"actuator.wall": "3 mm"}`.
@@ -70,11 +76,10 @@ def run(
         raise CaseError([Problem("run", "overwrite and resume together, expected one of them")])
     if resume and out is None:
         raise CaseError([Problem("out", "nothing, expected the folder of a run to resume")])
-    launch.start_mpi()
-    from fiberbend.running.runner import run_case
+    with _TURN, contextlib.closing(Progress(quiet=quiet)) as progress:
+        launch.start_mpi()
+        from fiberbend.running.runner import run_case
 
-    progress = Progress(quiet=quiet)
-    with contextlib.closing(progress):
         if out is not None:
             done = run_case(checked, Path(out), overwrite, progress, resume, force)
             return _result(done, checked, done.folder)
@@ -155,7 +160,7 @@ def sweep(
 
     if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
         raise CaseError([Problem("jobs", f"{found(jobs)}, expected a whole number from 1 on")])
-    with _as_file(file) as path:
+    with _TURN, _as_file(file) as path:
         code = run_sweep(
             path, Path(out), list(settings), jobs, retry, force, say=_silent if quiet else print
         )

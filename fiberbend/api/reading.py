@@ -45,7 +45,7 @@ class Reading(Mapping[str, float]):
     def __getitem__(self, column: str) -> float:
         if column not in self._values:
             where = "interpolated" if column in col.COUNTS and not self.exact else "known"
-            raise KeyError(f"{column!r} is not {where} {self._where()}")
+            raise KeyError(f"{column!r} is not {where} {self.where}")
         return self._values[column]
 
     def __iter__(self) -> Iterator[str]:
@@ -54,13 +54,21 @@ class Reading(Mapping[str, float]):
     def __len__(self) -> int:
         return len(self._values)
 
+    def _repr_html_(self) -> str:
+        """The same as a notebook shows it."""
+        from fiberbend.api import shown
+
+        return shown.reading(self)
+
     def __repr__(self) -> str:
         """Where it is, and its values one a line."""
         width = max(map(len, self._values), default=0)
         lines = [f"  {name:{width}}  {value:.6g}" for name, value in self._values.items()]
-        return "\n".join([f"<{self.at}, {self._where()}", *lines]) + ">"
+        return "\n".join([f"<{self.at}, {self.where}", *lines]) + ">"
 
-    def _where(self) -> str:
+    @property
+    def where(self) -> str:
+        """At which step it is, or between which: "at step 3"."""
         steps = " and ".join(map(str, self.steps))
         return f"at step {steps}" if self.exact else f"between steps {steps}"
 

@@ -65,6 +65,12 @@ class Result(RunResult):
         title = self.case.title or "without a title"
         return f"<Result {title!r}, {self.model} model, {end}, {self.status}{why}{where}>"
 
+    def _repr_html_(self) -> str:
+        """End, curve, answer and load steps, as a notebook shows them."""
+        from fiberbend.api import shown
+
+        return shown.run(self)
+
     @property
     def model(self) -> str:
         """Name of the model that was solved."""

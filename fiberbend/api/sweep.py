@@ -137,9 +137,20 @@ class Sweep:
     def __len__(self) -> int:
         return len(self.rows)
 
+    @property
+    def complete(self) -> bool:
+        """Whether it has its table."""
+        return (self.folder / TABLE).exists()
+
+    def _repr_html_(self) -> str:
+        """How the points ended, and the table, as a notebook shows it."""
+        from fiberbend.api import shown
+
+        return shown.sweep(self)
+
     def __repr__(self) -> str:
         """How the points ended, and where they are."""
-        if not (self.folder / TABLE).exists():
+        if not self.complete:
             return f"<Sweep without a table, {len(self.points)} points begun, in {self.folder}>"
         ends = ", ".join(f"{number} {name}" for name, number in self.status.items())
         return f"<Sweep of {len(self)} points: {ends}, in {self.folder}>"

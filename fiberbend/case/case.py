@@ -335,3 +335,23 @@ class Case(Spec):
             What `fiberbend.reader.reader.parse_case` reads back to an equal case.
         """
         return self.model_dump(by_alias=True, exclude_none=True, mode="json")
+
+    def _repr_html_(self) -> str:
+        """What it says as a notebook shows it; what is seldom changed is folded."""
+        from fiberbend.notebook import blocks
+
+        said = {name: value for name, value in self.resolved().items() if value != []}
+        title, seldom = said.pop("title", ""), ("mesh", "solver", "output", "support")
+        rows = [(name, blocks.setting(value)) for name, value in said.items() if name != "effects"]
+        at = 1 + [name for name, _ in rows].index("materials")
+        rows[at:at] = [
+            (name, blocks.setting(value))
+            for effect in said["effects"]
+            for name, value in effect.items()
+        ]
+        folded = [row for row in rows if row[0] in seldom]
+        return blocks.block(
+            title or "A case without a title",
+            blocks.pairs([row for row in rows if row not in folded]),
+            blocks.folded(", ".join(name for name, _ in folded), blocks.pairs(folded)),
+        )

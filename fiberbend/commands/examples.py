@@ -18,6 +18,11 @@ EXAMPLES = {
   fiberbend init finger.yaml --radius 6.35mm --length 80mm --wall 2mm dragon-skin-30
   fiberbend init finger.yaml --section rectangle --width 20mm --height 10mm --pressure "80 kPa"
 """,
+    "cases": """Examples:
+  fiberbend cases
+  fiberbend cases section sweeps/angle_at_pressure
+  fiberbend cases --all --out examples
+""",
     "show": """Examples:
   fiberbend show cases/free_bending.yaml --open
   fiberbend show cases/grasp.yaml --set actuator.radius="10 mm" --out grasp.png

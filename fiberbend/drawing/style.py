@@ -82,8 +82,9 @@ DEFAULT = Style()
 def empty(inches: tuple[float, float], dpi: float) -> Any:
     """A matplotlib figure without anything on it that needs no display."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
 
-    page = Figure(figsize=inches, dpi=dpi)
+    from fiberbend.notebook.figure import ShownFigure
+
+    page = ShownFigure(figsize=inches, dpi=dpi)
     FigureCanvasAgg(page)
     return page

@@ -14,6 +14,7 @@ from fiberbend.models.choice import MODELS, choose_model, objection
 from fiberbend.models.model import MeshedModel, ModelKind
 from fiberbend.models.resolution import winding_remark
 from fiberbend.models.uniform import twists
+from fiberbend.notebook import blocks
 from fiberbend.plan.doubts import doubts, errors
 from fiberbend.plan.memory import shortage
 
@@ -53,6 +54,18 @@ class Plan:
     def __repr__(self) -> str:
         """The lines, as `fiberbend plan` prints them."""
         return "\n".join(self.lines())
+
+    def _repr_html_(self) -> str:
+        """The same as a notebook shows it."""
+        pairs = [
+            (heading if number == 0 else "", sentence)
+            for heading, sentences in self.rows
+            for number, sentence in enumerate(sentences)
+        ]
+        refused = [blocks.warning(f"refused: {self.refusal}")] if self.refusal else []
+        return blocks.block(
+            f"Plan of a run of the {self.model} model", *refused, blocks.pairs(pairs)
+        )
 
     def lines(self) -> list[str]:
         """The plan as lines of text, none longer than `WIDTH`."""

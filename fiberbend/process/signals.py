@@ -60,15 +60,16 @@ _pending = _Pending()
 
 
 def install() -> None:
-    """Take the signals that this process does not ignore: nohup and a shell's & must go on."""
+    """Take the signals that this process does not ignore: nohup and a shell's & must go on.
+
+    In a thread nothing is taken: the process belongs to who has started it.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        return
     for number in _SIGNALS:
         if signal.getsignal(number) != signal.SIG_IGN:
             signal.signal(number, _handle)
     sys.unraisablehook = _lost
-    # PETSc would take SIGTERM and SIGHUP and print a page
-    options = os.environ.get("PETSC_OPTIONS", "")
-    if "-no_signal_handler" not in options:
-        os.environ["PETSC_OPTIONS"] = f"{options} -no_signal_handler".strip()
 
 
 @contextlib.contextmanager

@@ -1,4 +1,4 @@
-"""Progress of a run: a bar on a terminal, plain lines elsewhere."""
+"""Progress of a run: a bar on a terminal and in a notebook, plain lines elsewhere."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, TextIO
 
+from fiberbend.notebook import place
 from fiberbend.running import launch
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ class Progress:
         self._answers = self._speaks or (answers and launch.rank() == 0)
         self._verbose = verbose
         self._bar: RichProgress | None = None
+        self._place = place.Place() if stream is None and place.shown() else None
         self._log: Callable[[str], None] | None = None
 
     @contextlib.contextmanager
@@ -144,14 +146,17 @@ class Progress:
             self._print(text)
 
     def answer(self, found: Answer) -> None:
-        """Print what the run answers; with the comparisons when verbose, and in the log."""
+        """Print what the run answers; with the comparisons when verbose, and in the log.
+
+        Not in a notebook, where the result shows it.
+        """
         from fiberbend.answer.answer import lines
 
         self._close_bar()
         full = lines(found, verbose=True)
         for line in full:
             self.log(line)
-        if self._answers:
+        if self._answers and self._place is None:
             text = full if self._verbose else lines(found)
             # a line between the load steps and their answer
             print(*([""] if self._speaks else []), *text, sep="\n", file=self._stream, flush=True)
@@ -170,10 +175,11 @@ class Progress:
     @property
     def _draws(self) -> bool:
         """A bar is drawn in place of lines."""
-        return self._stream.isatty() and launch.size() == 1
+        here = self._place is not None or self._stream.isatty()
+        return here and launch.size() == 1
 
     def _print(self, text: str) -> None:
-        if self._bar is not None:
+        if self._bar is not None and self._place is None:
             self._bar.console.print(text, highlight=False, markup=False)
         else:
             print(text, file=self._stream, flush=True)
@@ -185,8 +191,11 @@ class Progress:
         task = self._bar.task_ids[0]
         done = None if fraction is None else min(max(fraction, 0.0), 1.0)
         # at once: a solver that computes lets no thread draw
-        self._bar.update(task, completed=done, description=text, refresh=True)
-        self._bar.start()
+        self._bar.update(task, completed=done, description=text, refresh=self._place is None)
+        if self._place is None:
+            self._bar.start()
+        else:
+            self._place.show(self._bar)
 
     def _new_bar(self) -> RichProgress:
         from rich.console import Console
@@ -212,9 +221,11 @@ class Progress:
         return bar
 
     def _close_bar(self) -> None:
-        if self._bar is not None:
-            self._bar.stop()
-            self._bar = None
+        bar, self._bar = self._bar, None
+        if bar is not None and self._place is None:
+            bar.stop()
+        if bar is not None and self._place is not None:
+            self._place.clear()
 
 
 def _unsigned(value: float, digits: int) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import tempfile
+import weakref
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -193,7 +194,8 @@ class _Run:
             # killed in the whole body that stands for the half
             recording.warn([messages.WHOLE])
         progress.phase("solve")
-        report = assembly.march.run(assembly.ramps, [recording])
+        # the march keeps what it calls: in a cycle with it all matrices would outlive the run
+        report = assembly.march.run(assembly.ramps, [weakref.proxy(recording)])
         recording.remark(report)
         if report.reason == ACROSS and mesh.half and self.may_leave:
             progress.message(messages.WHOLE)

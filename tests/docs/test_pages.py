@@ -15,7 +15,7 @@ from bench import actuator_drawing
 from bench import pages as written
 
 ROOT = written.ROOT
-NOTEBOOK = ROOT / "examples" / "first_finger.ipynb"
+NOTEBOOK = ROOT / "examples" / "first_actuator.ipynb"
 
 
 def _tool(name: str) -> ModuleType:
@@ -75,8 +75,10 @@ def test_the_site_builds_with_the_notebook_run_and_without_a_warning(tmp_path: P
         check=False,
     )
     assert built.returncode == 0, built.stdout + built.stderr
-    notebook = (tmp_path / "site" / "_generated" / "first_finger.html").read_text(encoding="utf-8")
-    assert "first_finger_1.png" in notebook, "the notebook draws something"
+    notebook = (tmp_path / "site" / "_generated" / "first_actuator.html").read_text(
+        encoding="utf-8"
+    )
+    assert "first_actuator_1.png" in notebook, "the notebook draws something"
     front = (tmp_path / "site" / "index.html").read_text(encoding="utf-8")
     assert "actuator.svg" in front
     # what a page fetches by itself must be beside it
