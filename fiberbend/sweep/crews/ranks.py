@@ -19,6 +19,7 @@ from fiberbend.plan.memory import RANK_MB, room, shortage
 from fiberbend.process.signals import stop_of
 from fiberbend.running import launch
 from fiberbend.sweep.crews.crew import Crew, Submit, T
+from machine import world
 
 _PROBE = ".shared"
 _PATIENCE = 10.0
@@ -33,6 +34,7 @@ class Ranks(Crew):
 
     def __init__(self) -> None:
         launch.start_mpi()
+        world.part()
         from mpi4py import MPI
 
         # what ranks wait for here is apart from what they compute
