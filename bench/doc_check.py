@@ -7,6 +7,7 @@ import importlib
 import importlib.util
 import re
 import shlex
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +57,7 @@ class Checker:
             "make": self._make,
             "python": self._python,
             "source": self._source,
+            "sbatch": self._sbatch,
             "cd": lambda _: None,
             "git": lambda _: None,
             "./setup.sh": lambda _: None,
@@ -82,6 +84,17 @@ class Checker:
                 raise ValueError(f"no module {words[1]}")
         else:
             ast.parse((ROOT / words[0]).read_text(encoding="utf-8"))
+
+    def _sbatch(self, words: list[str]) -> None:
+        script, *given = (word for word in words if not word.startswith("--"))
+        for name in (script, *given):
+            if not (self.folder / name).is_file():
+                raise ValueError(f"no file {name}")
+        done = subprocess.run(
+            ["bash", "-n", script], cwd=self.folder, capture_output=True, text=True, check=False
+        )
+        if done.returncode:
+            raise ValueError(done.stderr)
 
     def _source(self, words: list[str]) -> None:
         if words != [".venv/bin/activate"]:

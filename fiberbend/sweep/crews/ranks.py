@@ -65,7 +65,10 @@ class Ranks(Crew):
         mine = None
         if here.rank == 0:
             leads = self._comm.rank == 0
-            most = [*needs[: here.size - leads], *([RANK_MB] if leads and needs else [])]
+            most = needs[: here.size - leads]
+            if leads and most:
+                # rank 0 beside the ranks that solve
+                most[0] += RANK_MB
             mine = shortage(most, room(), f"the sweep on {socket.gethostname()}")
         here.Free()
         return next((text for text in self._comm.allgather(mine) if text is not None), None)
