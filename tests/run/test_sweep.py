@@ -99,7 +99,7 @@ class Lab:
         (folder / "site" / "sitecustomize.py").write_text(SOLVER, encoding="utf-8")
         self.site = folder / "site"
 
-    def start(self, *arguments: str, ranks: int = 0, **acts: str) -> subprocess.Popen[str]:
+    def start(self, *arguments: str, ranks: str = "", **acts: str) -> subprocess.Popen[str]:
         """The command in a session of its own; what happens at which point, by its name.
 
         By mpirun where there is a number of ranks.
@@ -111,7 +111,7 @@ class Lab:
             "FAKE_LOG": str(self.log),
             **(MPIRUN if ranks else {}),
         }
-        launcher = ["mpirun", "-n", str(ranks)] if ranks else []
+        launcher = ["mpirun", "-n", ranks] if ranks else []
         command = [*launcher, sys.executable, "-m", "fiberbend", "sweep", str(self.file), "--out"]
         return subprocess.Popen(
             [*command, str(self.out), *arguments],
@@ -124,7 +124,7 @@ class Lab:
             preexec_fn=functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
         )
 
-    def run(self, *arguments: str, ranks: int = 0, **acts: str) -> tuple[int, str, str]:
+    def run(self, *arguments: str, ranks: str = "", **acts: str) -> tuple[int, str, str]:
         """The command to its end: exit code, output and errors."""
         process = self.start(*arguments, ranks=ranks, **acts)
         out, err = process.communicate(timeout=120)

@@ -67,9 +67,9 @@ class Cube:
         self.folder, self.file = folder, folder / "cube.yaml"
         self.file.write_text(yaml.safe_dump(CUBE, sort_keys=False), encoding="utf-8")
 
-    def start(self, out: str, *arguments: str, ranks: int = 0) -> subprocess.Popen[str]:
+    def start(self, out: str, *arguments: str, ranks: str = "") -> subprocess.Popen[str]:
         """The command, by mpirun where there is a number of ranks."""
-        launcher = ["mpirun", "-n", str(ranks)] if ranks else []
+        launcher = ["mpirun", "-n", ranks] if ranks else []
         command = [*launcher, sys.executable, "-m", "fiberbend", "sweep", str(self.file)]
         return subprocess.Popen(
             [*command, "--out", str(self.folder / out), *arguments],
@@ -91,7 +91,7 @@ class Cube:
 def test_27_points_with_one_rank_killed_give_the_table_of_the_pool(tmp_path: Path) -> None:
     """Table, trends and histories byte for byte, but for the times."""
     cube = Cube(tmp_path)
-    process = cube.start("ranks", ranks=3)
+    process = cube.start("ranks", ranks="3")
     points = tmp_path / "ranks" / "points"
     wait_for(lambda: len(list(points.glob("*/run.json"))) > 9)
     [victim] = [pid for pid in session(process.pid) if rank_of(pid) == "2"]
@@ -101,7 +101,7 @@ def test_27_points_with_one_rank_killed_give_the_table_of_the_pool(tmp_path: Pat
     gone(process)
     before = {path: path.stat().st_mtime_ns for path in points.glob("*/history.csv")}
     assert 5 < len(before) < 25
-    text = cube.end(cube.start("ranks", ranks=3))
+    text = cube.end(cube.start("ranks", ranks="3"))
     found = int(text.partition("27 points, ")[2].split()[0])
     assert len(before) - 2 <= found <= len(before)
     assert "27 points: 27 converged" in text
@@ -122,7 +122,7 @@ def test_27_points_with_one_rank_killed_give_the_table_of_the_pool(tmp_path: Pat
 @pytest.mark.mpi
 def test_ranks_share_the_points_and_the_leader_solves_none(lab: Lab) -> None:
     """Each point once; the local pool then has nothing to do."""
-    code, out, err = lab.run(ranks=3, all="slow")
+    code, out, err = lab.run(ranks="3", all="slow")
     assert (code, err) == (0, "")
     assert "6 points, 0 finished before" in out
     assert "6 points: 6 converged" in out
@@ -138,7 +138,7 @@ def test_ranks_share_the_points_and_the_leader_solves_none(lab: Lab) -> None:
 @pytest.mark.mpi
 def test_a_lost_rank_costs_its_points_which_the_pool_takes_up(lab: Lab) -> None:
     """And what the pool has left when it is killed, ranks take up."""
-    process = lab.start(ranks=3, **{LAST: "hang", HUNG: "hang-once"})
+    process = lab.start(ranks="3", **{LAST: "hang", HUNG: "hang-once"})
     wait_for(lambda: len(lab.finished()) == 4 and lab.pids(LAST) and lab.pids(HUNG))
     os.kill(lab.pids(HUNG)[0], signal.SIGKILL)
     process.communicate(timeout=60)
@@ -151,7 +151,7 @@ def test_a_lost_rank_costs_its_points_which_the_pool_takes_up(lab: Lab) -> None:
     os.kill(lab.pids(LAST)[-1], signal.SIGKILL)
     gone(process)
     before = lab.finished()
-    code, out, err = lab.run(ranks=2)
+    code, out, err = lab.run(ranks="2")
     assert (code, err) == (0, "")
     assert "6 points, 5 finished before" in out
     assert lab.starts() == Counter(NAMES) + Counter([HUNG, LAST, LAST])
@@ -164,7 +164,7 @@ def test_a_lost_rank_costs_its_points_which_the_pool_takes_up(lab: Lab) -> None:
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_mpirun_that_is_stopped_leaves_a_table_and_no_process(lab: Lab, number: int) -> None:
     """Its own exit code; the table is written in the second that it leaves."""
-    process = lab.start(ranks=3, **{LAST: "hang"})
+    process = lab.start(ranks="3", **{LAST: "hang"})
     wait_for(lambda: len(lab.finished()) == 5 and lab.pids(LAST))
     process.send_signal(number)
     out, _ = process.communicate(timeout=60)
@@ -180,7 +180,7 @@ def test_mpirun_that_is_stopped_leaves_a_table_and_no_process(lab: Lab, number: 
 @pytest.mark.mpi
 def test_a_signal_for_one_rank_ends_all(lab: Lab) -> None:
     """They would wait for it; one line says which one it was."""
-    process = lab.start(ranks=3, **{LAST: "hang"})
+    process = lab.start(ranks="3", **{LAST: "hang"})
     wait_for(lambda: len(lab.finished()) == 5 and lab.pids(LAST))
     os.kill(lab.pids(LAST)[0], signal.SIGTERM)
     _, err = process.communicate(timeout=60)
@@ -191,7 +191,7 @@ def test_a_signal_for_one_rank_ends_all(lab: Lab) -> None:
 
 @pytest.mark.mpi
 def test_points_that_fail_on_ranks_are_listed(lab: Lab) -> None:
-    code, out, _ = lab.run(ranks=2, **{NAMES[1]: "fail", NAMES[4]: "raise"})
+    code, out, _ = lab.run(ranks="2", **{NAMES[1]: "fail", NAMES[4]: "raise"})
     assert code == 2
     assert "6 points: 4 converged, 2 failed" in out
     assert f"failed: {NAMES[4]}: ArithmeticError: nothing converges\n" in out
@@ -200,7 +200,7 @@ def test_points_that_fail_on_ranks_are_listed(lab: Lab) -> None:
 
 @pytest.mark.mpi
 def test_a_sweep_by_ranks_and_one_by_processes_share_the_points(lab: Lab) -> None:
-    processes = [lab.start(ranks=2, all="slow"), lab.start("-j", "2", all="slow")]
+    processes = [lab.start(ranks="2", all="slow"), lab.start("-j", "2", all="slow")]
     for process in processes:
         out, err = process.communicate(timeout=120)
         assert (process.returncode, err) == (0, "")
@@ -213,7 +213,7 @@ def test_ranks_whose_solver_cannot_be_loaded_end_the_sweep(lab: Lab) -> None:
     (lab.site / "sitecustomize.py").write_text(
         "import sys; sys.modules['fiberbend.running.runner'] = None", encoding="utf-8"
     )
-    process = lab.start(ranks=3)
+    process = lab.start(ranks="3")
     _, err = process.communicate(timeout=60)
     assert process.returncode == 2
     assert re.search(r"fiberbend: rank [12] stopped: .*fiberbend\.running\.runner", err)
@@ -236,7 +236,7 @@ REFUSALS: dict[str, tuple[tuple[str, ...], str]] = {
 @pytest.mark.parametrize("what", REFUSALS)
 def test_ranks_refuse_wrong_input_in_one_line(lab: Lab, what: str) -> None:
     arguments, expected = REFUSALS[what]
-    code, out, err = lab.run(*arguments, ranks=3)
+    code, out, err = lab.run(*arguments, ranks="3")
     own = lines(err)
     assert (code, len(own), out) == (1, 1, ""), err
     assert re.search(expected, own[0])
@@ -248,7 +248,7 @@ def test_a_folder_with_something_else_is_refused_once(lab: Lab) -> None:
     """Rank 0 alone looks; all end."""
     lab.out.mkdir()
     (lab.out / "thesis.tex").touch()
-    code, out, err = lab.run(ranks=3)
+    code, out, err = lab.run(ranks="3")
     assert (code, out, len(lines(err))) == (1, "", 1)
     assert "contains no sweep" in err
 

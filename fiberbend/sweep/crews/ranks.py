@@ -65,7 +65,7 @@ class Ranks(Crew):
         mine = None
         if here.rank == 0:
             leads = self._comm.rank == 0
-            most = needs[: here.size - leads]
+            most = [*needs[: here.size - leads]]
             if leads and most:
                 # rank 0 beside the ranks that solve
                 most[0] += RANK_MB
