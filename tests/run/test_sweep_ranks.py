@@ -14,8 +14,11 @@ from pathlib import Path
 import pytest
 import yaml
 
+import fiberbend
 from bench.survive import session
+from fiberbend.results.reading import read_history
 from tests.conftest import MPIRUN, ROOT, MpiRun
+from tests.run.conftest import small
 from tests.run.test_sweep import LAST, NAMES, SWEEP, Lab, wait_for
 
 TIMES = {"wall_s"}
@@ -282,6 +285,42 @@ def test_a_folder_that_one_machine_does_not_see_is_refused(
         r"out: not seen by rank 1 on \S+, expected a folder that all machines share", line
     )
     assert not any("shared" in path.name for path in (tmp_path / "out").rglob("*"))
+
+
+def test_ranks_that_mpi_does_not_join_are_refused(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As by srun without --mpi=pmix: each would be a sweep of its own."""
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
+    code, out, err = lab.run()
+    assert (code, out, len(lines(err))) == (1, "", 1)
+    assert "rank 0 of 2, but MPI has started 1: expected mpirun" in err
+
+
+SCRIPT = """
+import fiberbend
+
+sweep = fiberbend.sweep({sweep!r}, {out!r})
+body = fiberbend.run({body!r}, {run!r})
+print(f"{{sweep}}; {{body.status}} on {{body.run['ranks']}}", flush=True)
+"""
+
+
+@pytest.mark.mpi
+def test_a_script_sweeps_by_ranks_and_then_shares_a_body(mpirun: MpiRun, tmp_path: Path) -> None:
+    """Every rank has the table; what a rank printed elsewhere meanwhile it prints again."""
+    sweep = SWEEP | {"set": SWEEP["set"] | {"model": "analytic"}}
+    script, out = tmp_path / "script.py", str(tmp_path / "out")
+    case, run = small(mesh={"axial": "8 mm"}), str(tmp_path / "run")
+    text = SCRIPT.format(sweep=sweep, out=out, body=case, run=run)
+    script.write_text(text, encoding="utf-8")
+    done = mpirun(2, [script], timeout=120)
+    assert (done.returncode, done.stderr) == (0, "")
+    line = f"<Sweep of 6 points: 6 converged, in {out}>; converged on 2\n"
+    assert done.stdout == 2 * line
+    alone = fiberbend.run(case).rows[-1]["angle_deg"]
+    shared = read_history(tmp_path / "run" / "history.csv")[-1]["angle_deg"]
+    assert shared == pytest.approx(alone, rel=1e-6)
 
 
 def lines(text: str) -> list[str]:

@@ -9,6 +9,7 @@ import contextlib
 import functools
 import os
 import socket
+import sys
 import time
 import uuid
 from collections.abc import Callable, Iterator, Sequence
@@ -18,6 +19,7 @@ from typing import Any
 from fiberbend.plan.memory import RANK_MB, room, shortage
 from fiberbend.process.signals import stop_of
 from fiberbend.running import launch
+from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.sweep.crews.crew import Crew, Submit, T
 from machine import world
 
@@ -28,7 +30,11 @@ _PAUSE = 0.02
 
 
 class Ranks(Crew):
-    """All ranks of the launch; collective."""
+    """All ranks of the launch; collective.
+
+    Raises:
+        CaseError: they do not know of each other.
+    """
 
     fewer = "fewer ranks on a machine"
 
@@ -40,6 +46,11 @@ class Ranks(Crew):
         # what ranks wait for here is apart from what they compute
         self._comm = MPI.Intracomm(MPI.COMM_WORLD.Dup())
         self.count = self._comm.size - 1
+        if self.count < 1:
+            text = (
+                f"rank {launch.rank()} of {launch.size()}, but MPI has started 1: expected mpirun"
+            )
+            raise CaseError([Problem("fiberbend sweep", f"{text}, or srun --mpi=pmix")])
 
     def led(self, action: Callable[[], T]) -> T | None:
         """By rank 0; its result stays there, for it may be large."""
@@ -98,10 +109,8 @@ class Ranks(Crew):
 
         import fiberbend.running.runner  # noqa: F401
 
-        # what libraries print must not get among the lines for the user
-        os.dup2(2, 1)
         try:
-            with MPICommExecutor(self._comm, root=0):
+            with _quiet(), MPICommExecutor(self._comm, root=0):
                 pass
         except KeyboardInterrupt as error:
             _leave(error)
@@ -112,6 +121,20 @@ class Ranks(Crew):
         while not request.Test():
             time.sleep(_PAUSE)
         return int(self._comm.bcast(code))
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Within, what libraries print does not get among the lines for the user."""
+    sys.stdout.flush()
+    own = os.dup(1)
+    os.dup2(2, 1)
+    try:
+        yield
+    finally:
+        sys.stdout.flush()
+        os.dup2(own, 1)
+        os.close(own)
 
 
 def _task(function: Callable[..., Any], *arguments: Any) -> Any:
