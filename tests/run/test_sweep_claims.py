@@ -13,13 +13,16 @@ from typing import Any
 
 import pytest
 import yaml
+from mpi4py import MPI
 
+from fem import kernels
 from fiberbend.results.folder import RunFolder
 from fiberbend.sweep import loop
 from fiberbend.sweep.crews.crew import Crew, Here, Submit
 from fiberbend.sweep.loop import Event, Loop
 from fiberbend.sweep.points import Point, read_sweep
 from fiberbend.sweep.store import MARK, Store
+from machine.folders import MachineError
 from tests.run.test_sweep import NAMES, SWEEP
 
 DONE = {"status": "converged", "reason": ""}
@@ -178,3 +181,17 @@ def test_this_process_alone_solves_in_order(points: tuple[Point, ...], store: St
         Loop(points, store, events.append, crew).run(submit)
     assert [event["done"] for event in events] == NAMES
     assert all(MARK in (store.result(point) or {}) for point in points)
+
+
+def test_forms_are_not_compiled_where_nothing_can_be_locked(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two machines would remove what the other one is compiling."""
+
+    def none(*_: Any) -> None:
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr(fcntl, "flock", none)
+    words = "cannot be locked: No locks available; set XDG_CACHE_HOME"
+    with pytest.raises(MachineError, match=words), kernels.compiling(MPI.COMM_SELF):
+        pass
