@@ -202,9 +202,12 @@ def test_points_that_fail_on_ranks_are_listed(lab: Lab) -> None:
 
 
 @pytest.mark.mpi
-def test_a_sweep_by_ranks_and_one_by_processes_share_the_points(lab: Lab) -> None:
-    processes = [lab.start(ranks="2", all="slow"), lab.start("-j", "2", all="slow")]
-    for process in processes:
+@pytest.mark.parametrize("other", ["ranks", "processes"])
+def test_a_sweep_by_ranks_shares_the_points_with_another(lab: Lab, other: str) -> None:
+    """The second one may be a second mpirun."""
+    second = {"ranks": ("3", ()), "processes": ("", ("-j", "2"))}
+    ranks, jobs = second[other]
+    for process in [lab.start(ranks="2", all="slow"), lab.start(*jobs, ranks=ranks, all="slow")]:
         out, err = process.communicate(timeout=120)
         assert (process.returncode, err) == (0, "")
         assert "6 points: 6 converged" in out
