@@ -8,6 +8,7 @@ import importlib.util
 import itertools
 import re
 import shlex
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +61,7 @@ class Checker:
             "python3": self._python,
             "pip": self._pip,
             "source": self._source,
+            "sbatch": self._sbatch,
             "cd": lambda _: None,
             "git": lambda _: None,
             "./setup.sh": lambda _: None,
@@ -91,6 +93,17 @@ class Checker:
         for option, name in itertools.pairwise(words):
             if option == "--constraint" and not (ROOT / name).is_file():
                 raise ValueError(f"no file {name}")
+
+    def _sbatch(self, words: list[str]) -> None:
+        script, *given = (word for word in words if not word.startswith("--"))
+        for name in (script, *given):
+            if not (self.folder / name).is_file():
+                raise ValueError(f"no file {name}")
+        done = subprocess.run(
+            ["bash", "-n", script], cwd=self.folder, capture_output=True, text=True, check=False
+        )
+        if done.returncode:
+            raise ValueError(done.stderr)
 
     def _source(self, words: list[str]) -> None:
         if words != [".venv/bin/activate"]:

@@ -25,6 +25,9 @@ ROOT = Path(__file__).resolve().parent.parent
 CASE = "cases/free_bending.yaml"
 KEPT = ROOT / "build" / "growth"
 PAGE = ROOT / "docs" / "evidence" / "growth.md"
+CLUSTER = ROOT / "docs" / "cluster.md"
+"""The page that has the times on more ranks too, between these marks."""
+MARKS = ("<!-- ranks, by `make growth` -->", "<!-- end of ranks -->")
 PICTURE = ROOT / "docs" / "images" / "growth.png"
 SIZES = ((1, 6.0), (1, 3.0), (1, 1.5), (2, 4.0), (2, 2.0), (2, 1.25), (2, 0.9))
 """Elements through each thickness, and length of the elements along the axis, mm."""
@@ -190,6 +193,16 @@ def write(points: Sequence[Point], missing: Sequence[str]) -> None:
         *Scaling.of(points).text(),
     ]
     PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    put_on_cluster_page(Scaling.of(points).text())
+
+
+def put_on_cluster_page(lines: Sequence[str]) -> None:
+    """Times on more ranks, where who has a cluster looks for them."""
+    begin, end = MARKS
+    before, _, rest = CLUSTER.read_text(encoding="utf-8").partition(begin)
+    after = rest.partition(end)[2]
+    block = "\n".join([begin, "", *lines, "", end])
+    CLUSTER.write_text(f"{before}{block}{after}", encoding="utf-8")
 
 
 def main() -> None:

@@ -92,7 +92,11 @@ def compiling(comm: MPI.Comm) -> Iterator[None]:
     if why := folders.refusal(folder):
         raise MachineError(f"{folder} holds no kernels that can be trusted: {why}; remove it")
     with (folder / "lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        except OSError as error:
+            text = f"{folder} cannot be locked: {error.strerror}"
+            raise MachineError(f"{text}; set {folders.CACHE} to another folder") from None
         names = {entry.name for entry in os.scandir(folder)}
         for name in names:
             if name.endswith(".c") and f"{name}.cached" not in names:

@@ -10,7 +10,7 @@ from importlib import metadata
 from types import TracebackType
 from typing import Any
 
-from machine import folders
+from machine import folders, world
 
 _FAILED, _INTERRUPTED = 1, 130
 """Exit codes of Python, and of a shell after Ctrl-C."""
@@ -35,7 +35,8 @@ def start_petsc() -> None:
         sys.excepthook = _end_all
     import petsc4py
 
-    petsc4py.init(["fiberbend", "-skip_petscrc", "-no_signal_handler"])
+    comm = MPI.COMM_SELF if world.parted() else None
+    petsc4py.init(["fiberbend", "-skip_petscrc", "-no_signal_handler"], comm=comm)
 
 
 def _end_all(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:

@@ -274,8 +274,8 @@ def run(
     return FAILED if result.status == "failed" else 0
 
 
-def _count(_type: type, number: int) -> None:
-    if number < 1:
+def _count(_type: type, number: int | None) -> None:
+    if number is not None and number < 1:
         raise ValueError("Expected a whole number from 1 on.")
 
 
@@ -286,6 +286,7 @@ def _count(_type: type, number: int) -> None:
   fiberbend sweep cases/sweeps/table1.yaml --only wall=2mm --only radius=1cm
   fiberbend sweep cases/sweeps/angle_at_pressure.yaml --set mesh.section=3
   fiberbend sweep cases/sweeps/radius_length_wall.yaml -j 2 --retry
+  mpirun -n 64 fiberbend sweep cases/sweeps/radius_length_wall.yaml
 
 What a file asks for under "report" leads its table, trends and maps:
   angles: [90 deg]     pressure at an angle, column pressure_90deg_kPa
@@ -302,7 +303,7 @@ def sweep(
     *,
     settings: Changes = (),
     out: Path | None = None,
-    jobs: Annotated[int, Parameter(name=("--jobs", "-j"), validator=_count)] = 1,
+    jobs: Annotated[int | None, Parameter(name=("--jobs", "-j"), validator=_count)] = None,
     retry: bool = False,
     force: bool = False,
     only: Annotated[
@@ -317,7 +318,7 @@ def sweep(
         file: Sweep file, YAML.
         settings: Changes to the base case.
         out: Folder; runs/SWEEP unless given.
-        jobs: Processes that solve at once; 1 by default.
+        jobs: Processes that solve at once; 1 by default. Under mpirun, all ranks but one do.
         retry: Run failed points again.
         force: Run even if there is not enough memory for all jobs.
         only: Solve the points with this value of a varied field, such as wall=2mm; repeatable.

@@ -11,6 +11,16 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
+MPIRUN = {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    # Containers forbid the single copy of shared memory, and Open MPI then complains.
+    "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+    "OPENBLAS_NUM_THREADS": "1",
+    "OMP_NUM_THREADS": "1",
+}
+"""What mpirun needs beside other tests, and as root."""
 MpiRun = Callable[..., "subprocess.CompletedProcess[str]"]
 
 
@@ -21,15 +31,7 @@ def mpirun() -> MpiRun:
     def launch(
         ranks: int, arguments: Sequence[str | Path], cwd: Path = ROOT, timeout: float = 300.0
     ) -> subprocess.CompletedProcess[str]:
-        environment = os.environ | {
-            "OMPI_ALLOW_RUN_AS_ROOT": "1",
-            "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-            "OMPI_MCA_rmaps_base_oversubscribe": "1",
-            # Containers forbid the single copy of shared memory, and Open MPI then complains.
-            "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
-            "OPENBLAS_NUM_THREADS": "1",
-            "OMP_NUM_THREADS": "1",
-        }
+        environment = os.environ | MPIRUN
         command = ["mpirun", "-n", str(ranks), sys.executable, *map(str, arguments)]
         return subprocess.run(
             command, cwd=cwd, env=environment, timeout=timeout, capture_output=True, text=True

@@ -129,7 +129,7 @@ def plan(case: AnyCase, *, settings: Settings = ()) -> Plan:
 def sweep(
     file: Mapping[str, Any] | Path | str,
     out: Path | str,
-    jobs: int = 1,
+    jobs: int | None = None,
     *,
     settings: Iterable[str] = (),
     retry: bool = False,
@@ -142,7 +142,7 @@ def sweep(
         file: a sweep file, or a mapping as its YAML gives it; files that a mapping names are
             relative to the working folder.
         out: folder of the sweep.
-        jobs: processes that solve at once.
+        jobs: processes that solve at once, one unless given; under mpirun all ranks but one.
         settings: changes to the base case, "actuator.floor=3 mm" each.
         retry: run failed points again.
         force: run whether there is enough memory or not.
@@ -158,7 +158,8 @@ def sweep(
     """
     from fiberbend.sweep.command import run_sweep
 
-    if isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1:
+    given = jobs is not None
+    if given and (isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1):
         raise CaseError([Problem("jobs", f"{found(jobs)}, expected a whole number from 1 on")])
     with _TURN, _as_file(file) as path:
         code = run_sweep(

@@ -95,6 +95,10 @@ _HELD = "{}, expected its end, or another folder by --out"
 _EXISTS = "exists, expected a new folder, or --overwrite or --resume"
 
 
+class FolderHeldError(CaseError):
+    """Another process runs in a folder."""
+
+
 class RunFolder:
     """Files of one run. Only rank 0 writes; on the other ranks every write does nothing.
 
@@ -332,7 +336,7 @@ def _hold(path: Path) -> FolderLock:
     try:
         return FolderLock(path)
     except HeldError as error:
-        raise CaseError([Problem(str(path), _HELD.format(error))]) from None
+        raise FolderHeldError([Problem(str(path), _HELD.format(error))]) from None
 
 
 def _same_case(path: Path, case: Case) -> FolderLock:

@@ -27,7 +27,7 @@ from fiberbend.models.closed_form import (
 from fiberbend.models.result import Curve, RunResult
 from fiberbend.plan.doubts import doubts
 from fiberbend.results.folder import RunFolder
-from fiberbend.running import launch, messages
+from fiberbend.running import messages
 from fiberbend.running.outputs import draw_at_rest, draw_curves, write_page
 from fiberbend.running.progress import Progress
 from fiberbend.running.record import beside, entries, peak_memory_mb
@@ -38,7 +38,11 @@ _END = 1 + 1e-9
 
 
 def run_analytic(
-    case: Case, folder: RunFolder | None, progress: Progress, section: Curve | None = None
+    case: Case,
+    folder: RunFolder | None,
+    progress: Progress,
+    ranks: int = 1,
+    section: Curve | None = None,
 ) -> RunResult:
     """Answer a case by its model's line; every rank computes, the folder's own rank writes.
 
@@ -46,6 +50,7 @@ def run_analytic(
         case: a case that `no_analytic` has no objection to.
         folder: where history.csv, run.json and the plots go, or None.
         progress: reports to the user.
+        ranks: how many wait for it, for run.json.
         section: P(θ) of the section model, to be put beside it.
 
     Raises:
@@ -88,7 +93,7 @@ def run_analytic(
         },
         {name: round(value, 6) for name, value in progress.wall_s.items()},
         peak_memory_mb(),
-        launch.size(),
+        ranks,
         {"numpy": np.__version__},
     )
     run["analytic"] = {

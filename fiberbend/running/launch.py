@@ -131,10 +131,25 @@ def stopped(stop: Interrupted) -> int:
     if rank() == 0 or not stop.together:
         print(f"fiberbend: {stop.reason}", file=sys.stderr, flush=True)
     if not stop.together:
-        # mpirun ends all by itself where the signal came from there
-        time.sleep(_GRACE)
-        end_all(stop.code)
+        leave(stop.code)
     return stop.code
+
+
+def leave(code: int, reason: str = "") -> None:
+    """End all ranks after a signal, where there are others: they may wait for this one.
+
+    mpirun has ended them before where the signal came from there.
+
+    Args:
+        code: exit code.
+        reason: a line for the user where it has not.
+    """
+    if _group.comm is None:
+        return
+    time.sleep(_GRACE)
+    if reason:
+        print(f"fiberbend: {reason}", file=sys.stderr, flush=True)
+    end_all(code)
 
 
 def end_all(code: int) -> None:

@@ -17,7 +17,7 @@ from fiberbend.case.case import Case
 from fiberbend.models.resolution import winding_remark
 from fiberbend.models.result import RunResult
 from fiberbend.results.folder import RunFolder
-from fiberbend.running import launch, messages
+from fiberbend.running import messages
 from fiberbend.running.assembly import Assembly
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.states.snapshot import Snapshot
@@ -138,6 +138,7 @@ def refused(
     model: str,
     rows: Sequence[col.Row],
     wall_s: dict[str, float],
+    ranks: int,
     error: Exception,
 ) -> CaseError:
     """What a run says that the iterative solver refuses; run.json says it too, on one rank.
@@ -147,11 +148,12 @@ def refused(
         model: name of the model.
         rows: of the history so far.
         wall_s: seconds by phase that has ended.
+        ranks: number of ranks.
         error: why.
     """
     problem = Problem("solver.linear", f'"iterative", expected direct: {error}')
     if folder is not None:
-        entries = unfinished("failed", str(problem), model, rows, wall_s, launch.size())
+        entries = unfinished("failed", str(problem), model, rows, wall_s, ranks)
         folder.write_run(**entries)
     return CaseError([problem])
 

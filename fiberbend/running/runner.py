@@ -55,8 +55,9 @@ def run_case(
     resume: bool = False,
     force: bool = False,
     states: Path | None = None,
+    comm: MPI.Comm | None = None,
 ) -> RunResult:
-    """Solve a case; collective over MPI.COMM_WORLD.
+    """Solve a case; collective over its ranks.
 
     Args:
         case: the case.
@@ -66,13 +67,14 @@ def run_case(
         resume: go on from the checkpoint in the folder.
         force: run whether its memory is free or not.
         states: folder for mesh, winding and states of a run without `out`; none by default.
+        comm: the ranks that solve it together; all of the launch by default.
 
     Raises:
         CaseError: the folder cannot be used, there is not enough memory for the run, or a winding
             cannot be calibrated.
         MeshError: gmsh failed.
     """
-    comm = MPI.COMM_WORLD
+    comm = MPI.COMM_WORLD if comm is None else comm
     progress = progress or Progress(quiet=True)
     if not force:
         refuse_shortage(case, comm, out is not None)
@@ -105,7 +107,7 @@ def run_case(
 
 def _solve_beside(case: Case) -> RunResult:
     """A case beside the run, on this rank alone."""
-    return _Run(case, meshed(case), None, Progress(quiet=True), MPI.COMM_SELF).go(False)
+    return _Run(case, meshed(case), None, Progress(quiet=True), MPI.COMM_SELF, 1).go(False)
 
 
 class _AcrossError(Exception):
@@ -126,28 +128,28 @@ def _solve(
     if model is None:
         from fiberbend.running.analytic import run_analytic
 
-        return on_rank_0(comm, lambda: run_analytic(case, folder, progress))
+        return on_rank_0(comm, lambda: run_analytic(case, folder, progress, comm.size))
     if model.shared:
         whole = without_symmetry(case)
         # asked now: later the half body takes of the memory that is free
         leaves = case.mesh.symmetry == "auto" and model.half(case)[0]
         leaves = leaves and (force or fits(whole, comm, folder is not None))
         try:
-            run = _Run(case, model, folder, progress, comm, scratch, own, may_leave=leaves)
+            run = _Run(case, model, folder, progress, comm, comm.size, scratch, own, leaves)
             return run.go(resume)
         except _AcrossError:
             if run.states is not None:
                 restart.discard(run.states)
             whole_own = own.also(messages.WHOLE)
-            run = _Run(whole, model, folder, progress, comm, scratch, whole_own)
+            run = _Run(whole, model, folder, progress, comm, comm.size, scratch, whole_own)
             return run.go(False)
     # too small to share: one rank solves it
-    alone = _Run(case, model, folder, progress, MPI.COMM_SELF, scratch, own)
+    alone = _Run(case, model, folder, progress, MPI.COMM_SELF, comm.size, scratch, own)
     return on_rank_0(comm, lambda: alone.go(False))
 
 
 class _Run:
-    """The steps of one run of finite elements, and what they share."""
+    """The steps of one run of finite elements, and what they share; `ranks` wait for its end."""
 
     def __init__(
         self,
@@ -156,12 +158,14 @@ class _Run:
         folder: RunFolder | None,
         progress: Progress,
         comm: MPI.Comm,
+        ranks: int,
         scratch: RunFolder | None = None,
         own: Own | None = None,
         may_leave: bool = False,
     ) -> None:
         self.case, self.model, self.folder = case, model, folder
-        self.states, self.progress, self.comm = folder or scratch, progress, comm
+        self.states, self.progress = folder or scratch, progress
+        self.comm, self.ranks = comm, ranks
         self.own, self.may_leave = own or Own(), may_leave
         self.recording: Recording | None = None
         self.solved = False
@@ -249,8 +253,8 @@ class _Run:
             raise stop from None
         except RefusedError as error:
             rows = self.recording.rows if self.recording else []
-            spent = self.progress.wall_s
-            raise record.refused(self.folder, self.model.name, rows, spent, error) from None
+            known = (rows, self.progress.wall_s, self.ranks)
+            raise record.refused(self.folder, self.model.name, *known, error) from None
 
     def _stopped(self, stop: Interrupted) -> None:
         """Say what is kept, and leave it in run.json: by the rank that still can."""
@@ -260,12 +264,10 @@ class _Run:
         rows, kept = (self.recording.rows, self.recording.kept) if self.recording else ([], 0)
         kept = len(rows) - 1 if self.solved else kept
         stop.reason = messages.interrupted(rows, kept, self.solved)
-        stop.together = self.comm.size == 1 == launch.size() or launch.all_stopped()
+        stop.together = self.ranks == 1 or launch.all_stopped()
         if folder.writes or not stop.together:
-            known, spent = rows[: kept + 1] if kept else rows, self.progress.wall_s
-            run = record.unfinished(
-                "interrupted", stop.reason, self.model.name, known, spent, launch.size()
-            )
+            known = (rows[: kept + 1] if kept else rows, self.progress.wall_s, self.ranks)
+            run = record.unfinished("interrupted", stop.reason, self.model.name, *known)
             own = RunFolder(folder.path)
             if self.solved and not self.run:
                 own.write_history(rows)

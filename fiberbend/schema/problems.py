@@ -51,7 +51,7 @@ class CaseError(Exception):
 
     def __reduce__(self) -> Any:
         """Pickles by its problems, so that MPI can hand it to the other ranks."""
-        return CaseError, (self.problems,)
+        return type(self), (self.problems,)
 
 
 def found(value: Any) -> str:

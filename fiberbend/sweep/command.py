@@ -1,24 +1,29 @@
-"""The command `fiberbend sweep`: a case at many points, resumable, by one process or several."""
+"""The command `fiberbend sweep`: a case at many points, resumable, by one process or many."""
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fiberbend.plan.memory import needed_mb, room, shortage
+from fiberbend.plan.memory import needed_mb
+from fiberbend.process import ranks
 from fiberbend.process.signals import Interrupted, stop_of
 from fiberbend.results.folder import ABOUT_SWEEP, REPORT, TABLE, TRENDS, RunFolder
 from fiberbend.running import launch
 from fiberbend.running.launch import FAILED
 from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.sweep.crews.crew import Crew, Here
+from fiberbend.sweep.crews.pool import Pool
+from fiberbend.sweep.crews.ranks import Ranks
+from fiberbend.sweep.loop import Event, Loop
 from fiberbend.sweep.only import choose
 from fiberbend.sweep.points import Sweep, read_sweep
 from fiberbend.sweep.seen import hardly_seen
 from fiberbend.sweep.store import NOT_RUN, Store
-from fiberbend.sweep.workers import Event, WorkerPool, work
 
 if TYPE_CHECKING:
     from fiberbend.sweep.quantities import ReportedQuantity, TableRow
@@ -32,7 +37,7 @@ def run_sweep(
     path: Path,
     out: Path,
     settings: Sequence[str] = (),
-    jobs: int = 1,
+    jobs: int | None = None,
     retry: bool = False,
     force: bool = False,
     say: Say = print,
@@ -41,11 +46,14 @@ def run_sweep(
 ) -> int:
     """Solve the points of a sweep that are not finished, then write its table and pictures.
 
+    Collective over all ranks where an MPI launcher has started several: rank 0 leads, each other
+    one solves points.
+
     Args:
         path: the sweep file.
         out: folder of the sweep.
         settings: changes to the base case.
-        jobs: processes that solve at once; one works in this process.
+        jobs: processes that solve at once, one unless given; none may be given under mpirun.
         retry: run failed points again.
         force: run whether there is enough memory or not.
         say: takes lines for the user.
@@ -59,34 +67,117 @@ def run_sweep(
         CaseError: a file or a point is wrong, the folder cannot be used, or there is not enough
             memory; nothing has run.
     """
-    if launch.size() > 1:
-        raise CaseError(
-            [Problem("fiberbend sweep", "under mpirun, expected -j for more processes")]
-        )
-    sweep = read_sweep(path, settings)
-    part = sweep.part(choose(sweep, only))
-    if dry:
-        return _dry_run(part, Store.look(out, force), jobs, say)
-    store = Store.open(out, force)
-    if retry:
-        for point in part.points:
-            store.forget(point)
+    if ranks.launched() and jobs is not None:
+        text = f"-j {jobs} under mpirun, expected either: all ranks but one solve points"
+        raise CaseError([Problem("fiberbend sweep", text)])
+    crew = _crew(jobs or 1)
+    lead = crew.led(lambda: _Lead.begun(path, out, settings, only, retry, force, dry))
+    if lead is not None and dry:
+        lead.tell_plan(crew.count, say)
+    if not dry and (who := crew.blind(Store(out).locks)):
+        text = f"not seen by {who}, expected a folder that all machines share"
+        raise CaseError([Problem(str(out), text)])
     if not force:
-        _refuse_shortage(part, store, jobs)
-    before = sum(store.result(point) is not None for point in part.points)
-    of_all = f" of {len(sweep.points)}" if len(part.points) < len(sweep.points) else ""
-    say(f"{len(part.points)}{of_all} points, {before} finished before")
-    for text in hardly_seen(part, jobs) if before < len(part.points) else ():
-        say(f"warning: {text}")
+        _refuse_shortage(crew, [] if lead is None else lead.needs())
+    if dry:
+        return 0
+    if lead is not None:
+        lead.tell_begin(crew.count, say)
     stop = None
     try:
-        _solve(part, store, jobs, _EventPrinter(len(part.points), before, say))
+        with crew.at_work(0 if lead is None else lead.left) as submit:
+            if lead is not None and submit is not None:
+                printer = _EventPrinter(len(lead.part.points), lead.finished, say)
+                Loop(lead.part.points, lead.store, printer, crew).run(submit)
     except KeyboardInterrupt as error:
         stop = stop_of(error)
-    _tell(part, store, say)
-    code = _summary(part, store, stop, say)
-    _write(sweep, store, say, pictures=stop is None, doubts=hardly_seen(sweep, jobs))
-    return code
+    code = 0 if lead is None else lead.end(stop, crew.count, say)
+    if stop is not None:
+        # ranks that serve wait for more
+        launch.leave(code)
+        return code
+    return crew.ended(code)
+
+
+def _crew(jobs: int) -> Crew:
+    if launch.size() > 1:
+        return Ranks()
+    return Pool(jobs) if jobs > 1 else Here()
+
+
+@dataclasses.dataclass(frozen=True)
+class _Lead:
+    """A sweep as the process sees it that hands out its points.
+
+    Attributes:
+        sweep: all points.
+        part: those to solve.
+        store: their folder.
+        finished: how many of them were finished before.
+    """
+
+    sweep: Sweep
+    part: Sweep
+    store: Store
+    finished: int
+
+    @property
+    def left(self) -> int:
+        """How many were not."""
+        return len(self.part.points) - self.finished
+
+    @classmethod
+    def begun(
+        cls,
+        path: Path,
+        out: Path,
+        settings: Sequence[str],
+        only: Sequence[str],
+        retry: bool,
+        force: bool,
+        dry: bool,
+    ) -> _Lead:
+        """Read a sweep and open its folder, as of `run_sweep`."""
+        sweep = read_sweep(path, settings)
+        part = sweep.part(choose(sweep, only))
+        store = Store.look(out, force) if dry else Store.open(out, force)
+        for point in part.points if retry and not dry else ():
+            store.forget(point)
+        finished = sum(store.result(point) is not None for point in part.points)
+        return cls(sweep, part, store, finished)
+
+    def needs(self) -> list[float]:
+        """Memory of what is left to solve, the largest first, MB."""
+        left = [point for point in self.part.points if self.store.result(point) is None]
+        return sorted((needed_mb(case) for point in left for case in point.cases), reverse=True)
+
+    def tell_plan(self, jobs: int, say: Say) -> None:
+        """Say what would be done."""
+        from fiberbend.sweep import dry_run
+
+        for line in dry_run.lines(self.part, self.store, jobs):
+            say(line)
+        self._tell_unseen(jobs, say)
+
+    def tell_begin(self, jobs: int, say: Say) -> None:
+        """Say what there is to do."""
+        count = len(self.part.points)
+        of_all = f" of {len(self.sweep.points)}" if count < len(self.sweep.points) else ""
+        say(f"{count}{of_all} points, {self.finished} finished before")
+        if self.finished < count:
+            self._tell_unseen(jobs, say)
+
+    def _tell_unseen(self, jobs: int, say: Say) -> None:
+        for text in hardly_seen(self.part, jobs):
+            say(f"warning: {text}")
+
+    def end(self, stop: Interrupted | None, jobs: int, say: Say) -> int:
+        """Say and write what has come of it; the exit code."""
+        _tell(self.part, self.store, say)
+        code = _summary(self.part, self.store, stop, say)
+        doubts = hardly_seen(self.sweep, jobs)
+        _write(self.sweep, self.store, say, pictures=stop is None, doubts=doubts)
+        return code
 
 
 class _EventPrinter:
@@ -109,41 +200,11 @@ class _EventPrinter:
             self._say(f"a worker died in {event['died']} (code {event['code']})")
 
 
-def _dry_run(sweep: Sweep, store: Store, jobs: int, say: Say) -> int:
-    """Say what would be done.
-
-    Raises:
-        CaseError: the points would be refused, as too little memory is free.
-    """
-    from fiberbend.sweep import dry_run
-
-    for line in dry_run.lines(sweep, store, jobs):
-        say(line)
-    for text in hardly_seen(sweep, jobs):
-        say(f"warning: {text}")
-    if not store.force:
-        _refuse_shortage(sweep, store, jobs)
-    return 0
-
-
-def _solve(sweep: Sweep, store: Store, jobs: int, on_event: _EventPrinter) -> None:
-    left = sum(store.result(point) is None for point in sweep.points)
-    if min(jobs, left) < 2:
-        launch.start_mpi()
-        work(sweep.points, store, on_event)
-        return
-
-    WorkerPool(sweep.points, store, on_event, min(jobs, left)).run()
-
-
-def _refuse_shortage(sweep: Sweep, store: Store, jobs: int) -> None:
+def _refuse_shortage(crew: Crew, needs: Sequence[float]) -> None:
     """Refuse points of which so many at once would not fit into memory, were they the largest."""
-    left = [point for point in sweep.points if store.result(point) is None]
-    cases = [case for point in left for case in point.cases]
-    largest = sorted((needed_mb(case) for case in cases), reverse=True)[: max(jobs, 1)]
-    text = shortage(largest, room(), "the sweep")
+    text = crew.shortage(needs)
     if text is not None:
-        fewer = " (or fewer -j)" if len(largest) > 1 else ""
+        fewer = f" (or {crew.fewer})" if crew.fewer else ""
         raise CaseError([Problem("memory", f"{text}{fewer}")])
 
 

@@ -3,19 +3,28 @@
 A point is finished when its run.json has the digest of its case; that is written last. A point
 is claimed by a lock on a file of its own, which the system releases when the process ends, however
 it ends. Lock files stay: two processes could otherwise lock two files of the same name.
+
+Not every file system of a cluster has locks that hold for all its machines. Who claims a point
+leaves its name in the lock file, and finishes the point only if it is still there: of two processes
+that believe to have locked it, the result of the second one counts.
 """
 
 from __future__ import annotations
 
 import contextlib
+import dataclasses
+import errno
 import fcntl
 import gc
 import json
+import os
+import socket
 import time
 import traceback
+import uuid
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from fiberbend.case.case import Case
 from fiberbend.results.folder import (
@@ -25,6 +34,7 @@ from fiberbend.results.folder import (
     HISTORY_FILE,
     POINTS,
     RUN_FILE,
+    FolderHeldError,
     RunFolder,
 )
 from fiberbend.results.reading import read_history
@@ -36,6 +46,31 @@ MARK = "sweep"
 NOT_RUN = "not run"
 """Status in the table of a point without a result."""
 _LOCKS = ".locks"
+_NO_LOCKS = (errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOSYS)
+_PATIENCE = 10.0
+"""Seconds in which a result of another machine shows in a folder that both see."""
+_PAUSE = 0.05
+
+
+@dataclasses.dataclass(frozen=True)
+class Claim:
+    """A point that this process solves, and no other one.
+
+    Attributes:
+        point: the point.
+        path: its lock file.
+        word: what this process has left there; empty where it could not.
+    """
+
+    point: Point
+    path: Path
+    word: str
+
+    def holds(self) -> bool:
+        """Whether no other process has claimed it since: one for which the lock does not hold."""
+        with contextlib.suppress(OSError):
+            return not self.word or self.path.read_text(encoding="utf-8") == self.word
+        return True
 
 
 class Store:
@@ -79,6 +114,11 @@ class Store:
             raise CaseError([Problem(str(path), text)])
         return cls(path, force)
 
+    @property
+    def locks(self) -> Path:
+        """The folder of lock files, a file each point."""
+        return self.path / _LOCKS
+
     def folder(self, point: Point) -> Path:
         """The run folder of a point."""
         return self.path / POINTS / point.name
@@ -93,82 +133,129 @@ class Store:
         done = isinstance(mark, dict) and mark.get("digest") == point.digest
         return run if done else None
 
+    def await_result(self, point: Point) -> None:
+        """Wait until a finished point shows here: another machine may have written it."""
+        end = time.monotonic() + _PATIENCE
+        while self.result(point) is None and time.monotonic() < end:
+            self._look_again(point)
+            time.sleep(_PAUSE)
+
+    def _look_again(self, point: Point) -> None:
+        """List its folder: what a network file system remembers of it may be old."""
+        with contextlib.suppress(OSError):
+            os.listdir(self.folder(point))
+
     def history(self, point: Point, part: str = "") -> list[dict[str, float | None]]:
         """Rows of history.csv of a point or of its `BLOCKED` part, none if there is no file."""
         path = self.folder(point) / part / HISTORY_FILE
         return read_history(path) if path.exists() else []
 
     @contextlib.contextmanager
-    def claim(self, point: Point) -> Iterator[bool]:
-        """Lock a point; False where another process has locked it."""
-        with (self.path / _LOCKS / point.name).open("a") as lock:
+    def claim(self, point: Point) -> Iterator[Claim | None]:
+        """Lock a point; None where another process has locked it."""
+        path = self.locks / point.name
+        with path.open("a", encoding="utf-8") as lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
-                yield False
+                yield None
                 return
-            yield True
+            except OSError as error:
+                if error.errno not in _NO_LOCKS:
+                    raise
+            word = _signed(lock)
+            self._look_again(point)
+            yield Claim(point, path, word)
 
-    def solve(self, point: Point) -> dict[str, Any]:
+    def solve(self, claim: Claim) -> dict[str, Any] | None:
         """Run a claimed point; whatever goes wrong is its result.
 
         Returns:
-            Content of run.json.
+            Content of run.json; None where another process has it all the same.
         """
-        start = time.monotonic()
+        start, point = time.monotonic(), claim.point
         try:
             folder, force = self.folder(point), self.force
             run = _run(point.case, folder, force)
             if point.blocked is not None:
                 run = _with_blocked(run, _run(point.blocked, folder / BLOCKED, force))
+        except FolderHeldError:
+            return None
         except Exception as error:
             reason = traceback.format_exception_only(error)[-1].strip().splitlines()[0]
             text = "".join(traceback.format_exception(error))
-            return self.fail(point, reason, text, time.monotonic() - start)
+            return self.fail(claim, reason, text, time.monotonic() - start)
         finally:
             # PETSc objects hang in cycles and would pile up over the points
             gc.collect()
-        return self._finish(point, run, time.monotonic() - start)
+        return self._finish(claim, run, time.monotonic() - start)
 
-    def fail(self, point: Point, reason: str, log: str = "", wall: float = 0.0) -> dict[str, Any]:
-        """Finish a claimed point that has come to nothing.
+    def fail(
+        self, claim: Claim, reason: str, log: str = "", wall: float = 0.0
+    ) -> dict[str, Any] | None:
+        """Finish a claimed point that has come to nothing; None as of `solve`.
 
         Args:
-            point: the point.
+            claim: of the point.
             reason: one line.
             log: more of it, for error.log.
             wall: seconds that it took.
         """
-        self.folder(point).mkdir(parents=True, exist_ok=True)
-        if log:
-            RunFolder(self.folder(point)).write_text("error.log", log)
-        return self._finish(point, {"status": "failed", "reason": reason}, wall)
+        folder = self.folder(claim.point)
+        folder.mkdir(parents=True, exist_ok=True)
+        if log and claim.holds():
+            RunFolder(folder).write_text("error.log", log)
+        return self._finish(claim, {"status": "failed", "reason": reason}, wall)
 
     def forget(self, point: Point) -> None:
         """Take a failed point that no process has locked as unfinished, so that it runs again."""
-        with self.claim(point) as mine:
+        with self.claim(point) as claim:
             run = self.result(point)
-            if mine and run is not None and run["status"] == "failed":
+            if claim is not None and run is not None and run["status"] == "failed":
                 (self.folder(point) / RUN_FILE).unlink()
                 for name in (CHECKPOINT, CHECKPOINT_BEFORE, "error.log"):
                     (self.folder(point) / name).unlink(missing_ok=True)
 
-    def _finish(self, point: Point, run: dict[str, Any], wall: float) -> dict[str, Any]:
+    def _finish(self, claim: Claim, run: dict[str, Any], wall: float) -> dict[str, Any] | None:
+        point = claim.point
+        if not claim.holds():
+            return None
         run = run | {MARK: {"point": point.name, "digest": point.digest, "wall_s": round(wall, 3)}}
         RunFolder(self.folder(point)).write_run(**run)
         return run
 
 
+def _signed(lock: IO[str]) -> str:
+    """What this process leaves in a lock file; nothing where a full disk prevents it."""
+    word = f"process {os.getpid()} on {socket.gethostname()}, {uuid.uuid4().hex}\n"
+    try:
+        lock.truncate(0)
+        lock.write(word)
+        lock.flush()
+        os.fsync(lock.fileno())
+    except OSError:
+        return ""
+    return word
+
+
 def _run(case: Case, folder: Path, force: bool) -> dict[str, Any]:
-    """Solve a case, from the last state of a killed run of the same case if it left one."""
+    """Solve a case, from the last state of a killed run of the same case if it left one.
+
+    On this process alone, also where it is a rank among others.
+    """
+    from mpi4py import MPI
+
     from fiberbend.running.runner import run_case
 
+    alone = MPI.COMM_SELF
     if any((folder / name).exists() for name in (CHECKPOINT, CHECKPOINT_BEFORE)):
         try:
-            return run_case(case, folder, resume=True, force=force).run
+            return run_case(case, folder, resume=True, force=force, comm=alone).run
+        except FolderHeldError:
+            raise
         except Exception:  # another case, or of another version: from the start
             gc.collect()
-    return run_case(case, folder, overwrite=True, force=force).run
+    return run_case(case, folder, overwrite=True, force=force, comm=alone).run
 
 
 def _with_blocked(run: dict[str, Any], blocked: dict[str, Any]) -> dict[str, Any]:

@@ -43,7 +43,8 @@ def test_ranks_share_what_two_of_them_shared() -> None:
     assert scaling.unknowns == 100
     assert scaling.stays == pytest.approx({"factor": 0.2, "tangent": 0.0, "rest": 1.0})
     assert [scaling.time(n) for n in (1, 2)] == pytest.approx([21.0, 13.0])
-    assert scaling.time(10**9) == pytest.approx(0.2 * 10 + 3.0)
+    # on more than two ranks by MUMPS
+    assert scaling.time(10**9) == pytest.approx(2.2 * 0.2 * 10 + 3.0)
     assert scaling.more_gb == pytest.approx(0.3)
     with pytest.raises(ValueError, match="two ranks"):
         Scaling.of([one])
