@@ -2,14 +2,13 @@
 
    Dofs are local: those that this rank owns come before its ghosts. The upper triangle is kept in
    two parts, each in compressed rows with rising columns: columns that this rank owns (inner), and
-   those of ghosts (outer). */
+   those of ghosts (outer).
+
+   What is put before this text says what FFCx's kernels are: tabulate, and NO_DATA. */
 
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef void tabulate(
-    double *, const double *, const double *, const double *, const int *, const uint8_t *);
 
 typedef struct {
   uintptr_t kernel;      /* of the element matrix, FFCx's tabulate_tensor */
@@ -182,7 +181,7 @@ int add_cells(int32_t count, const integral *integrals, const double *constants,
         }
         found = 1;
         ((tabulate *)part->kernel)(block, part->values + (int64_t)at[i] * part->stride, constants,
-                                   place, part->facet + at[i], unpermuted);
+                                   place, part->facet + at[i], unpermuted NO_DATA);
       }
     }
     if (found) add_block(block, map, cell, to);
