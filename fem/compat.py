@@ -1,4 +1,4 @@
-"""The only file that knows a version of dolfinx, ufl, ffcx or basix; docstrings say what is bridged.
+"""The only file that knows a version of dolfinx, ufl, ffcx or basix; it says what it bridges.
 
 Local cells and dofs are those that this rank owns, then its ghosts.
 """
@@ -55,12 +55,13 @@ def supported_release(version: str) -> tuple[int, int]:
 
 
 _RELEASE = supported_release(dolfinx.__version__)
-_UFL_ELEMENTS = _RELEASE < (0, 8)
-"""Elements are ufl's and compiled by FFCx; later they are basix's."""
-_INTEGRALS_BY_ID = _RELEASE < (0, 10)
-"""Integrals of a form are found by the number of a subdomain; later by their place in a list."""
+_BEFORE_8 = _RELEASE < (0, 8)
+"""Elements are ufl's, compiled by FFCx; later they are basix's."""
+_BEFORE_10 = _RELEASE < (0, 10)
+"""Integrals of a form go by the number of a subdomain, later by their place in a list; a mesh has
+one type of cell, later lists have an entry for each type."""
 
-if _UFL_ELEMENTS:
+if _BEFORE_8:
     _SETTINGS, _DEFAULTS, _JIT = "parameters", "DOLFINX_DEFAULT_JIT_PARAMETERS", "jit_params"
 else:
     _SETTINGS, _DEFAULTS, _JIT = "options", "DOLFINX_DEFAULT_JIT_OPTIONS", "jit_options"
@@ -97,7 +98,7 @@ def create_mesh(
     points = np.array_split(np.arange(len(nodes)), comm.size)[comm.rank]
     mine = np.ascontiguousarray(cells[share][:, node_permutation(cell_type)])
     placed = np.ascontiguousarray(nodes[points])
-    if _UFL_ELEMENTS:
+    if _BEFORE_8:
         # FFCx sets this variant itself at the first compilation, which would change every signature
         element = ufl.VectorElement("Lagrange", cell_type, 2, variant="equispaced")
         partitioner = dolfinx.cpp.mesh.create_cell_partitioner()
@@ -145,20 +146,20 @@ def meshtags(mesh: Any, dim: int, entities: Any, values: Any) -> Any:
 
 def scalar_element(family: str, cell_type: str, degree: int) -> Any:
     """A scalar finite element; bridges that elements are ufl's before dolfinx 0.8, then basix's."""
-    if _UFL_ELEMENTS:
+    if _BEFORE_8:
         return ufl.FiniteElement(family, cell_type, degree)
     return basix.ufl.element(family, cell_type, degree)
 
 
 def _space(mesh: Any, element: Any) -> Any:
     """A function space of an element; bridges FunctionSpace, later functionspace."""
-    make = dfem.FunctionSpace if _UFL_ELEMENTS else dfem.functionspace
+    make = dfem.FunctionSpace if _BEFORE_8 else dfem.functionspace
     return _jit(mesh.comm, lambda _: make(mesh, element))
 
 
 def mixed_space(mesh: Any, elements: Sequence[Any]) -> Any:
     """One mixed space, also of one element: block sizes are always 1; bridges MixedElement."""
-    if _UFL_ELEMENTS:
+    if _BEFORE_8:
         return _space(mesh, ufl.MixedElement(*elements))
     return _space(mesh, basix.ufl.mixed_element(list(elements)))
 
@@ -166,6 +167,7 @@ def mixed_space(mesh: Any, elements: Sequence[Any]) -> Any:
 def field_dofs(space: Any, index: int) -> npt.NDArray[np.int32]:
     """Local dofs of a scalar part of a mixed space, (cells, nodes); bridges collapse, dofmaps."""
     collapsed, parent = _jit(space.mesh.comm, lambda _: space.sub(index).collapse())
+    parent = parent if _BEFORE_10 else parent[0]
     rows = _rows(collapsed.dofmap.list, len(input_cells(space.mesh)))
     return np.asarray(parent, dtype=np.int32)[rows]
 
@@ -195,7 +197,7 @@ def coordinates(mesh: Any) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int3
     Bridges the dofmap of the geometry: one for each type of cell from dolfinx 0.10 on.
     """
     geometry = mesh.geometry
-    dofmap = geometry.dofmap if _INTEGRALS_BY_ID else geometry.dofmaps[0]
+    dofmap = geometry.dofmap if _BEFORE_10 else geometry.dofmaps[0]
     rows = _rows(dofmap, len(input_cells(mesh)))
     return np.ascontiguousarray(mesh.geometry.x), np.ascontiguousarray(rows)
 
@@ -231,7 +233,7 @@ def integrals(form: Any, ffi: Any) -> list[Integral]:
     found = []
     for kind in compiled.integral_types:
         kernels_of, ids = _kernels(form.ufcx_form, sides[kind])
-        keys = ids if _INTEGRALS_BY_ID else range(len(ids))
+        keys = ids if _BEFORE_10 else range(len(ids))
         if len(set(keys)) < len(ids):
             raise NotImplementedError("several integrals over one subdomain")
         for own, key in zip(kernels_of, keys, strict=True):
@@ -249,7 +251,7 @@ def _compiled(form: Any) -> Any:
 
 def _kernels(ufcx: Any, side: int) -> tuple[list[Any], list[int]]:
     """Integrals of one kind and their subdomains; bridges functions, later tables of all kinds."""
-    if _UFL_ELEMENTS:
+    if _BEFORE_8:
         count, own, ids = (
             ask(side) for ask in (ufcx.num_integrals, ufcx.integrals, ufcx.integral_ids)
         )
@@ -261,7 +263,7 @@ def _kernels(ufcx: Any, side: int) -> tuple[list[Any], list[int]]:
 
 def kernel_type() -> str:
     """C: the type of a compiled kernel, and what ends its arguments; bridges data of one's own."""
-    data, nothing = ("", "") if _INTEGRALS_BY_ID else (", void *", ", 0")
+    data, nothing = ("", "") if _BEFORE_10 else (", void *", ", 0")
     return f"""#include <stdint.h>
 typedef void tabulate(double *, const double *, const double *, const double *, const int *,
                       const uint8_t *{data});
@@ -279,7 +281,7 @@ def _jit(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
     """Compile with our options; bridges the defaults, with which elements and maps are compiled."""
 
     def with_defaults(options: dict[str, Any]) -> Any:
-        if not _UFL_ELEMENTS:
+        if not _BEFORE_8:
             # FFCx asks for standard C, in which gcc rounds every product before it adds it
             flags = [*options["cffi_extra_compile_args"], "-ffp-contract=fast"]
             options = options | {"cffi_extra_compile_args": flags}
@@ -300,7 +302,7 @@ class PointValues:
 
     def __init__(self, mesh: Any, expression: Any, points: npt.NDArray[np.float64]) -> None:
         cells = np.arange(owned_cells(mesh), dtype=np.int32)
-        self._cells, self._where = cells, (cells,) if _UFL_ELEMENTS else (mesh, cells)
+        self._cells, self._where = cells, (cells,) if _BEFORE_8 else (mesh, cells)
         self._points = len(points)
         self._expression = _jit(
             mesh.comm, lambda options: dfem.Expression(expression, points, **{_JIT: options})
@@ -334,7 +336,7 @@ def assemble_vector(vector: PETSc.Vec, form: Any) -> None:
 
 def create_vector(form: Any) -> PETSc.Vec:
     """A vector with ghosts for a linear form; bridges what it is made from."""
-    described = form if _INTEGRALS_BY_ID else form.function_spaces[0]
+    described = form if _BEFORE_10 else form.function_spaces[0]
     return dolfinx.fem.petsc.create_vector(described)
 
 
