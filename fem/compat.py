@@ -62,11 +62,13 @@ _BEFORE_10 = _RELEASE < (0, 10)
 one type of cell, later lists have an entry for each type."""
 
 if _BEFORE_8:
-    _SETTINGS, _DEFAULTS, _JIT = "parameters", "DOLFINX_DEFAULT_JIT_PARAMETERS", "jit_params"
+    _SETTINGS, _JIT = "parameters", "jit_params"
 else:
-    _SETTINGS, _DEFAULTS, _JIT = "options", "DOLFINX_DEFAULT_JIT_OPTIONS", "jit_options"
+    _SETTINGS, _JIT = "options", "jit_options"
     import basix.ufl
-without_settings_files(dolfinx.jit, importlib.import_module(f"ffcx.{_SETTINGS}"))
+without_settings_files(
+    f"_load_{_SETTINGS}", dolfinx.jit, importlib.import_module(f"ffcx.{_SETTINGS}")
+)
 
 
 def _basix_cell(cell_type: str) -> Any:
@@ -285,7 +287,7 @@ def _jit(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
             # FFCx asks for standard C, in which gcc rounds every product before it adds it
             flags = [*options["cffi_extra_compile_args"], "-ffp-contract=fast"]
             options = options | {"cffi_extra_compile_args": flags}
-        table = getattr(dolfinx.jit, _DEFAULTS)
+        table = getattr(dolfinx.jit, f"DOLFINX_DEFAULT_JIT_{_SETTINGS.upper()}")
         table.update({name: (value, table[name][1]) for name, value in options.items()})
         return make(options)
 
@@ -325,7 +327,7 @@ def quadrature(
 
 
 def quadrature_points(cell_type: str, degree: int) -> npt.NDArray[np.float64]:
-    """Points (q, d) of the scheme of a measure of this degree."""
+    """Points (q, d) of the scheme of a measure of this degree; bridged by `quadrature`."""
     return quadrature(cell_type, degree)[0]
 
 
