@@ -14,6 +14,12 @@ ROOT = Path(__file__).resolve().parent.parent
 MpiRun = Callable[..., "subprocess.CompletedProcess[str]"]
 
 
+def launcher() -> str:
+    """The mpirun that belongs to this Python's MPI, or the system's."""
+    own = Path(sys.executable).with_name("mpirun")
+    return str(own) if own.exists() else "mpirun"
+
+
 @pytest.fixture(scope="session")
 def mpirun() -> MpiRun:
     """Launch Python on several ranks: `mpirun(2, ["-m", "fiberbend", …], cwd=…)`."""
@@ -30,7 +36,7 @@ def mpirun() -> MpiRun:
             "OPENBLAS_NUM_THREADS": "1",
             "OMP_NUM_THREADS": "1",
         }
-        command = ["mpirun", "-n", str(ranks), sys.executable, *map(str, arguments)]
+        command = [launcher(), "-n", str(ranks), sys.executable, *map(str, arguments)]
         return subprocess.run(
             command, cwd=cwd, env=environment, timeout=timeout, capture_output=True, text=True
         )
