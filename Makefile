@@ -2,7 +2,8 @@
 SHELL := /bin/bash
 BIN := .venv/bin
 RANKS ?= $(shell n=$$(nproc); [ $$n -gt 2 ] && echo 2 || echo $$n)
-MPIRUN := mpirun -n $(RANKS)
+# the wheels have an MPI of their own
+MPIRUN = $(or $(wildcard $(BIN)/mpirun),mpirun) -n $(RANKS)
 
 # mpirun refuses root and more ranks than cores unless told; containers often have both.
 export OMPI_ALLOW_RUN_AS_ROOT := 1

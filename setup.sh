@@ -50,7 +50,7 @@ become_root() {
 # Sets python to one that can take the wheels; fails where there is none.
 find_python() {
     local name
-    for name in ${PYTHON:-python3.13 python3.12 python3.14 python3 \
+    for name in ${PYTHON:-$(kept 2) python3.13 python3.12 python3.14 python3 \
         "${PYENV_ROOT:-$HOME/.pyenv}"/versions/3.1[234].*/bin/python3}; do
         python=$(command -v "$name") && "$python" - 2>/dev/null <<'ASK' && return
 import ensurepip, sys, venv
@@ -81,11 +81,16 @@ on_debian() {
     command -v dpkg-query >/dev/null
 }
 
+# Stack (1) or Python (2) of a complete .venv: what was chosen once stays.
+kept() {
+    [[ -f $STAMP && -f .venv/stack && -x .venv/bin/python ]] && cut -d' ' -f"$1" .venv/stack || true
+}
+
 # Sets stack, python, and what of Debian's packages is missing.
 choose_stack() {
     local why
     missing=
-    stack=${FIBERBEND_STACK:-}
+    stack=${FIBERBEND_STACK:-$(kept 1)}
     [[ $stack =~ ^(|debian|wheel)$ ]] || fail "FIBERBEND_STACK=$stack, expected debian or wheel"
     if [[ $stack != wheel ]] && on_debian; then
         missing=$(missing_packages "${packages[@]}")
@@ -100,6 +105,7 @@ choose_stack() {
         fail "without root or sudo, $why; an administrator can run:" \
             "apt-get install --no-install-recommends" $missing
     fi
+    [[ -z $why || $stack != wheel ]] || fail "FIBERBEND_STACK=wheel, but $why"
     [[ -z $why ]] ||
         fail "FEniCSx comes from Debian 12 or 13, which this is not, or as wheels; $why"
     stack=wheel missing=
@@ -129,7 +135,7 @@ install_tools() {
         printf '%s\n' "$tools_key" > "$TOOLS_STAMP"
     fi
     # Only the test in a browser needs these: without them it is skipped, all else works.
-    if ! command -v dpkg-query apt-get >/dev/null; then
+    if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
         echo "setup: the test in a browser will be skipped: it needs Debian's chromium" >&2
         return 0
     fi
