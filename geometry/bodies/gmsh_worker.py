@@ -35,7 +35,7 @@ _TRIES = 3
 _UNFOLDING = ("HighOrderElastic", "HighOrder")
 """gmsh's ways to move the middles of edges, the quicker one first."""
 _PLACED = 1e-9
-"""Of the length: how far nodes may be from where they belong."""
+"""Of the length: how far all nodes may be from where they belong, lest any is moved."""
 _DEATH_SIGNAL = 1
 """PR_SET_PDEATHSIG of Linux: the signal to a process whose parent ends."""
 
@@ -184,7 +184,7 @@ class GmshBody:
 
         known = np.concatenate([_nodes(2, tag)[1] for tag in self._sections.values()])[:, :2]
         right = np.column_stack([known[cKDTree(known).query(places[:, :2])[1]], z])
-        moved = np.abs(right - places).max(axis=1) > close
+        moved = np.abs(right - places).max(axis=1) > close / 1000
         for tag, place in zip(tags[moved].tolist(), right[moved].tolist(), strict=True):
             gmsh.model.mesh.setNode(tag, place, [])
 
