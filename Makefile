@@ -2,12 +2,15 @@
 SHELL := /bin/bash
 BIN := .venv/bin
 RANKS ?= $(shell n=$$(nproc); [ $$n -gt 2 ] && echo 2 || echo $$n)
-MPIRUN := mpirun -n $(RANKS)
+# the wheels have an MPI of their own
+MPIRUN = $(or $(wildcard $(BIN)/mpirun),mpirun) -n $(RANKS)
 
 # mpirun refuses root and more ranks than cores unless told; containers often have both.
 export OMPI_ALLOW_RUN_AS_ROOT := 1
 export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
+# the same for Open MPI 5
+export PRTE_MCA_rmaps_default_mapping_policy := :oversubscribe
 
 .DEFAULT_GOAL := help
 .PHONY: help setup tools demo sweep test browser notebook verify hard survive tables speed accuracy \

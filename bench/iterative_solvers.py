@@ -11,13 +11,15 @@ from __future__ import annotations
 import time
 from typing import Any
 
+from fem.scene import Scene  # starts MPI, without which petsc4py may find none
+
+# isort: split
 import numpy as np
 import numpy.typing as npt
 from petsc4py import PETSc
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, gmres
 
-from fem.scene import Scene
 from fem.solver.rows import StoredRows
 
 Floats = npt.NDArray[np.float64]

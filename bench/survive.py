@@ -30,6 +30,7 @@ def launch(ranks: int, arguments: Sequence[str | Path]) -> subprocess.Popen[str]
         "OMPI_ALLOW_RUN_AS_ROOT": "1",
         "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
         "OMPI_MCA_rmaps_base_oversubscribe": "1",
+        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",  # of Open MPI 5
         "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
         "OPENBLAS_NUM_THREADS": "1",
         "PYTHONPATH": str(ROOT),

@@ -2,14 +2,14 @@
 
    Dofs are local: those that this rank owns come before its ghosts. The upper triangle is kept in
    two parts, each in compressed rows with rising columns: columns that this rank owns (inner), and
-   those of ghosts (outer). */
+   those of ghosts (outer).
+
+   What is put before this text says what FFCx's kernels are: tabulate, and NO_DATA. All functions
+   are static: one of another library by the same name would be called instead. */
 
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef void tabulate(
-    double *, const double *, const double *, const double *, const int *, const uint8_t *);
 
 typedef struct {
   uintptr_t kernel;      /* of the element matrix, FFCx's tabulate_tensor */
@@ -42,8 +42,9 @@ static int rising(const void *a, const void *b) {
 
    start: of each dof within slots, the places block × width + position where it stands.
    mark: scratch, as many as dofs, −1. With columns 0 only the rows' starts are found. */
-void pattern(int32_t rows, int32_t low, int32_t high, const int32_t *start, const int32_t *slots,
-             const int32_t *dofs, int32_t width, int32_t *mark, int32_t *begin, int32_t *columns) {
+static void pattern(int32_t rows, int32_t low, int32_t high, const int32_t *start,
+                    const int32_t *slots, const int32_t *dofs, int32_t width, int32_t *mark,
+                    int32_t *begin, int32_t *columns) {
   int32_t end = 0;
   for (int32_t row = 0; row < rows; row++) {
     begin[row] = end;
@@ -71,9 +72,9 @@ void pattern(int32_t rows, int32_t low, int32_t high, const int32_t *start, cons
    where a row is too long.
 
    place: scratch, as many as dofs, −1. */
-int offsets(int32_t rows, int32_t low, int32_t high, const int32_t *start, const int32_t *slots,
-            const int32_t *dofs, int32_t width, const int32_t *begin, const int32_t *columns,
-            int32_t *place, uint16_t *offset) {
+static int offsets(int32_t rows, int32_t low, int32_t high, const int32_t *start,
+                   const int32_t *slots, const int32_t *dofs, int32_t width, const int32_t *begin,
+                   const int32_t *columns, int32_t *place, uint16_t *offset) {
   int64_t entries = (int64_t)width * (width + 1) / 2;
   for (int32_t row = 0; row < rows; row++) {
     int32_t from = begin[row], to = begin[row + 1];
@@ -139,7 +140,8 @@ static void add_block(const double *block, const blocks *map, int64_t number, co
 /* Add dense symmetric blocks, width × width; what belongs to one block of the map is summed first.
 
    last: for each block of the map, one more than the number of its last values; 1: no room. */
-int add_blocks(const double *values, const int32_t *last, const blocks *map, const storage *to) {
+static int add_blocks(const double *values, const int32_t *last, const blocks *map,
+                      const storage *to) {
   int64_t size = (int64_t)map->width * map->width, from = 0;
   double *sum = malloc((size + 1) * sizeof(double));
   if (!sum) return 1;
@@ -156,9 +158,9 @@ int add_blocks(const double *values, const int32_t *last, const blocks *map, con
 /* Add the element matrices of a form; what a cell and its facets give is summed first.
 
    points: coordinates, three each; corners: of each cell, its points, nodes of them; 1: no room. */
-int add_cells(int32_t count, const integral *integrals, const double *constants,
-              const double *points, const int32_t *corners, int32_t nodes, const blocks *map,
-              const storage *to) {
+static int add_cells(int32_t count, const integral *integrals, const double *constants,
+                     const double *points, const int32_t *corners, int32_t nodes,
+                     const blocks *map, const storage *to) {
   size_t size = (size_t)map->width * map->width;
   double *block = malloc((size + 3 * (size_t)nodes) * sizeof(double));
   int32_t *at = calloc(count + 1, sizeof(int32_t));
@@ -182,7 +184,7 @@ int add_cells(int32_t count, const integral *integrals, const double *constants,
         }
         found = 1;
         ((tabulate *)part->kernel)(block, part->values + (int64_t)at[i] * part->stride, constants,
-                                   place, part->facet + at[i], unpermuted);
+                                   place, part->facet + at[i], unpermuted NO_DATA);
       }
     }
     if (found) add_block(block, map, cell, to);

@@ -110,7 +110,7 @@ class Assembler:
     """
 
     def __init__(self, comm: MPI.Comm, form: Any, space: Any, ties: Ties) -> None:
-        self._code = kernels.library(comm, _SOURCES, _DECLARATIONS)
+        self._code = kernels.library(comm, _SOURCES, _DECLARATIONS, compat.kernel_type())
         self._form, self._integrals = form, compat.integrals(form, self._code.ffi)
         self._rising = [np.argsort(part.cells, kind="stable") for part in self._integrals]
         self._points, self._corners = compat.coordinates(space.mesh)

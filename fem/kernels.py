@@ -126,7 +126,7 @@ def compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
             return make(options)
     except (cffi.VerificationError, RuntimeError) as error:
         # on several ranks dolfinx hands on the text of the error only
-        if "Compil" not in f"{type(error).__name__} {error}":
+        if "compil" not in f"{type(error).__name__} {error}".lower():
             raise
         given = os.environ.get("CC", "").split()
         name = (given or str(sysconfig.get_config_var("CC")).split())[0]
@@ -139,18 +139,19 @@ def compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
         logging.disable(previous)
 
 
-def library(comm: MPI.Comm, sources: Sequence[Path], declarations: str) -> Any:
+def library(comm: MPI.Comm, sources: Sequence[Path], declarations: str, head: str = "") -> Any:
     """C files of ours as a cffi module with `lib` and `ffi`, kept beside the forms; collective.
 
     Args:
         comm: communicator.
         sources: the C files, compiled as one, in this order.
         declarations: of its functions and types, for cffi.
+        head: C before the files.
 
     Raises:
         MachineError: no C compiler, or it failed.
     """
-    text = "\n".join(source.read_text() for source in sources)
+    text = "\n".join([head, *(source.read_text() for source in sources)])
     name = f"{sources[-1].stem}_{hashlib.sha1((declarations + text).encode()).hexdigest()}"
 
     @dolfinx.jit.mpi_jit_decorator

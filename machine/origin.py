@@ -101,16 +101,23 @@ def _processor() -> str:
 
 
 def _loaded() -> list[Path]:
-    """Shared libraries of this process; OpenBLAS before names that may be a link to it."""
+    """Shared libraries of this process, the one that the solver uses first.
+
+    OpenBLAS stands before names that may be a link to it, and behind it what the wheels of numpy
+    and scipy bring for themselves.
+    """
     with contextlib.suppress(OSError):
         text = Path("/proc/self/maps").read_text(encoding="utf-8")
         found = {line.split(maxsplit=5)[5] for line in text.splitlines() if ".so" in line}
         kinds = list(_LIBRARIES)
         maybe = (Path(name) for name in found if any(kind in name for kind in kinds))
         known = [path for path in maybe if any(kind in path.name for kind in kinds)]
-        return sorted(
-            known, key=lambda path: next(i for i, k in enumerate(kinds) if k in path.name)
-        )
+
+        def order(path: Path) -> tuple[int, bool, str]:
+            kind = next(i for i, part in enumerate(kinds) if part in path.name)
+            return kind, "scipy_openblas" in path.name, str(path)
+
+        return sorted(known, key=order)
     return []
 
 

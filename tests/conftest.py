@@ -15,6 +15,7 @@ MPIRUN = {
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",  # of Open MPI 5
     # Containers forbid the single copy of shared memory, and Open MPI then complains.
     "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
     "OPENBLAS_NUM_THREADS": "1",
@@ -22,6 +23,12 @@ MPIRUN = {
 }
 """What mpirun needs beside other tests, and as root."""
 MpiRun = Callable[..., "subprocess.CompletedProcess[str]"]
+
+
+def launcher() -> str:
+    """The mpirun that belongs to this Python's MPI, or the system's."""
+    own = Path(sys.executable).with_name("mpirun")
+    return str(own) if own.exists() else "mpirun"
 
 
 @pytest.fixture(scope="session")
@@ -32,7 +39,7 @@ def mpirun() -> MpiRun:
         ranks: int, arguments: Sequence[str | Path], cwd: Path = ROOT, timeout: float = 300.0
     ) -> subprocess.CompletedProcess[str]:
         environment = os.environ | MPIRUN
-        command = ["mpirun", "-n", str(ranks), sys.executable, *map(str, arguments)]
+        command = [launcher(), "-n", str(ranks), sys.executable, *map(str, arguments)]
         return subprocess.run(
             command, cwd=cwd, env=environment, timeout=timeout, capture_output=True, text=True
         )

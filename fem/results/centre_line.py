@@ -196,8 +196,10 @@ class _RodFit:
         # an element between knots at least
         cell, facet = mesh.facets["winding"].T
         corners = mesh.nodes[mesh.cells[cell[:, None], facet_positions(mesh.cell_type)[facet]], 2]
-        finest = max(float(np.ptp(corners, axis=1).max()) * (1 - 1e-9), length / 200)
-        count = max(1, int(length / max(float(np.ptp(plane, axis=0).max()) / 4, finest)))
+        finest = max(float(np.ptp(corners, axis=1).max()), length / 200)
+        # mesh generators place nodes to a few parts in a million: a tie must not hang on them
+        most = (1 + 1e-5) * length
+        count = max(1, int(most / max(float(np.ptp(plane, axis=0).max()) / 4, finest)))
         breaks = np.linspace(root, tip, count + 1)
         knots = np.concatenate([[root] * 3, breaks, [tip] * 3])
         basis = BSpline.design_matrix(np.clip(z, root, tip), knots, 3).T

@@ -16,7 +16,7 @@ enum { NB = 24, KEPT = 64 };
 /* Columns that are factorised, and kept, together. L is kept by such blocks of columns, each with
    the rows from its first one on. */
 
-void bind(blas_t *z, const uintptr_t *address) { memcpy(z, address, sizeof(blas_t)); }
+static void bind(blas_t *z, const uintptr_t *address) { memcpy(z, address, sizeof(blas_t)); }
 
 static const double one = 1.0, zero = 0.0, minus = -1.0;
 
@@ -178,7 +178,7 @@ static int pivoted(const blas_t *z, double *P, int m, int j, int k, double *C, i
   return 0;
 }
 
-int factorise(const blas_t *z, const plan_t *p, int from, int to, const double *values, double *panels, double *schurs, double *hot, double *work, int32_t *perm, double *d, double *e, double small, int *negative, int *turned)
+static int factorise(const blas_t *z, const plan_t *p, int from, int to, const double *values, double *panels, double *schurs, double *hot, double *work, int32_t *perm, double *d, double *e, double small, int *negative, int *turned)
 {
   for (int f = from; f < to; f++) {
     const int m = p->size[f], k = p->own[f], k1 = p->positive[f], c = m - k;
@@ -210,7 +210,7 @@ int factorise(const blas_t *z, const plan_t *p, int from, int to, const double *
   return 0;
 }
 
-void forward(const blas_t *z, const plan_t *p, int from, int to, const double *panels, const int32_t *perm, const double *d, const double *e, double *x, int64_t n, int columns, double *work)
+static void forward(const blas_t *z, const plan_t *p, int from, int to, const double *panels, const int32_t *perm, const double *d, const double *e, double *x, int64_t n, int columns, double *work)
 {
   const int inc = 1;
   for (int f = from; f < to; f++) {
@@ -251,7 +251,7 @@ void forward(const blas_t *z, const plan_t *p, int from, int to, const double *p
   }
 }
 
-void backward(const blas_t *z, const plan_t *p, int from, int to, const double *panels, const int32_t *perm, double *x, int64_t n, int columns, double *work)
+static void backward(const blas_t *z, const plan_t *p, int from, int to, const double *panels, const int32_t *perm, double *x, int64_t n, int columns, double *work)
 {
   const int inc = 1;
   for (int f = to - 1; f >= from; f--) {

@@ -310,7 +310,7 @@ class _Solve:
         tolerance = self.newton.settings.tolerance
         if not np.isfinite(force):
             self.reason = self._not_a_number()
-            return int(reasons.DIVERGED_FNORM_NAN)
+            return int(reasons.DIVERGED_FUNCTION_DOMAIN)
         resolved = max(tolerance, self.problem.force_noise / self.scale)
         if force <= resolved and volume <= tolerance and side <= tolerance:
             return int(reasons.CONVERGED_FNORM_RELATIVE)

@@ -1,7 +1,8 @@
 /* Tables of dense fronts: their borders, what goes where in them, and a residual.
 
    All numbers of unknowns are in the order of elimination. fronts.c follows in the same
-   compilation. */
+   compilation. All functions are static: that of another library by the same name, such as bind of
+   the C library, would be called instead. */
 
 #include <math.h>
 #include <stdint.h>
@@ -23,7 +24,7 @@ typedef struct {
 } plan_t;
 
 /* Sums of the keys of each row's columns, by the upper triangle. */
-void sums(int32_t n, const int32_t *begin, const int32_t *columns, const uint64_t *key, uint64_t *sum)
+static void sums(int32_t n, const int32_t *begin, const int32_t *columns, const uint64_t *key, uint64_t *sum)
 {
   for (int32_t i = 0; i < n; i++)
     for (int32_t s = begin[i]; s < begin[i + 1]; s++) {
@@ -35,7 +36,7 @@ void sums(int32_t n, const int32_t *begin, const int32_t *columns, const uint64_
 
 /* Later vertices that each front is coupled to; 1 where they are more than `room`, 2 where a front
    is coupled to one that is neither before nor behind it. */
-int borders(int32_t fronts, const int32_t *own_at, const int32_t *own, const int64_t *child_at, const int32_t *child, const int32_t *graph_at, const int32_t *graph, const int32_t *front_of, const uint8_t *root, int32_t *mark, int64_t *out_at, int32_t *out, int64_t room)
+static int borders(int32_t fronts, const int32_t *own_at, const int32_t *own, const int64_t *child_at, const int32_t *child, const int32_t *graph_at, const int32_t *graph, const int32_t *front_of, const uint8_t *root, int32_t *mark, int64_t *out_at, int32_t *out, int64_t room)
 {
   int64_t end = 0;
   for (int32_t f = 0; f < fronts; f++) {
@@ -64,7 +65,7 @@ static void places(const plan_t *p, int f, int32_t *where)
 }
 
 /* Where what children leave goes in their parents, as runs; returns their number. */
-int64_t runs(const plan_t *p, int32_t *where, int64_t *run_at, int32_t *run)
+static int64_t runs(const plan_t *p, int32_t *where, int64_t *run_at, int32_t *run)
 {
   int64_t end = 0;
   for (int f = 0; f < p->fronts; f++) {
@@ -89,7 +90,7 @@ int64_t runs(const plan_t *p, int32_t *where, int64_t *run_at, int32_t *run)
 }
 
 /* Which entries of the matrix go to each front, and where. */
-void entries(const plan_t *p, int32_t n, const int32_t *begin, const int32_t *columns, const int32_t *position, const int32_t *front_of, const uint8_t *mine, int32_t *high, int64_t *entry_at, int32_t *source, int32_t *target)
+static void entries(const plan_t *p, int32_t n, const int32_t *begin, const int32_t *columns, const int32_t *position, const int32_t *front_of, const uint8_t *mine, int32_t *high, int64_t *entry_at, int32_t *source, int32_t *target)
 {
   const int F = p->fronts;
   memset(entry_at, 0, sizeof(int64_t) * (F + 2));
@@ -111,7 +112,7 @@ void entries(const plan_t *p, int32_t n, const int32_t *begin, const int32_t *co
     }
 }
 
-void locate(const plan_t *p, const int32_t *high, int32_t *where, int32_t *target)
+static void locate(const plan_t *p, const int32_t *high, int32_t *where, int32_t *target)
 {
   for (int f = 0; f < p->fronts; f++) {
     places(p, f, where);
@@ -121,7 +122,7 @@ void locate(const plan_t *p, const int32_t *high, int32_t *where, int32_t *targe
 }
 
 /* r loses K x, and bound gains |K| |x|, by rows first, first + 1, ... of the upper triangle. */
-void residual(int32_t rows, int32_t first, const int32_t *begin, const int32_t *columns, const double *values, const double *x, double *r, double *bound)
+static void residual(int32_t rows, int32_t first, const int32_t *begin, const int32_t *columns, const double *values, const double *x, double *r, double *bound)
 {
   for (int32_t row = 0; row < rows; row++) {
     const int32_t i = first + row;

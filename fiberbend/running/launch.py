@@ -15,7 +15,7 @@ from fiberbend.process import beside, ranks
 from fiberbend.process.ranks import rank as rank
 from fiberbend.process.ranks import size as size
 from fiberbend.process.signals import Interrupted
-from machine.folders import settle
+from machine.folders import MachineError, settle
 
 if TYPE_CHECKING:
     from fiberbend.case.case import Case
@@ -71,6 +71,10 @@ def start_mpi() -> None:
 
     What is set for it is taken back: an mpirun that is launched from here must not find it. An
     error that nobody catches ends all ranks from here on.
+
+    Raises:
+        MachineError: the launcher belongs to another MPI, so that every process takes itself for
+            the whole; or no folder can be used.
     """
     from machine.kernel import settle_kernel
 
@@ -84,6 +88,13 @@ def start_mpi() -> None:
     finally:
         for name in new:
             del os.environ[name]
+    if MPI.COMM_WORLD.size < size():
+        own = Path(sys.executable).with_name("mpirun")
+        which = f", {own}" if own.exists() else ""
+        raise MachineError(
+            f"launched as {size()} processes, of which MPI finds {MPI.COMM_WORLD.size}: the mpirun "
+            f"of another MPI; take that of {MPI.get_vendor()[0]}{which}"
+        )
     if MPI.COMM_WORLD.size > 1 and _group.comm is None:
         _group.comm = MPI.COMM_WORLD.Dup()
         sys.excepthook = _end_all

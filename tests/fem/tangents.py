@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import functools
 
+from fem import compat  # starts MPI, without which dolfinx may find none
+
+# isort: split
 import dolfinx.fem as dfem
 import dolfinx.fem.petsc
 import numpy as np
@@ -11,7 +14,6 @@ import ufl
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fem import compat
 from fem.effects.supports import Symmetry
 from fem.effects.winding import Winding as Discrete
 from fem.kinematics.domain import Domain

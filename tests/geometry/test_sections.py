@@ -8,6 +8,7 @@ from typing import Any, get_args
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from fiberbend.case import case
 from geometry.bodies.extrude import hexahedral_body, hexahedral_slice, section_quadrilaterals
@@ -70,7 +71,7 @@ def test_a_shape_without_a_part_cannot_be_made() -> None:
     # a shape without an outline would fail only once it is wound
     parts = {name: getattr(CircleActuator, name) for name in ("closed_forms", "layout")}
     triangle = type("TriangleActuator", (ShapedActuator,), {"section": "triangle", **parts})
-    with pytest.raises(TypeError, match="abstract method outline"):
+    with pytest.raises(TypeError, match=r"abstract method '?outline"):
         triangle(length=40, wall=2, cap=8)
 
 
@@ -313,10 +314,10 @@ def test_gmsh_makes_the_same_mesh(body: ShapedActuator) -> None:
     # two independent ways to the same mesh: node places and names must agree
     size, strips = MeshSize(axial=4), Strips(2.0, 2.0)
     ours, theirs = hexahedral_body(body, size, strips), build_body(body, size, strips)
-    assert _as_set(theirs.nodes.round(6)) == _as_set(ours.nodes.round(6))
+    assert _same(theirs.nodes, ours.nodes)
     assert set(theirs.facets) == set(ours.facets)
     for name in ours.facets:
-        assert _as_set(_centers(theirs, name)) == _as_set(_centers(ours, name))
+        assert _same(_centers(theirs, name), _centers(ours, name))
     assert theirs.nodes[theirs.points["pin"]] == pytest.approx(0, abs=1e-9)
     check(theirs, body, DOUBLE)
 
@@ -365,7 +366,13 @@ def test_meshes_that_cannot_resolve_a_section_are_refused() -> None:
 
 
 def _centers(mesh: MeshData, name: str) -> np.ndarray:
-    return mesh.nodes[mesh.facet_nodes(name)].mean(axis=1).round(6)
+    return mesh.nodes[mesh.facet_nodes(name)].mean(axis=1)
+
+
+def _same(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two sets of points are one, to 5e-7 mm."""
+    pairs = ((one, other), (other, one))
+    return all(cKDTree(a).query(b)[0].max() < 5e-7 for a, b in pairs) and len(one) == len(other)
 
 
 def _as_set(points: np.ndarray) -> set[tuple[float, ...]]:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import fem.march.march  # starts MPI, without which petsc4py may find none
+
+# isort: split
 import numpy as np
 import pytest
 from petsc4py import PETSc
 
-import fem.march.march
 import fem.solver.newton
 from bench.hard_cases import find
 from bench.hard_procedures import unloaded

@@ -29,6 +29,7 @@ KERNELS = ("Prescott", "Nehalem", "Sandybridge", "Haswell", "SkylakeX")
 
 CHECK = """
 import json, sys
+from mpi4py import MPI
 import numpy as np
 from petsc4py import PETSc
 

@@ -29,7 +29,7 @@ from fiberbend.sweep.points import Point, read_sweep
 from fiberbend.sweep.store import MARK, Store
 from fiberbend.sweep.table import where
 from fiberbend.sweep.trends import groups, sign
-from tests.conftest import MPIRUN, ROOT
+from tests.conftest import MPIRUN, ROOT, launcher
 
 SWEEP: dict[str, Any] = {
     "title": "Six actuators",
@@ -111,8 +111,8 @@ class Lab:
             "FAKE_LOG": str(self.log),
             **(MPIRUN if ranks else {}),
         }
-        launcher = ["mpirun", "-n", ranks] if ranks else []
-        command = [*launcher, sys.executable, "-m", "fiberbend", "sweep", str(self.file), "--out"]
+        command = [launcher(), "-n", ranks] if ranks else []
+        command = [*command, sys.executable, "-m", "fiberbend", "sweep", str(self.file), "--out"]
         return subprocess.Popen(
             [*command, str(self.out), *arguments],
             env=environment,

@@ -17,7 +17,7 @@ import yaml
 import fiberbend
 from bench.survive import session
 from fiberbend.results.reading import read_history
-from tests.conftest import MPIRUN, ROOT, MpiRun
+from tests.conftest import MPIRUN, ROOT, MpiRun, launcher
 from tests.run.conftest import small
 from tests.run.test_sweep import LAST, NAMES, SWEEP, Lab, wait_for
 
@@ -72,8 +72,8 @@ class Cube:
 
     def start(self, out: str, *arguments: str, ranks: str = "") -> subprocess.Popen[str]:
         """The command, by mpirun where there is a number of ranks."""
-        launcher = ["mpirun", "-n", ranks] if ranks else []
-        command = [*launcher, sys.executable, "-m", "fiberbend", "sweep", str(self.file)]
+        command = [launcher(), "-n", ranks] if ranks else []
+        command = [*command, sys.executable, "-m", "fiberbend", "sweep", str(self.file)]
         return subprocess.Popen(
             [*command, "--out", str(self.folder / out), *arguments],
             env=os.environ | MPIRUN | {"PYTHONPATH": str(ROOT)},

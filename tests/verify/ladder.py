@@ -6,13 +6,15 @@ import dataclasses
 from collections.abc import Callable, Sequence
 from typing import ClassVar, Protocol
 
+from fem import compat  # starts MPI, without which dolfinx may find none
+
+# isort: split
 import dolfinx.fem as dfem
 import numpy as np
 import numpy.typing as npt
 import ufl
 from mpi4py import MPI
 
-from fem import compat
 from fem.effects.effect import Effect
 from fem.effects.elastic import Elastic
 from fem.effects.incompressible import Incompressible
