@@ -69,7 +69,10 @@ def items(body: Body, rubbers: list[list[float]]) -> tuple[Any, list[Any], Any]:
     mesh = fem.Mesh(body.points, body.cells, "hexahedron27")
     field = fem.FieldsMixed(fem.RegionTriQuadraticHexahedron(mesh), n=3)
     c1, c2, bulk = np.array(rubbers).T[:, body.region]
-    solid = fem.SolidBody(fem.NearlyIncompressible(Yeoh(c1, c2), bulk), field)
+    rubber = fem.NearlyIncompressible(Yeoh(c1, c2), bulk)
+    # felupe would take the elements of a larger mesh by parts, and their coefficients whole
+    rubber.chunksize = None
+    solid = fem.SolidBody(rubber, field)
 
     line = fem.Mesh(body.points, body.hoops, "line")
     thread_field = fem.FieldContainer([fem.Field(fem.RegionTruss(line), dim=3)])
