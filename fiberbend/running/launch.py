@@ -36,6 +36,8 @@ _ALONE = {
     "OMPI_MCA_btl": "self",
 }
 """Open MPI's settings for a process that talks to itself only."""
+_STRAY = "PMIX_RANK"
+"""What a shell may hand on without a launch, and MPICH does not start with."""
 
 
 class _Group:
@@ -85,12 +87,14 @@ def start_mpi() -> None:
     alone = not ranks.launched()
     new = [name for name in _ALONE if alone and name not in os.environ]
     os.environ.update({name: _ALONE[name] for name in new})
+    stray = {_STRAY: os.environ.pop(_STRAY)} if alone and _STRAY in os.environ else {}
     try:
         with warnings.catch_warnings():
             # of another launcher, of which the error below speaks
             warnings.filterwarnings("ignore", "suspicious MPI", RuntimeWarning)
             from mpi4py import MPI
     finally:
+        os.environ.update(stray)
         for name in new:
             del os.environ[name]
     if MPI.COMM_WORLD.size < size():
