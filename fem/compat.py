@@ -60,6 +60,8 @@ _BEFORE_8 = _RELEASE < (0, 8)
 _BEFORE_10 = _RELEASE < (0, 10)
 """Integrals of a form go by the number of a subdomain, later by their place in a list; a mesh has
 one type of cell, later lists have an entry for each type."""
+_TAG = 1300
+"""Of messages about ghosts: another than dolfinx's own, which may still be under way."""
 
 if _BEFORE_8:
     _SETTINGS, _JIT = "parameters", "jit_params"
@@ -187,11 +189,13 @@ def shared_space(
         owners: these ranks, (ghosts,).
     """
     ghosts, owners = np.asarray(ghosts, dtype=np.int64), np.asarray(owners, dtype=np.int32)
-    index_map = dolfinx.cpp.common.IndexMap(space.mesh.comm, owned, ghosts, owners)
+    tag = () if _BEFORE_10 else (_TAG,)
+    index_map = dolfinx.cpp.common.IndexMap(space.mesh.comm, owned, ghosts, owners, *tag)
     adjacency = dolfinx.cpp.graph.AdjacencyList_int32(np.ascontiguousarray(rows, dtype=np.int32))
-    layout = space._cpp_object.dofmap.dof_layout
-    dofmap = dolfinx.cpp.fem.DofMap(layout, index_map, 1, adjacency, 1)
-    made = dolfinx.cpp.fem.FunctionSpace(space._cpp_object.mesh, space.element, dofmap)
+    own = space._cpp_object
+    dofmap = dolfinx.cpp.fem.DofMap(own.dofmap.dof_layout, index_map, 1, adjacency, 1)
+    shape = (own.value_shape,) if _BEFORE_10 and not _BEFORE_8 else ()
+    made = type(own)(own.mesh, own.element, dofmap, *shape)
     return dfem.FunctionSpace(space.mesh, space.ufl_element(), made)
 
 

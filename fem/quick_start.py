@@ -44,9 +44,8 @@ def _end_all(kind: type[BaseException], error: BaseException, trace: TracebackTy
     from mpi4py import MPI
 
     sys.__excepthook__(kind, error, trace)
-    sys.stdout.flush()
-    sys.stderr.flush()
-    MPI.COMM_WORLD.Abort(_INTERRUPTED if issubclass(kind, KeyboardInterrupt) else _FAILED)
+    code = _INTERRUPTED if issubclass(kind, KeyboardInterrupt) else _FAILED
+    world.end_all(MPI.COMM_WORLD, code)
 
 
 class _Versions(types.ModuleType):

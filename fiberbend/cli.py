@@ -101,7 +101,7 @@ def entry() -> NoReturn:
     except SystemExit as stop:
         code = stop.code
     if code == WRONG_INPUT:
-        launch.let_rank_0_speak()
+        launch.let_rank_0_speak(code)
     lost = streams.loss()
     if lost:
         say(f"fiberbend: standard output: {lost}", sys.stderr)

@@ -1,6 +1,13 @@
-"""Whether a rank of a launch computes with the others, or by itself; said before fem is loaded."""
+"""Whether a rank computes with the others, said before fem is loaded; how one rank ends all."""
 
 from __future__ import annotations
+
+import sys
+import time
+from typing import Any
+
+_HEARD = 0.2
+"""Seconds in which a launcher reads what a rank has said."""
 
 
 class _World:
@@ -19,3 +26,21 @@ def part() -> None:
 def parted() -> bool:
     """Whether it does."""
     return _World.alone
+
+
+def be_heard() -> None:
+    """Wait until the launcher has read what this rank has said: MPICH's drops the rest at the end.
+
+    Open MPI's reads all of it.
+    """
+    sys.stdout.flush()
+    sys.stderr.flush()
+    time.sleep(_HEARD)
+
+
+def end_all(comm: Any, code: int) -> None:
+    """End all ranks of a communicator, also where a signal comes meanwhile."""
+    try:
+        be_heard()
+    finally:
+        comm.Abort(code)

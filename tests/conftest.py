@@ -25,10 +25,18 @@ MPIRUN = {
 MpiRun = Callable[..., "subprocess.CompletedProcess[str]"]
 
 
+_OWN = Path(sys.executable).with_name("mpirun")
+"""MPICH's, where dolfinx is from PyPI."""
+
+
 def launcher() -> str:
     """The mpirun that belongs to this Python's MPI, or the system's."""
-    own = Path(sys.executable).with_name("mpirun")
-    return str(own) if own.exists() else "mpirun"
+    return str(_OWN) if _OWN.exists() else "mpirun"
+
+
+def killed_by(number: int) -> int:
+    """Exit code of `launcher` where a signal has killed a rank; MPICH does not add 128."""
+    return number if _OWN.exists() else 128 + number
 
 
 @pytest.fixture(scope="session")

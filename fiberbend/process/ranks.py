@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 
 _LAUNCHES = (
@@ -30,6 +31,19 @@ def size() -> int:
 def launched() -> bool:
     """Whether an MPI launcher has started this process."""
     return _launch()[2]
+
+
+def end_all(code: int) -> None:
+    """End all ranks by MPICH's launcher where MPI has not started: it lets the others go on.
+
+    Others end all ranks when the first one ends with an error.
+    """
+    if "HYDI_CONTROL_FD" in os.environ and "PMI_FD" in os.environ:
+        from machine import world
+
+        world.be_heard()
+        with contextlib.suppress(OSError, ValueError):
+            os.write(int(os.environ["PMI_FD"]), f"cmd=abort exitcode={code}\n".encode())
 
 
 def _launch() -> tuple[int, int, bool]:

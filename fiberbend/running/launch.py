@@ -6,6 +6,7 @@ import functools
 import os
 import sys
 import time
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
@@ -15,6 +16,7 @@ from fiberbend.process import beside, ranks
 from fiberbend.process.ranks import rank as rank
 from fiberbend.process.ranks import size as size
 from fiberbend.process.signals import Interrupted
+from machine import world
 from machine.folders import MachineError, settle
 
 if TYPE_CHECKING:
@@ -34,6 +36,8 @@ _ALONE = {
     "OMPI_MCA_btl": "self",
 }
 """Open MPI's settings for a process that talks to itself only."""
+_STRAY = "PMIX_RANK"
+"""What a shell may hand on without a launch, and MPICH does not start with."""
 
 
 class _Group:
@@ -83,17 +87,22 @@ def start_mpi() -> None:
     alone = not ranks.launched()
     new = [name for name in _ALONE if alone and name not in os.environ]
     os.environ.update({name: _ALONE[name] for name in new})
+    stray = {_STRAY: os.environ.pop(_STRAY)} if alone and _STRAY in os.environ else {}
     try:
-        from mpi4py import MPI
+        with warnings.catch_warnings():
+            # of another launcher, of which the error below speaks
+            warnings.filterwarnings("ignore", "suspicious MPI", RuntimeWarning)
+            from mpi4py import MPI
     finally:
+        os.environ.update(stray)
         for name in new:
             del os.environ[name]
     if MPI.COMM_WORLD.size < size():
         own = Path(sys.executable).with_name("mpirun")
         which = f", {own}" if own.exists() else ""
         raise MachineError(
-            f"launched as {size()} processes, of which MPI finds {MPI.COMM_WORLD.size}: the mpirun "
-            f"of another MPI; take that of {MPI.get_vendor()[0]}{which}"
+            f"rank {rank()} of {size()}, but MPI has started {MPI.COMM_WORLD.size}: expected the "
+            f"mpirun of {MPI.get_vendor()[0]}{which}, or srun --mpi=pmix"
         )
     if MPI.COMM_WORLD.size > 1 and _group.comm is None:
         _group.comm = MPI.COMM_WORLD.Dup()
@@ -166,9 +175,7 @@ def leave(code: int, reason: str = "") -> None:
 def end_all(code: int) -> None:
     """End all ranks at once, where there are others."""
     if _group.comm is not None:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        _group.comm.Abort(code)
+        world.end_all(_group.comm, code)
 
 
 def refuse(text: str, code: int) -> int:
@@ -203,15 +210,19 @@ def on_rank_0(comm: Any, action: Callable[[], T]) -> T:
     return cast(T, value)
 
 
-def let_rank_0_speak() -> None:
-    """Delay the end of another rank: mpirun kills all when the first one ends with an error.
+def let_rank_0_speak(code: int) -> None:
+    """Delay the end of another rank: all are killed when the first one ends with an error.
 
     Rank 0 ends long before the time is up, and mpirun then ends this rank too; else it has found
     nothing, and this one speaks. Once MPI is up, its own end waits for all ranks.
     """
-    if rank() > 0 and "mpi4py.MPI" not in sys.modules:
-        time.sleep(_PATIENCE)
-        print(f"rank {rank()}: {_group.error}", file=sys.stderr, flush=True)
+    if "mpi4py.MPI" in sys.modules or size() == 1:
+        return
+    if rank() == 0:
+        ranks.end_all(code)
+        return
+    time.sleep(_PATIENCE)
+    print(f"rank {rank()}: {_group.error}", file=sys.stderr, flush=True)
 
 
 def say(text: str, stream: TextIO | None = None) -> None:

@@ -45,6 +45,23 @@ def test_a_launch_is_one_by_mpi(
     assert (ranks.rank(), ranks.size(), ranks.launched()) == expected
 
 
+@pytest.mark.parametrize(
+    ("sign", "said"), [("HYDI_CONTROL_FD", b"cmd=abort exitcode=1\n"), ("", b"")]
+)
+def test_only_mpichs_launcher_is_told_to_end_all(
+    sign: str, said: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Others, which know other words, end all by themselves."""
+    monkeypatch.delenv("HYDI_CONTROL_FD", raising=False)
+    reading, writing = os.pipe()
+    for name in filter(None, ("PMI_FD", sign)):
+        monkeypatch.setenv(name, str(writing))
+    ranks.end_all(1)
+    os.close(writing)
+    with open(reading, "rb") as pipe:
+        assert pipe.read() == said
+
+
 def test_variables_of_slurm_change_nothing() -> None:
     """One process that is alone in MPI, speaks, and keeps its threads."""
     code = (

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import signal
 from pathlib import Path
 
 import pytest
 from mpi4py import MPI
 
-from tests.conftest import MpiRun
+from tests.conftest import MpiRun, killed_by
 from tests.fem.spread import measure
 
 
@@ -30,7 +31,7 @@ import os, signal, sys
 import fem
 from mpi4py import MPI
 
-print("begun", MPI.COMM_WORLD.rank)
+sys.stdout.write(f"begun {{MPI.COMM_WORLD.rank}}\\n")  # at once, so that lines stay whole
 if MPI.COMM_WORLD.rank == {rank}:
     {fault}
 MPI.COMM_WORLD.Barrier()
@@ -38,8 +39,8 @@ MPI.COMM_WORLD.Barrier()
 FAULTS = {
     "raise RuntimeError('out of luck')": (1, "RuntimeError: out of luck"),
     "os.kill(os.getpid(), signal.SIGINT)": (130, "KeyboardInterrupt"),
-    "os.kill(os.getpid(), signal.SIGTERM)": (143, ""),
-    "os.kill(os.getpid(), signal.SIGKILL)": (137, ""),
+    "os.kill(os.getpid(), signal.SIGTERM)": (killed_by(signal.SIGTERM), ""),
+    "os.kill(os.getpid(), signal.SIGKILL)": (killed_by(signal.SIGKILL), ""),
 }
 
 

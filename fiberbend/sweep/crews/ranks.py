@@ -19,7 +19,6 @@ from typing import Any
 from fiberbend.plan.memory import RANK_MB, room, shortage
 from fiberbend.process.signals import stop_of
 from fiberbend.running import launch
-from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.sweep.crews.crew import Crew, Submit, T
 from machine import world
 
@@ -33,7 +32,7 @@ class Ranks(Crew):
     """All ranks of the launch; collective.
 
     Raises:
-        CaseError: they do not know of each other.
+        MachineError: they do not know of each other.
     """
 
     fewer = "fewer ranks on a machine"
@@ -46,11 +45,6 @@ class Ranks(Crew):
         # what ranks wait for here is apart from what they compute
         self._comm = MPI.Intracomm(MPI.COMM_WORLD.Dup())
         self.count = self._comm.size - 1
-        if self.count < 1:
-            text = (
-                f"rank {launch.rank()} of {launch.size()}, but MPI has started 1: expected mpirun"
-            )
-            raise CaseError([Problem("fiberbend sweep", f"{text}, or srun --mpi=pmix")])
 
     def led(self, action: Callable[[], T]) -> T | None:
         """By rank 0; its result stays there, for it may be large."""
