@@ -10,14 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from fiberbend.process.ranks import launcher
+
 ROOT = Path(__file__).resolve().parent.parent
 MpiRun = Callable[..., "subprocess.CompletedProcess[str]"]
-
-
-def launcher() -> str:
-    """The mpirun that belongs to this Python's MPI, or the system's."""
-    own = Path(sys.executable).with_name("mpirun")
-    return str(own) if own.exists() else "mpirun"
 
 
 @pytest.fixture(scope="session")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import sys
+from pathlib import Path
 
 _LAUNCHES = (
     ("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", ()),
@@ -30,6 +32,23 @@ def size() -> int:
 def launched() -> bool:
     """Whether an MPI launcher has started this process."""
     return _launch()[2]
+
+
+def launcher() -> str:
+    """The mpirun of this Python's MPI: beside it, where it came as a wheel, or the system's."""
+    own = Path(sys.executable).with_name("mpirun")
+    return str(own) if own.exists() else "mpirun"
+
+
+def foreign_launcher() -> bool:
+    """Whether Open MPI's mpirun has started a Python that has MPICH's beside it.
+
+    MPICH, asked to start under it, ends the process with pages of its own.
+    """
+    return (
+        "OMPI_COMM_WORLD_SIZE" in os.environ
+        and Path(sys.executable).with_name("mpiexec.hydra").exists()
+    )
 
 
 def _launch() -> tuple[int, int, bool]:
