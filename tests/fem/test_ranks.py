@@ -29,7 +29,7 @@ import os, signal, sys
 import fem
 from mpi4py import MPI
 
-print("begun", MPI.COMM_WORLD.rank)
+print("begun " + str(MPI.COMM_WORLD.rank))  # in one piece: launchers mix what ranks write
 if MPI.COMM_WORLD.rank == {rank}:
     {fault}
 MPI.COMM_WORLD.Barrier()
@@ -53,7 +53,11 @@ def test_what_ends_one_rank_of_a_program_ends_all(
     script.write_text(ALONE.format(rank=rank, fault=fault), encoding="utf-8")
     run = mpirun(2, [script], timeout=60)
     code, said = FAULTS[fault]
-    assert run.returncode == code
+    assert run.returncode != 0
+    if said or MPI.get_vendor()[0] == "Open MPI":
+        assert run.returncode == code
+    # else a signal has ended the rank, and MPICH's launcher returns the signal's number, or a
+    # library's own code where it has caught the signal
     assert run.stderr.count(said) == 1 or not said
     if said:
         assert "Traceback" in run.stderr
