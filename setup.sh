@@ -204,7 +204,7 @@ python_packages=$!
 if [[ -n $missing ]]; then
     apt install $missing || fail "apt-get could not install: $(echo $missing)"
 fi
-wait $python_packages || fail "pip could not install the Python packages."
+wait $python_packages || fail "pip could not install the Python packages; is the network up?"
 pip --no-build-isolation --constraint "$constraints" --editable '.[dev]' ||
     fail "pip could not install fiberbend."
 if [[ $stack == debian ]]; then
