@@ -222,17 +222,17 @@ HEAD = """# Platforms
 <!-- Written by `make platforms`; do not edit by hand. -->
 
 fiberbend runs on three stacks: FEniCSx of Debian 12, of Debian 13, and as wheels from PyPI for any
-x86-64 Linux with glibc 2.34, a C compiler (FFCx compiles kernels when a case is run) and Python from
-3.12 to 3.14. `make setup` takes Debian's where root or sudo can install it or it is there, else the
-wheels, which need no root; `FIBERBEND_STACK=debian` or `wheel` chooses. Any other release of dolfinx
-is refused.
+x86-64 Linux with glibc 2.34, a C compiler (FFCx compiles kernels when a case is run) and Python
+from 3.12 to 3.14. `make setup` takes Debian's where it is there, or where root or sudo can install
+it; else the wheels, which need no root. `FIBERBEND_STACK=debian` or `wheel` chooses. Any other
+release of dolfinx is refused.
 
-The wheels come from `dolfinx-solver-real`, a young package of few releases. It is pinned with all that it
-needs in `requirements-wheel.txt`; only `setup.sh` and that file name it. Should it vanish, Debian's two
-releases stay.
+The wheels come from `dolfinx-solver-real`, a young package of few releases. It is pinned with all
+that it needs in `requirements-wheel.txt`; should it vanish, Debian's two releases stay.
 
-Every test runs on Debian 12. On the two others `make test-wheel` and `make test-debian13` run the fast
-tests (`tests/fast.txt`); `.ci/run` calls both, and says in one line what it could not run and why.
+Every test runs on Debian 12. `make test-wheel` and `make test-debian13` run the fast tests
+(`tests/fast.txt`) on the two others. `.ci/run` calls both, and says in one line what it could not
+run and why.
 
 ## The stacks that were measured
 """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -21,14 +22,14 @@ def test_three_stacks_have_left_a_record() -> None:
 
 @pytest.mark.parametrize("name", platforms.CASES)
 @pytest.mark.parametrize("record", RECORDS[1:], ids=NAMES[1:])
-def test_stacks_answer_the_same(record: dict, name: str) -> None:
+def test_stacks_answer_the_same(record: dict[str, Any], name: str) -> None:
     one, other = (r["runs"][name]["answers"] for r in (RECORDS[0], record))
     found = platforms.difference(one, other)
     assert max(found.values()) < platforms.TOLERANCE, found
 
 
 @pytest.mark.parametrize("record", RECORDS, ids=NAMES)
-def test_two_ranks_answer_like_one(record: dict) -> None:
+def test_two_ranks_answer_like_one(record: dict[str, Any]) -> None:
     one, two = (record["runs"][f"coarse body{n}"]["answers"] for n in ("", ", two ranks"))
     assert max(platforms.difference(one, two).values()) < platforms.TOLERANCE
 

@@ -47,7 +47,8 @@ def test_other_versions_are_refused_in_one_line(version: str) -> None:
 
 def test_a_run_with_another_version_ends_at_its_start(tmp_path: Path) -> None:
     script = (
-        "import dolfinx, sys; dolfinx.__version__ = '0.7.3'; sys.argv[0] = 'fiberbend'; "
+        "from mpi4py import MPI; import dolfinx, sys; dolfinx.__version__ = '0.7.3'; "
+        "sys.argv[0] = 'fiberbend'; "
         "from fiberbend.__main__ import entry; entry()"
     )
     case, out = ROOT / "cases" / "section.yaml", tmp_path / "run"
