@@ -40,6 +40,25 @@ CASES: dict[str, tuple[int, tuple[str, ...]]] = {
     "body, every turn resolved": (1, ("free_bending",)),
 }
 """Ranks, name of a case in cases/, and changes to it."""
+ORDERINGS = {"AMD": 0, "AMF": 2, "SCOTCH": 3, "PORD": 4, "METIS": 5, "QAMD": 6}
+"""MUMPS's own numbers of them."""
+TETRAHEDRA = (
+    "free_bending",
+    "mesh.element=tetrahedron",
+    "mesh.axial=6 mm",
+    "mesh.section=1",
+    "output.at_angles=[]",
+    "output.stop_at_angle=90 deg",
+)
+"""A body whose every tangent is left to MUMPS."""
+ORDERED = """
+import sys
+from fem.solver import factor
+factor.ORDERING_PORD = {number}
+sys.argv[0] = "fiberbend"
+from fiberbend.__main__ import entry
+entry()
+"""
 QUICK = ("section", "cell", "coarse body", "blocked tip")
 """What a test solves again on the stack that it runs on."""
 COLUMNS = ("pressure_kPa", "angle_deg", "tip_force_N")
@@ -56,8 +75,29 @@ def solve(name: str, folder: Path) -> tuple[list[dict[str, float]], dict[str, An
         What it answers where it was asked for, its record, and the processor time of all its
         processes in s.
     """
-    ranks, (case, *changes) = CASES[name]
-    command = [sys.executable, "-m", "fiberbend", "run", f"cases/{case}.yaml", "--quiet"]
+    ranks, changed = CASES[name]
+    return launch(ranks, ["-m", "fiberbend"], changed, folder)
+
+
+def launch(
+    ranks: int, program: Sequence[str], changed: Sequence[str], folder: Path
+) -> tuple[list[dict[str, float]], dict[str, Any], float]:
+    """Run a case by a program.
+
+    Args:
+        ranks: number of processes.
+        program: what Python runs.
+        changed: name of a case, and changes to it.
+        folder: where the run is left.
+
+    Returns:
+        As `solve`.
+
+    Raises:
+        RuntimeError: it failed.
+    """
+    case, *changes = changed
+    command = [sys.executable, *program, "run", f"cases/{case}.yaml", "--quiet"]
     command += ["--overwrite", "--out", str(folder)]
     command += [word for change in (*changes, *BARE) for word in ("--set", change)]
     if ranks > 1:
@@ -77,7 +117,7 @@ def solve(name: str, folder: Path) -> tuple[list[dict[str, float]], dict[str, An
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode:
-        raise RuntimeError(f"{name}: {done.stderr.strip()}")
+        raise RuntimeError(f"{case}: {done.stderr.strip()}")
     record = json.loads((folder / "run.json").read_text(encoding="utf-8"))
     spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     return list(answers(folder / "history.csv")), record, spent
@@ -119,7 +159,28 @@ def measured() -> dict[str, Any]:
         "blas": record["blas"]["library"],
         "setup_s": setup_seconds(),
         "runs": runs,
+        "orderings": orderings(),
     }
+
+
+def orderings() -> dict[str, float | None]:
+    """Time of all factorisations of a body of tetrahedra by ordering, s; None: MUMPS has it not."""
+    found: dict[str, float | None] = {}
+    for name, number in ORDERINGS.items():
+        program = ["-c", ORDERED.format(number=number)]
+        times = []
+        with tempfile.TemporaryDirectory() as folder:
+            for _ in range(REPEATS):
+                try:
+                    _, record, _ = launch(1, program, TETRAHEDRA, Path(folder) / "run")
+                except RuntimeError as error:
+                    if "MUMPS took ordering" not in str(error):
+                        raise
+                    break
+                times.append(record["wall_s"]["solve/factor"])
+        found[name] = min(times) if times else None
+        print(f"ordering {name}: {found[name]}", flush=True)
+    return found
 
 
 def stack() -> str:
@@ -214,6 +275,10 @@ def page(all_records: Sequence[Mapping[str, Any]]) -> str:
             + " | ".join(f"{r['cpu_s']:.2f} ({r['factor_s']:.2f})" for r in runs)
             + " |"
         )
+    lines += [ORDERING, "| ordering | " + " | ".join(names) + " |", "|---" * (len(names) + 1) + "|"]
+    for ordering in ORDERINGS:
+        times = [record["orderings"][ordering] for record in all_records]
+        row(ordering, ["not built in" if t is None else f"{t:.2f}" for t in times])
     return "\n".join(lines) + "\n"
 
 
@@ -253,6 +318,12 @@ SPEED = """
 
 Processor time of the whole process without pictures and report, s, and in parentheses the time of
 the factorisations: the least of three, after one run that compiles the kernels.
+"""
+ORDERING = """
+## Orderings
+
+Time of all factorisations of a body of tetrahedra by MUMPS up to 90°, s, by the ordering of its
+unknowns; the least of three. The program asks for PORD on every stack.
 """
 
 
