@@ -59,8 +59,6 @@ sys.argv[0] = "fiberbend"
 from fiberbend.__main__ import entry
 entry()
 """
-QUICK = ("section", "cell", "coarse body", "blocked tip")
-"""What a test solves again on the stack that it runs on."""
 COLUMNS = ("pressure_kPa", "angle_deg", "tip_force_N")
 
 
