@@ -94,7 +94,7 @@ def entry() -> NoReturn:
     except SystemExit as stop:
         code = stop.code
     if code == WRONG_INPUT:
-        launch.let_rank_0_speak()
+        launch.let_rank_0_speak(WRONG_INPUT)
     lost = streams.loss()
     if lost:
         say(f"fiberbend: standard output: {lost}", sys.stderr)

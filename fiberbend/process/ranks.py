@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
+import time
 from pathlib import Path
 
 _LAUNCHES = (
@@ -17,6 +19,9 @@ _LAUNCHES = (
 A batch job sets SLURM_PROCID and SLURM_NTASKS for its script too, and shells hand on PMI_RANK:
 alone they are no launch.
 """
+
+_PASSED_ON = 0.3
+"""Seconds in which a launcher passes on what a process has said, before it is told to end it."""
 
 
 def rank() -> int:
@@ -45,10 +50,27 @@ def foreign_launcher() -> bool:
 
     MPICH, asked to start under it, ends the process with pages of its own.
     """
-    return (
-        "OMPI_COMM_WORLD_SIZE" in os.environ
-        and Path(sys.executable).with_name("mpiexec.hydra").exists()
-    )
+    return "OMPI_COMM_WORLD_SIZE" in os.environ and _has_mpich()
+
+
+def end_launch(code: int) -> None:
+    """End all ranks, MPI not started, where the launcher lets the others go on: MPICH's.
+
+    Args:
+        code: exit code of the launcher.
+    """
+    wire = os.environ.get("PMI_FD", "")
+    if size() > 1 and wire.isdecimal() and _has_mpich():
+        sys.stdout.flush()
+        sys.stderr.flush()
+        time.sleep(_PASSED_ON)
+        with contextlib.suppress(OSError):
+            os.write(int(wire), f"cmd=abort exitcode={code}\n".encode())
+
+
+def _has_mpich() -> bool:
+    """Whether this Python has a launcher of MPICH of its own."""
+    return Path(sys.executable).with_name("mpiexec.hydra").exists()
 
 
 def _launch() -> tuple[int, int, bool]:

@@ -191,15 +191,21 @@ def on_rank_0(comm: Any, action: Callable[[], T]) -> T:
     return cast(T, value)
 
 
-def let_rank_0_speak() -> None:
-    """Delay the end of another rank: mpirun kills all when the first one ends with an error.
+def let_rank_0_speak(code: int) -> None:
+    """Delay the end of another rank by wrong input, then end all; once MPI is up, it sees to that.
 
-    Rank 0 ends long before the time is up, and mpirun then ends this rank too; else it has found
-    nothing, and this one speaks. Once MPI is up, its own end waits for all ranks.
+    Open MPI's mpirun kills all when the first one ends with an error, MPICH's when it is told to.
+    Rank 0 ends long before the time is up; else it has found nothing, and this one speaks.
+
+    Args:
+        code: exit code of the command.
     """
-    if rank() > 0 and "mpi4py.MPI" not in sys.modules:
+    if "mpi4py.MPI" in sys.modules:
+        return
+    if rank() > 0:
         time.sleep(_PATIENCE)
         print(f"rank {rank()}: {_group.error}", file=sys.stderr, flush=True)
+    ranks.end_launch(code)
 
 
 def say(text: str, stream: TextIO | None = None) -> None:

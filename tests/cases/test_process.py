@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import os
 import signal
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -13,6 +14,8 @@ import pytest
 
 from fiberbend.process import lock, ranks, streams
 from fiberbend.process.lock import LOCK_FILE, FolderLock, HeldError
+from fiberbend.running import launch
+from machine.folders import MachineError
 
 ROOT = Path(__file__).resolve().parents[2]
 CASE = str(ROOT / "cases" / "section.yaml")
@@ -43,6 +46,46 @@ def test_a_launch_is_one_by_mpi(
 ) -> None:
     monkeypatch.setattr("os.environ", variables)
     assert (ranks.rank(), ranks.size(), ranks.launched()) == expected
+
+
+@pytest.fixture
+def mpich(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Launchers of MPICH beside this Python; their folder."""
+    for name in ("mpirun", "mpiexec.hydra"):
+        (tmp_path / name).touch()
+    monkeypatch.setattr("sys.executable", str(tmp_path / "python"))
+    return tmp_path
+
+
+def test_mpich_under_open_mpi_is_refused_before_it_starts(
+    mpich: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert not ranks.foreign_launcher()
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "1")
+    with pytest.raises(MachineError, match="by the mpirun of Open MPI") as caught:
+        launch.start_mpi()
+    assert str(caught.value).endswith(f", {mpich / 'mpirun'}")
+    (mpich / "mpiexec.hydra").unlink()
+    assert not ranks.foreign_launcher()
+
+
+def told(monkeypatch: pytest.MonkeyPatch, size: int) -> bytes:
+    """What a launcher of MPICH is told by one of some ranks."""
+    ours, its = socket.socketpair()
+    with ours, its:
+        monkeypatch.setattr(
+            "os.environ", {"PMI_FD": str(its.fileno()), "PMI_RANK": "0", "PMI_SIZE": str(size)}
+        )
+        ranks.end_launch(1)
+        its.shutdown(socket.SHUT_WR)
+        return ours.recv(100)
+
+
+def test_only_mpich_is_told_to_end_all_ranks(mpich: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert told(monkeypatch, size=2) == b"cmd=abort exitcode=1\n"
+    assert told(monkeypatch, size=1) == b""
+    (mpich / "mpiexec.hydra").unlink()
+    assert told(monkeypatch, size=2) == b""
 
 
 def test_variables_of_slurm_change_nothing() -> None:
