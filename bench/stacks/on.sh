@@ -65,7 +65,7 @@ on_debian() {
         rm -rf "$root"
         mkdir -p "$root"
         echo "on $stack: making it in build/$stack, a minute"
-        debootstrap --variant=minbase --include=ca-certificates,make "$name" "$root" "$mirror" \
+        debootstrap --variant=minbase --include=ca-certificates,git,make "$name" "$root" "$mirror" \
             > "$root.log" 2>&1 || { tail -n 5 "$root.log" >&2; exit 1; }
         # How this machine reaches the network.
         cp -r /etc/apt/apt.conf.d/. "$root/etc/apt/apt.conf.d/"
