@@ -222,5 +222,6 @@ env -u PYTHONDONTWRITEBYTECODE .venv/bin/python -c \
     fail "the installed packages do not import."
 printf '%s\n' "$key" > "$STAMP"
 echo "setup: done in $SECONDS s"
-echo "$SECONDS" > .venv/setup.seconds
+# of the first time, when nothing was there
+[[ -f .venv/setup.seconds ]] || echo "$SECONDS" > .venv/setup.seconds
 finish

@@ -18,6 +18,7 @@ import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from fiberbend.process.ranks import launcher
@@ -135,10 +136,16 @@ def answers(history: Path) -> Iterator[dict[str, float]]:
                 yield found
 
 
-def measured() -> dict[str, Any]:
-    """All cases on this stack; each after one run that compiles its kernels."""
-    runs: dict[str, Any] = {}
-    for name in CASES:
+def measured(before: Mapping[str, Any], only: Sequence[str]) -> dict[str, Any]:
+    """Cases on this stack; each after one run that compiles its kernels.
+
+    Args:
+        before: the record that is there, or an empty one.
+        only: names of cases, and "orderings", that are measured; the rest is kept.
+    """
+    runs = dict(before.get("runs", {}))
+    facts = {name: before.get(name) for name in ("versions", "processor", "blas")}
+    for name in (name for name in CASES if name in only):
         with tempfile.TemporaryDirectory() as folder:
             found, record, _ = solve(name, Path(folder) / "run")
             repeats = [solve(name, Path(folder) / "run") for _ in range(REPEATS)]
@@ -147,20 +154,22 @@ def measured() -> dict[str, Any]:
         runs[name] = {
             "answers": found,
             "cpu_s": round(min(spent for _, _, spent in repeats), 2),
-            "solve_s": min(again["wall_s"]["solve"] for _, again, _ in repeats),
             "factor_s": min(again["wall_s"]["solve/factor"] for _, again, _ in repeats),
             "unknowns": record["unknowns"],
             "iterations": record["newton_iterations"],
         }
+        facts = {
+            "versions": record["versions"],
+            "processor": f"{record['machine']['processor']}, {record['blas']['kernel']}",
+            "blas": record["blas"]["library"],
+        }
         print(f"{name}: {runs[name]['cpu_s']} s", flush=True)
     return {
         "stack": stack(),
-        "versions": record["versions"],
-        "processor": f"{record['machine']['processor']}, {record['blas']['kernel']}",
-        "blas": record["blas"]["library"],
-        "setup_s": setup_seconds(),
-        "runs": runs,
-        "orderings": orderings(),
+        **facts,
+        "setup_s": setup_seconds() or before.get("setup_s"),
+        "runs": {name: runs[name] for name in CASES if name in runs},
+        "orderings": orderings() if "orderings" in only else before.get("orderings", {}),
     }
 
 
@@ -184,11 +193,17 @@ def orderings() -> dict[str, float | None]:
     return found
 
 
+def dolfinx() -> ModuleType:
+    """The library, loaded as the program loads it: by itself it may not find its MPI."""
+    import fem
+
+    assert fem.compat
+    return sys.modules["dolfinx"]
+
+
 def stack() -> str:
     """Where the finite elements of this Python come from."""
-    import dolfinx
-
-    if Path(dolfinx.__file__).is_relative_to(sys.prefix):
+    if Path(dolfinx().__file__ or "").is_relative_to(sys.prefix):
         return "wheels"
     return platform.freedesktop_os_release().get("PRETTY_NAME", "system").partition(" (")[0]
 
@@ -242,7 +257,7 @@ def page(all_records: Sequence[Mapping[str, Any]]) -> str:
     row("BLAS", [record["blas"] for record in all_records])
     row("processor", [record["processor"] for record in all_records])
     row(
-        "`make setup` on a fresh machine, s",
+        "`make setup`, the first time, s",
         ["–" if record["setup_s"] is None else str(record["setup_s"]) for record in all_records],
     )
     lines += [ANSWERS, "| case, state | quantity | " + " | ".join(names) + " |"]
@@ -278,7 +293,7 @@ def page(all_records: Sequence[Mapping[str, Any]]) -> str:
         )
     lines += [ORDERING, "| ordering | " + " | ".join(names) + " |", "|---" * (len(names) + 1) + "|"]
     for ordering in ORDERINGS:
-        times = [record["orderings"][ordering] for record in all_records]
+        times = [record["orderings"].get(ordering) for record in all_records]
         row(ordering, ["not built in" if t is None else f"{t:.2f}" for t in times])
     return "\n".join(lines) + "\n"
 
@@ -332,11 +347,15 @@ def main() -> None:
     """Measure this stack, unless only the page is asked for, and write the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--page", action="store_true", help="only write the page")
-    if not parser.parse_args().page:
-        record = measured()
-        file = RECORDS / f"dolfinx-{release(record)}.json"
+    parser.add_argument("--only", action="append", help="a case, or orderings; repeatable")
+    asked = parser.parse_args()
+    if not asked.page:
+        file = RECORDS / f"dolfinx-{release({'versions': {'dolfinx': dolfinx().__version__}})}.json"
+        before = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+        record = measured(before, asked.only or [*CASES, "orderings"])
         file.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    PAGE.write_text(page(records()), encoding="utf-8")
+    if all(record["runs"].keys() == CASES.keys() for record in records()):
+        PAGE.write_text(page(records()), encoding="utf-8")
 
 
 if __name__ == "__main__":
