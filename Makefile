@@ -14,10 +14,11 @@ export PRTE_MCA_rmaps_default_mapping_policy := :oversubscribe
 
 .DEFAULT_GOAL := help
 .PHONY: help setup tools demo sweep test browser notebook verify hard survive tables speed accuracy \
-    calibration knowledge growth times peers check format docs pictures schema clean
+    calibration knowledge growth times peers check format docs pictures schema clean \
+    test-fast test-wheel test-debian13 platforms
 
 help: ## list the commands
-	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 16
+	@sed -n 's/^\([a-z0-9-]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 20
 
 setup: ## install what is needed; under a second when nothing is to do
 	@./setup.sh
@@ -34,6 +35,15 @@ sweep: setup ## solve SWEEP=cases/sweeps/….yaml, resumable; make -j2 sweep or 
 
 test: tools ## run the tests, two at a time
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(RANKS) --dist worksteal
+
+test-fast: setup ## the tests of tests/fast.txt: section, cell, bodies, two ranks, bad input, resume
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(RANKS) --dist worksteal $$(< tests/fast.txt)
+
+test-wheel: ## test-fast with dolfinx as wheels from PyPI, in build/wheel
+	bench/stacks/on.sh wheel test-fast
+
+test-debian13: ## test-fast on a Debian 13 of its own, in build/debian13; needs root
+	bench/stacks/on.sh debian13 test-fast
 
 browser: tools ## open reports in headless Chromium and use them; part of make test
 	$(BIN)/python -m pytest tests/report/test_browser.py
@@ -75,6 +85,10 @@ accuracy: setup ## what accuracy costs in time: two ladders, prices; an idle mac
 	OPENBLAS_NUM_THREADS=1 $(BIN)/fiberbend accuracy $(BLOCKED) $(LADDER) || [ $$? -eq 2 ]
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m bench.prices
 	$(BIN)/python -m bench.accuracy
+
+platforms: setup ## answers and times of this stack, or ON=wheel, debian12, debian13; docs/platforms.md
+	$(if $(ON),bench/stacks/on.sh $(ON) platforms,$(BIN)/python -m bench.platforms)
+	$(if $(ON),$(BIN)/python -m bench.platforms --page)
 
 speed: setup ## measure what an answer costs in each model; four minutes on an idle machine
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/speed.py

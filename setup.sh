@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs FEniCSx and the Python environment .venv; does nothing when both are in place.
-# `./setup.sh tools` adds what the documentation, the notebook and the test in a browser need.
+# `./setup.sh tools` adds what the documentation, the notebook and the test in a browser need;
+# `./setup.sh ask` only says what would be taken, or in one line what is missing.
 #
 # On Debian 12 or 13 with root or sudo FEniCSx is Debian's. Elsewhere it comes as wheels from PyPI:
 # any x86-64 Linux with Python from 3.12 to 3.14, no root. FIBERBEND_STACK=debian or wheel chooses,
@@ -158,10 +159,14 @@ finish() {
 }
 
 mode=${1:-base}
-[[ $# -le 1 && $mode =~ ^(base|tools)$ ]] || fail "usage: ./setup.sh [tools]"
+[[ $# -le 1 && $mode =~ ^(base|tools|ask)$ ]] || fail "usage: ./setup.sh [tools|ask]"
 log=$(mktemp)
 trap 'rm -f "$log"; kill $(jobs -p) 2>/dev/null || true' EXIT
 choose_stack
+if [[ $mode == ask ]]; then
+    echo "$stack $python"
+    exit 0
+fi
 # The folder is part of the key: a moved .venv has dead paths inside.
 key=$({ pwd; echo "$stack $python"; cat "${inputs[@]}"; } | sha256sum)
 if [[ -z $missing && -x .venv/bin/fiberbend && -f $STAMP && $(<"$STAMP") == "$key" ]]; then
@@ -199,7 +204,7 @@ python_packages=$!
 if [[ -n $missing ]]; then
     apt install $missing || fail "apt-get could not install: $(echo $missing)"
 fi
-wait $python_packages || fail "pip could not install the Python packages."
+wait $python_packages || fail "pip could not install the Python packages; is the network up?"
 pip --no-build-isolation --constraint "$constraints" --editable '.[dev]' ||
     fail "pip could not install fiberbend."
 if [[ $stack == debian ]]; then
@@ -216,5 +221,7 @@ env -u PYTHONDONTWRITEBYTECODE .venv/bin/python -c \
     'import fiberbend.cli, fiberbend.reader.reader, matplotlib.pyplot, pyvista, rich.progress' ||
     fail "the installed packages do not import."
 printf '%s\n' "$key" > "$STAMP"
-echo "setup: done"
+echo "setup: done in $SECONDS s"
+# of the first time, when nothing was there
+[[ -f .venv/setup.seconds ]] || echo "$SECONDS" > .venv/setup.seconds
 finish

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from bench.growth_model import Fit, Scaling, fitted, powers
+from fiberbend.process.ranks import launcher
 
 ROOT = Path(__file__).resolve().parent.parent
 CASE = "cases/free_bending.yaml"
@@ -84,7 +85,7 @@ def measured(section: int, axial: float, ranks: int, most_s: float) -> Point | s
         command = [sys.executable, "-m", "fiberbend", "run", CASE, "--out", str(folder), "--quiet"]
         command += ["--overwrite", *(word for change in changes for word in ("--set", change))]
         if ranks > 1:
-            command = ["mpirun", "-n", str(ranks), *command]
+            command = [launcher(), "-n", str(ranks), *command]
         environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(ROOT)}
         try:
             done = subprocess.run(

@@ -16,6 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
+from fiberbend.process.ranks import launcher
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "stability.md"
 LIMIT = 300.0
@@ -35,7 +37,7 @@ def launch(ranks: int, arguments: Sequence[str | Path]) -> subprocess.Popen[str]
         "OPENBLAS_NUM_THREADS": "1",
         "PYTHONPATH": str(ROOT),
     }
-    mpirun = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
+    mpirun = [launcher(), "-n", str(ranks)] if ranks > 1 else []
     return subprocess.Popen(
         [*mpirun, sys.executable, "-m", "fiberbend", *map(str, arguments)],
         env=environment,

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from fiberbend.process.ranks import launcher
+
 ROOT = Path(__file__).resolve().parent.parent
 MPIRUN = {
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
@@ -25,18 +27,9 @@ MPIRUN = {
 MpiRun = Callable[..., "subprocess.CompletedProcess[str]"]
 
 
-_OWN = Path(sys.executable).with_name("mpirun")
-"""MPICH's, where dolfinx is from PyPI."""
-
-
-def launcher() -> str:
-    """The mpirun that belongs to this Python's MPI, or the system's."""
-    return str(_OWN) if _OWN.exists() else "mpirun"
-
-
 def killed_by(number: int) -> int:
-    """Exit code of `launcher` where a signal has killed a rank; MPICH does not add 128."""
-    return number if _OWN.exists() else 128 + number
+    """Exit code of `launcher` where a signal has killed a rank; that of the wheels adds no 128."""
+    return 128 + number if launcher() == "mpirun" else number
 
 
 @pytest.fixture(scope="session")

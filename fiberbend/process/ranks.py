@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import os
+import sys
+from pathlib import Path
 
 _LAUNCHES = (
     ("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", ()),
@@ -31,6 +33,21 @@ def size() -> int:
 def launched() -> bool:
     """Whether an MPI launcher has started this process."""
     return _launch()[2]
+
+
+def launcher() -> str:
+    """The mpirun of this Python's MPI: beside it, where it came as a wheel, or the system's."""
+    own = Path(sys.executable).with_name("mpirun")
+    return str(own) if own.exists() else "mpirun"
+
+
+def foreign_launcher() -> bool:
+    """Whether Open MPI's mpirun has started a Python that has MPICH's beside it.
+
+    MPICH, asked to start under it, ends the process with pages of its own.
+    """
+    beside = Path(sys.executable).with_name("mpiexec.hydra")
+    return "OMPI_COMM_WORLD_SIZE" in os.environ and beside.exists()
 
 
 def end_all(code: int) -> None:

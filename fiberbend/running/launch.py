@@ -77,13 +77,18 @@ def start_mpi() -> None:
     error that nobody catches ends all ranks from here on.
 
     Raises:
-        MachineError: the launcher belongs to another MPI, so that every process takes itself for
-            the whole; or no folder can be used.
+        MachineError: the launcher belongs to another MPI, so that every process ends or takes
+            itself for the whole; or no folder can be used.
     """
     from machine.kernel import settle_kernel
 
     settle_folders()
     settle_kernel()
+    if ranks.foreign_launcher():
+        raise MachineError(
+            "launched by the mpirun of Open MPI; this Python has MPICH: take its own, "
+            f"{ranks.launcher()}"
+        )
     alone = not ranks.launched()
     new = [name for name in _ALONE if alone and name not in os.environ]
     os.environ.update({name: _ALONE[name] for name in new})
@@ -98,11 +103,9 @@ def start_mpi() -> None:
         for name in new:
             del os.environ[name]
     if MPI.COMM_WORLD.size < size():
-        own = Path(sys.executable).with_name("mpirun")
-        which = f", {own}" if own.exists() else ""
         raise MachineError(
             f"rank {rank()} of {size()}, but MPI has started {MPI.COMM_WORLD.size}: expected the "
-            f"mpirun of {MPI.get_vendor()[0]}{which}, or srun --mpi=pmix"
+            f"mpirun of {MPI.get_vendor()[0]}, {ranks.launcher()}, or srun --mpi=pmix"
         )
     if MPI.COMM_WORLD.size > 1 and _group.comm is None:
         _group.comm = MPI.COMM_WORLD.Dup()

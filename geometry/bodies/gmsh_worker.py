@@ -29,6 +29,7 @@ geo = gmsh.model.geo
 Edge = tuple[int, int]
 
 _HXT = 10
+_MESH_ADAPT = 1
 _FLAT = 1e-4
 """Volume of a tetrahedron, over the median of all, that is flat; round-off of gmsh leaves some."""
 _TRIES = 3
@@ -217,8 +218,10 @@ def add_winding(curves: list[list[list[float]]]) -> None:
     gmsh.model.setPhysicalName(1, gmsh.model.addPhysicalGroup(1, entities), "winding")
 
 
-def _generate(element: str, first: int) -> None:
+def _generate(element: str, first: int, adapted: bool) -> None:
     """Mesh the model, tetrahedra until none is flat, from one seed on."""
+    if adapted:
+        gmsh.option.setNumber("Mesh.Algorithm", _MESH_ADAPT)
     # the default algorithm leaves slivers in the thin walls (Jacobians of 1e-4 mm³)
     gmsh.option.setNumber("Mesh.Algorithm3D", _HXT)
     gmsh.option.setNumber("Mesh.RandomSeed", first)
@@ -277,7 +280,7 @@ def mesh_body(spec: dict[str, Any], out: Path) -> None:
     Args:
         spec: dictionaries "actuator", "size", "strips" and lists "winding", all lengths of them in
             the "unit" (mm), in which the mesh too is written; path "msh_path" of a file in mm;
-            "seed" of random numbers.
+            "seed" of random numbers; "adapted": whether surfaces are triangulated by MeshAdapt.
         out: .npz file for `MeshData.load`.
     """
     actuator, size = make_actuator(spec["actuator"]), MeshSize(**spec["size"])
@@ -289,7 +292,7 @@ def mesh_body(spec: dict[str, Any], out: Path) -> None:
     body = GmshBody(layout, stations, size)
     geo.synchronize()
     body.add_groups()
-    _generate(size.element, spec["seed"])
+    _generate(size.element, spec["seed"], spec["adapted"])
     gmsh.model.mesh.setOrder(2)
     if body.structured:
         body.straighten()

@@ -13,6 +13,8 @@ import pytest
 
 from fiberbend.process import lock, ranks, streams
 from fiberbend.process.lock import LOCK_FILE, FolderLock, HeldError
+from fiberbend.running import launch
+from machine.folders import MachineError
 
 ROOT = Path(__file__).resolve().parents[2]
 CASE = str(ROOT / "cases" / "section.yaml")
@@ -60,6 +62,27 @@ def test_only_mpichs_launcher_is_told_to_end_all(
     os.close(writing)
     with open(reading, "rb") as pipe:
         assert pipe.read() == said
+
+
+@pytest.fixture
+def mpich(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Launchers of MPICH beside this Python; their folder."""
+    for name in ("mpirun", "mpiexec.hydra"):
+        (tmp_path / name).touch()
+    monkeypatch.setattr("sys.executable", str(tmp_path / "python"))
+    return tmp_path
+
+
+def test_mpich_under_open_mpi_is_refused_before_it_starts(
+    mpich: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert not ranks.foreign_launcher()
+    monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "1")
+    with pytest.raises(MachineError, match="by the mpirun of Open MPI") as caught:
+        launch.start_mpi()
+    assert str(caught.value).endswith(f", {mpich / 'mpirun'}")
+    (mpich / "mpiexec.hydra").unlink()
+    assert not ranks.foreign_launcher()
 
 
 def test_variables_of_slurm_change_nothing() -> None:
