@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parent.parent
 def targets() -> set[str]:
     """What `make` can be asked for."""
     text = (ROOT / "Makefile").read_text(encoding="utf-8")
-    return set(re.findall(r"^([a-z]+):", text, flags=re.MULTILINE))
+    return set(re.findall(r"^([a-z0-9-]+):", text, flags=re.MULTILINE))
 
 
 class Checker:
