@@ -119,9 +119,11 @@ LADDERS = (
         "Blocked tip",
         "The same actuator lies between a roof and a post, which keep it straight and feel the "
         "force of its tip. Only a body has the ends that this needs. Up to 100 kPa: beyond that "
-        "the sheath wrinkles under the post where a mesh resolves it, and the run ends there.",
+        "the sheath wrinkles under the post where a mesh resolves it, and the run ends there. With "
+        "two elements through each thickness and every turn it does so at 76 kPa: that mesh, which "
+        "would take longer than two minutes, is left out.",
         " --set 'effects.0.pressure.to=100 kPa' "
-        "--set 'output.at_pressures=[25 kPa, 50 kPa, 75 kPa, 100 kPa]'",
+        "--set 'output.at_pressures=[25 kPa, 50 kPa, 75 kPa, 100 kPa]' --within 2min",
     ),
 )
 
