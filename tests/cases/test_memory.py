@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -178,11 +180,18 @@ def test_a_sweep_counts_the_points_that_run_at_once(
 ) -> None:
     """Two of 0.14 GB fit into 0.3 GB, three do not; the largest of them count."""
     from fiberbend.sweep import command
+    from fiberbend.sweep.crews import crew, pool
 
     solved: list[int] = []
-    monkeypatch.setattr(command, "_solve", lambda _sweep, _store, jobs, _say: solved.append(jobs))
+
+    @contextlib.contextmanager
+    def idle(self: pool.Pool, _points: int) -> Iterator[None]:
+        solved.append(self.count)
+        yield None
+
+    monkeypatch.setattr(pool.Pool, "at_work", idle)
     monkeypatch.setattr(command, "_write", lambda *_args, **_more: None)
-    monkeypatch.setattr(command, "room", lambda: Room(300.0, "of this machine"))
+    monkeypatch.setattr(crew, "room", lambda: Room(300.0, "of this machine"))
     file = tmp_path / "sweep.yaml"
     quiet = "{pictures: false, fields: false}"
     file.write_text(
