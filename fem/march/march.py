@@ -95,8 +95,7 @@ class March:
         self.equilibrium.order(self.rest)
         self.equilibrium.restore(position.states[-1])
         self.equilibrium.scene.raise_force_floor(position.force_floor)
-        if position.report.critical:
-            self._predictor.leave_guide()
+        self._predictor.heed(0, bool(position.report.critical))
         for hook, memory in zip(self.hooks, position.memory, strict=False):
             hook.recall(memory)
 
@@ -169,6 +168,7 @@ class March:
                 return self._end(UNBENT)
         # a load that hardly bends begins with tiny increments of the angle
         first = position.first = position.first or position.increment
+        missed = 0
         slow: Outcome | None = None
         while True:
             state = self.states[-1]
@@ -201,8 +201,8 @@ class March:
                     continue
                 if verdict == "cut":
                     new, outcome = None, dataclasses.replace(outcome, reason=MISSED)
-            if self.report.critical:
-                self._predictor.leave_guide()
+            missed = missed + 1 if new is None else 0
+            self._predictor.heed(missed, bool(self.report.critical))
             if new is None:
                 position.failures += 1
                 self.report.cutbacks += 1

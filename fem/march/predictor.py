@@ -33,7 +33,8 @@ class Predictor:
 
     def __init__(self, scene: Scene, frames: Frames | None, guide: Guide | None = None) -> None:
         self._scene, self._frames, self._guide = scene, frames, guide
-        self._turning, self._unguided = True, False
+        self._turning, self._astray, self._plain = True, False, False
+        self._unguided = False
 
     def describe(self) -> Shape | None:
         """The scene's present displacement as a rod; None without frames."""
@@ -43,9 +44,20 @@ class Predictor:
         """Extrapolate displacements in the frames that turn with the body, or as they are."""
         self._turning = turning
 
-    def leave_guide(self) -> None:
-        """Do without the guide: beyond a critical point it is on another branch than the body."""
-        self._unguided = True
+    def heed(self, failures: int, critical: bool) -> None:
+        """Learn from how the last increment ended.
+
+        After a failed one do without the guide, straight on from the last two states. Beyond a
+        critical point a guide is on another branch, or beyond one of its own; and of a section that
+        folds the frames may turn by leaps: after a failed one do without them too.
+
+        Args:
+            failures: increments that failed since the last one that did not.
+            critical: stability was lost before.
+        """
+        self._unguided = self._unguided or critical
+        self._astray = failures > 0
+        self._plain = self._astray and self._unguided
 
     def start(self, states: Sequence[State], key: str, target: float) -> Floats:
         """Set the scene to the state extrapolated to the value of a measure; its coefficients.
@@ -55,6 +67,7 @@ class Predictor:
             key: name of the measure.
             target: its value.
         """
+        states = states[-2:] if self._astray else states
         t = np.array([state.measures[key] for state in states])
         weights = lagrange(t, target)
         if self._guide is not None and amplification(t, weights) > AMPLIFIED:
@@ -65,7 +78,7 @@ class Predictor:
             values = np.array([state.scalars[name] for state in states])
             scene.set_scalar(name, extrapolated(weights, values))
         scene.set(np.tensordot(weights, [state.w for state in states], axes=1))
-        if self._frames is not None and self._turning:
+        if self._frames is not None and self._turning and not self._plain:
             shapes = [state.shape for state in states if state.shape is not None]
             guides = self._guides(key, [*t, target])
             shape = self._frames.extrapolate(shapes, weights, guides)
@@ -78,6 +91,7 @@ class Predictor:
         """Shapes of the guide at the given values of what is driven; None where it has none."""
         if (
             self._guide is None
+            or self._astray
             or self._unguided
             or not all(self._guide.covers(key, value) for value in values)
         ):

@@ -15,7 +15,6 @@ from petsc4py import PETSc
 import fem.solver.newton
 from bench.hard_cases import find
 from bench.hard_procedures import unloaded
-from fem.march.predictor import Predictor
 from fem.march.records import Rules
 from fem.scene import Scene
 from fem.solver.newton import Settings
@@ -115,11 +114,3 @@ def test_hybrid_fiber_force(monkeypatch: Patch) -> None:
     few = counts(solve("fiber-1000"))
     monkeypatch.setattr(assembly, "Settings", lambda **given: Settings(hybrid=False, **given))
     assert few < 0.8 * counts(solve("fiber-1000"))
-
-
-@pytest.mark.hard
-def test_a_guide_beyond_a_critical_point(monkeypatch: Patch) -> None:
-    """There the section, which guides a body, is on another branch: its shapes mislead."""
-    few = counts(solve("balloon", "body"))
-    monkeypatch.setattr(Predictor, "leave_guide", lambda _: None)
-    assert few < counts(solve("balloon", "body"))
