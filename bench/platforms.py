@@ -21,6 +21,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from bench.ranks import MPIRUN
 from fiberbend.process.ranks import launcher
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -104,15 +105,7 @@ def launch(
     command += [word for change in (*changes, *BARE) for word in ("--set", change)]
     if ranks > 1:
         command = [launcher(), "-n", str(ranks), *command]
-    environment = os.environ | {
-        "OMPI_ALLOW_RUN_AS_ROOT": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-        "OMPI_MCA_rmaps_base_oversubscribe": "1",
-        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",  # of Open MPI 5
-        "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
-        "OPENBLAS_NUM_THREADS": "1",
-        "PYTHONPATH": str(ROOT),
-    }
+    environment = os.environ | MPIRUN | {"PYTHONPATH": str(ROOT)}
     # a warm cache holds Python's bytes too
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)

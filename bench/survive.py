@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from bench.ranks import MPIRUN
 from fiberbend.process.ranks import launcher
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -28,15 +29,7 @@ _ENDS = {".png": b"IEND\xaeB`\x82", ".csv": b"\n", ".yaml": b"\n", ".msh": b"\n$
 
 def launch(ranks: int, arguments: Sequence[str | Path]) -> subprocess.Popen[str]:
     """`fiberbend` on some ranks, in a session of its own, with signals as a terminal has them."""
-    environment = os.environ | {
-        "OMPI_ALLOW_RUN_AS_ROOT": "1",
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-        "OMPI_MCA_rmaps_base_oversubscribe": "1",
-        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",  # of Open MPI 5
-        "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
-        "OPENBLAS_NUM_THREADS": "1",
-        "PYTHONPATH": str(ROOT),
-    }
+    environment = os.environ | MPIRUN | {"PYTHONPATH": str(ROOT)}
     mpirun = [launcher(), "-n", str(ranks)] if ranks > 1 else []
     return subprocess.Popen(
         [*mpirun, sys.executable, "-m", "fiberbend", *map(str, arguments)],

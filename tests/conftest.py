@@ -10,20 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from bench.ranks import MPIRUN
 from fiberbend.process.ranks import launcher
 
 ROOT = Path(__file__).resolve().parent.parent
-MPIRUN = {
-    "OMPI_ALLOW_RUN_AS_ROOT": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_rmaps_base_oversubscribe": "1",
-    "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",  # of Open MPI 5
-    # Containers forbid the single copy of shared memory, and Open MPI then complains.
-    "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
-    "OPENBLAS_NUM_THREADS": "1",
-    "OMP_NUM_THREADS": "1",
-}
-"""What mpirun needs beside other tests, and as root."""
 MpiRun = Callable[..., "subprocess.CompletedProcess[str]"]
 
 

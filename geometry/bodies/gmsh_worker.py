@@ -33,6 +33,8 @@ _MESH_ADAPT = 1
 _FLAT = 1e-4
 """Volume of a tetrahedron, over the median of all, that is flat; round-off of gmsh leaves some."""
 _TRIES = 3
+_FOLDED = 1e-9
+"""det J over the greatest of the mesh: whether less than that is positive is round-off."""
 _UNFOLDING = ("HighOrderElastic", "HighOrder")
 """gmsh's ways to move the middles of edges, the quicker one first."""
 _PLACED = 1e-9
@@ -250,7 +252,8 @@ def _unfolded(body: GmshBody) -> MeshData:
     def read() -> tuple[MeshData, bool]:
         size = body.size
         mesh = read_mesh(size.element, body.regions, body.groups, body.points, size.half)
-        return mesh, float(determinants(mesh).min()) > 0
+        sizes = determinants(mesh)
+        return mesh, float(sizes.min()) > _FOLDED * float(sizes.max())
 
     mesh, sound = read()
     for method in _UNFOLDING:

@@ -13,7 +13,7 @@ import yaml
 
 from bench.doc_commands import ROOT, Reader, blocks
 from bench.growth import MARKS
-from tests.conftest import MPIRUN
+from bench.ranks import MPIRUN
 from tests.run.conftest import small
 from tests.run.test_sweep import SWEEP
 

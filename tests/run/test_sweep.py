@@ -21,6 +21,7 @@ from typing import Any
 import pytest
 import yaml
 
+from bench.ranks import MPIRUN
 from fem import kernels
 from fiberbend import run
 from fiberbend.sweep.command import run_sweep
@@ -29,7 +30,7 @@ from fiberbend.sweep.points import Point, read_sweep
 from fiberbend.sweep.store import MARK, Store
 from fiberbend.sweep.table import where
 from fiberbend.sweep.trends import groups, sign
-from tests.conftest import MPIRUN, ROOT, launcher
+from tests.conftest import ROOT, launcher
 
 SWEEP: dict[str, Any] = {
     "title": "Six actuators",

@@ -15,10 +15,11 @@ import pytest
 import yaml
 
 import fiberbend
+from bench.ranks import MPIRUN
 from bench.survive import session
 from fiberbend.process.ranks import foreign_launcher
 from fiberbend.results.reading import read_history
-from tests.conftest import MPIRUN, ROOT, MpiRun, killed_by, launcher
+from tests.conftest import ROOT, MpiRun, killed_by, launcher
 from tests.run.conftest import small
 from tests.run.test_sweep import LAST, NAMES, SWEEP, Lab, wait_for
 
