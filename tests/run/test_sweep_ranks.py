@@ -305,11 +305,15 @@ def test_ranks_that_mpi_does_not_join_are_refused(
 
 
 SCRIPT = """
+import sys
+
 import fiberbend
 
 sweep = fiberbend.sweep({sweep!r}, {out!r})
 body = fiberbend.run({body!r}, {run!r})
-print(f"{{sweep}}; {{body.status}} on {{body.run['ranks']}}", flush=True)
+# in one piece: launchers mix what ranks write
+sys.stdout.write(f"{{sweep}}; {{body.status}} on {{body.run['ranks']}}\\n")
+sys.stdout.flush()
 """
 
 
