@@ -8,6 +8,7 @@ from fem.effects.bulging_fibers import BulgingPotential
 from fem.effects.effect import Effect
 from fem.effects.embedded_fibers import FiberPotential
 from fem.kinematics.kinematics import Kinematics
+from geometry.mesh.data import Floats
 from geometry.winding.segments import EmbeddedFibers, SmearedFibers
 from materials.bulging import Bulging
 
@@ -17,7 +18,7 @@ class _Fibers(Effect):
 
     Args:
         segments: pieces of fiber on the mesh's winding surface.
-        stiffness: axial stiffness EA of a fiber, N.
+        stiffness: axial stiffness EA of a fiber, N; or that of each piece's fiber, (pieces,).
         tension_only: slack fibers carry nothing.
 
     Raises:
@@ -25,9 +26,9 @@ class _Fibers(Effect):
     """
 
     def __init__(
-        self, segments: EmbeddedFibers, stiffness: float, tension_only: bool = False
+        self, segments: EmbeddedFibers, stiffness: float | Floats, tension_only: bool = False
     ) -> None:
-        if not stiffness > 0:
+        if not np.all(np.asarray(stiffness) > 0):
             raise ValueError(f"fiber stiffness {stiffness} N, expected a positive value")
         self.segments = segments
         self.stiffness = stiffness

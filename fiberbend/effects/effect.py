@@ -44,6 +44,8 @@ TURNS = "turns"
 """Every turn of a winding lies where it is wound."""
 HOOPS = "hoops"
 """A circumference can be fixed."""
+ZONES = "zones"
+"""Winding and materials may differ along the length."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -131,6 +133,23 @@ class Requests:
     at_pressures: tuple[float, ...]
     at_angles: tuple[float, ...]
     stop_at_angle: float | None
+
+
+@dataclasses.dataclass(frozen=True)
+class Stretch:
+    """A zone along the length as an effect of its own is built there.
+
+    Attributes:
+        effect: of the zone.
+        site: the actuator, as long as the zone, with the materials there.
+        mesh: of the whole body, its winding that of the zone alone, z = 0 at the zone's root end.
+        start: z of that end in the body, mm.
+    """
+
+    effect: Effect
+    site: Site
+    mesh: MeshData
+    start: float
 
 
 @dataclasses.dataclass(frozen=True)
@@ -353,6 +372,29 @@ class Effect(Spec):
             NotImplementedError: the effect cannot be built.
         """
         raise NotImplementedError(f"effect {self.name} cannot be built")
+
+    def unlike(self, other: Effect) -> str:
+        """Why one mesh cannot have it in one zone and another of its kind in the next.
+
+        Args:
+            other: of the same class.
+
+        Returns:
+            The reason; empty where it can.
+        """
+        return f"{self.name} is not known to differ along the length"
+
+    def build_along(self, zones: Sequence[Stretch], requests: Requests) -> Built:
+        """Effects of this kind on one mesh, each in its zone.
+
+        Args:
+            zones: those that have one, from root to tip, this effect the first of them.
+            requests: as in `build`.
+
+        Raises:
+            NotImplementedError: the effect cannot differ along the length.
+        """
+        raise NotImplementedError(f"effect {self.name} cannot differ along the length")
 
     def doubts(self, site: Site, rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
         """What makes a run with it doubtful, a line each, from the rows of its history."""

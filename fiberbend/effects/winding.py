@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 from pydantic import Field
@@ -18,6 +18,7 @@ from fiberbend.effects.effect import (
     Effect,
     Requests,
     Site,
+    Stretch,
     Turns,
 )
 from fiberbend.effects.thread import BulgingSpec, FiberSpec
@@ -324,6 +325,35 @@ class WindingEffect(Effect):
             raise ValueError("a winding that is to be calibrated is built after its cell")
         term = CalibratedWinding(spread, stiffness, self.bulging.bulging(), slack)
         return Built((term,), (), spread, True)
+
+    def unlike(self, other: Effect) -> str:
+        """Threads differ in all but how they are represented; their ends lie at the borders."""
+        assert isinstance(other, WindingEffect)
+        if CALIBRATED in (self.representation, other.representation):
+            return "a calibrated winding bulges alike all along, expected discrete or smeared"
+        for key in ("representation", "tension_only", "lines"):
+            name = type(self).model_fields[key].alias or key
+            one, two = getattr(self, key), getattr(other, key)
+            if one != two:
+                return f"{name}: {one} here and {two} in another zone, expected one for all zones"
+        return ""
+
+    def build_along(self, zones: Sequence[Stretch], requests: Requests) -> Built:
+        """One term: pieces of thread with the stiffness of their zone."""
+        from fem.effects.winding import SmearedWinding, Winding
+        from geometry.bodies.zones import joined
+
+        pieces, stiffness = [], []
+        for zone in zones:
+            found = zone.effect.build(zone.site, zone.mesh, requests).fibers
+            assert found is not None
+            assert isinstance(zone.effect, WindingEffect)
+            pieces.append(found)
+            stiffness.append(zone.effect.fiber.thread().stiffness)
+        fibers, own = joined(pieces, [zone.start for zone in zones], stiffness)
+        spread = not self.turns().discrete
+        kind = SmearedWinding if spread else Winding
+        return Built((kind(fibers, own, self.tension_only),), (), fibers, spread)
 
 
 def _rounded(actuator: Actuator) -> bool:

@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from fiberbend.case.case import Case, Mesh
+from fiberbend.case.zones import path_of, zone_cases
 from fiberbend.columns import ELEMENTS, RUN
-from fiberbend.effects.effect import mirror_breakers
+from fiberbend.effects.effect import ZONES, mirror_breakers
 from fiberbend.models.costs.price import Price, price
 
 if TYPE_CHECKING:
@@ -144,6 +145,25 @@ class ModelKind(ABC):
 
     def refuses(self, case: Case) -> Iterator[Objection]:
         """What of a case it does not support: paths within the case and reasons."""
+        if case.zones is None:
+            yield from self._refuses_alike(case)
+        elif ZONES not in self.offers:
+            yield "zones", "one winding and one material of each part act all along"
+        else:
+            yield from self.limits_of_zones(case)
+            by_zone = (
+                (path_of(case, number, path), reason)
+                for number, zone in enumerate(zone_cases(case, self.name))
+                for path, reason in self._refuses_alike(zone)
+            )
+            yield from dict.fromkeys(by_zone)
+
+    def limits_of_zones(self, case: Case) -> Iterator[Objection]:
+        """What it does not support of a case with zones, each of which it supports by itself."""
+        yield from ()
+
+    def _refuses_alike(self, case: Case) -> Iterator[Objection]:
+        """What it does not support of a case that is alike all along."""
         for index, effect in enumerate(case.effects):
             reasons = (why for what, why in effect.needs().items() if what not in self.offers)
             for reason in reasons:
@@ -157,6 +177,14 @@ class ModelKind(ABC):
 
     def leaves_out(self, case: Case) -> Iterator[Objection]:
         """What it leaves out of what it supports: a reason not to choose it, none to refuse."""
+        if case.zones is not None:
+            by_zone = (
+                (path_of(case, number, path), reason)
+                for number, zone in enumerate(zone_cases(case, self.name))
+                for path, reason in self.leaves_out(zone)
+            )
+            yield from dict.fromkeys(by_zone)
+            return
         for index, effect in enumerate(case.effects):
             if not self.offers.issuperset(effect.needs()):
                 continue
@@ -174,7 +202,7 @@ class ModelKind(ABC):
         """Whether half the section, x ≥ 0, stands for the whole, and the reason."""
         if case.mesh.symmetry != "auto":
             return case.mesh.symmetry == "half", "given in the case"
-        breakers = list(mirror_breakers(case.effects))
+        breakers = list(mirror_breakers(case.acting))
         if breakers:
             return False, "; ".join(breakers)
         return True, "section, winding and loads are mirror-symmetric about x = 0"
@@ -315,7 +343,7 @@ class MeshedModel(ModelKind):
     def bounded_turn(self, case: Case, turn: float) -> float:
         """A change of the angle in a step, rad, or the greatest that the case's effects allow."""
         length, cap = case.actuator.length, case.actuator.cap
-        return min(turn, *(effect.largest_turn(length, cap) for effect in case.effects))
+        return min(turn, *(effect.largest_turn(length, cap) for effect in case.acting))
 
 
 def completed_mesh(mesh: Mesh, **defaults: Any) -> Mesh:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.effect import ARC, CHAMBER, THREAD, TWIST, VOLUME, WOUND
+from fiberbend.effects.effect import ARC, CHAMBER, THREAD, TWIST, VOLUME, WOUND, ZONES
 from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import Objection, ProblemSize, Rung, completed_mesh, count
 from fiberbend.models.uniform import UniformModel, twists
@@ -34,7 +34,7 @@ class Section(UniformModel):
     """Nothing depends on z in the frame that turns with the section."""
 
     name = "section"
-    offers = frozenset({CHAMBER, WOUND, ARC, VOLUME, TWIST, THREAD})
+    offers = frozenset({CHAMBER, WOUND, ARC, VOLUME, TWIST, THREAD, ZONES})
     turn = math.radians(10)
     first_turn = math.radians(10)
     memory = 5

@@ -40,6 +40,20 @@ class UniformModel(MeshedModel):
         yield from super().limits(case)
         yield from not_uniform(case)
 
+    def limits_of_zones(self, case: Case) -> Iterator[Objection]:
+        """Zones that do not share one given pressure, and no more."""
+        load = case.inflation
+        for index, effect in enumerate(case.effects):
+            path, own = f"effects.{index}.{effect.name}", effect.inflation()
+            if own is not None and own.to is None:
+                yield path, "zones share one pressure, which has to be given: expected to"
+            elif own is None and effect.load:
+                yield path, "zones share a pressure and no other load"
+            if effect.keeps_straight():
+                yield path, "each zone kept straight has a moment of its own (effect blocked-tip)"
+        if load is None:
+            yield "effects", "zones are chained at one pressure, expected one"
+
     def observables(self, case: Case, scene: Scene) -> Observables:
         """Angle, stretch and twist are scalars."""
         from fem.kinematics.uniform import CurvatureAngle, Uniform
@@ -107,5 +121,5 @@ def not_uniform(case: Case) -> Iterator[Objection]:
 
 def twists(case: Case) -> bool:
     """Whether a winding may twist the body."""
-    found = (effect.turns() for effect in case.effects)
+    found = (effect.turns() for effect in case.acting)
     return any(turns.twists for turns in found if turns is not None)
