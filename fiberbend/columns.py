@@ -45,6 +45,8 @@ BALANCE_MOMENT = "balance_moment"
 
 CONTACT = ("y_N", "z_N", "moment_x_Nmm", "area_mm2", "gap_mm")
 """Ends of an obstacle's columns: force on the body, its moment, area that touches, least gap."""
+ZONE = ("angle_deg", "twist_deg", "stretch")
+"""Ends of a zone's columns, as of the whole: bending angle, twist, stretch of the centre-line."""
 _OBSTACLE = re.compile(rf"contact_(\w+?)_(?:{'|'.join(CONTACT)})")
 
 RUN = "run"
@@ -55,6 +57,8 @@ ELEMENTS = "elements"
 """Columns of a model of finite elements."""
 UNIFORM = "uniform"
 """Columns of a model whose curvature and stretch are global unknowns."""
+ZONES = "zones"
+"""Columns of a model that may have zones along the length."""
 BODY = "body"
 """Columns of a body in space, with its supports and obstacles."""
 
@@ -152,6 +156,9 @@ COLUMNS = (
     Column(UNIFORM_SIDE, "°", "the same of the side angle", BODY),
     Column(UNIFORM_TWIST, "°", "the same of the twist", BODY),
     Column(AXIS_STRETCH, "", "stretch of the centre-line, through the centroids", ELEMENTS),
+    Column("zone_{zone}_angle_deg", "°", "the bending angle's part of a zone", ZONES),
+    Column("zone_{zone}_twist_deg", "°", "the twist's part of a zone, likewise", ZONES),
+    Column("zone_{zone}_stretch", "", "stretch of the centre-line of a zone", ZONES),
     Column(FLOOR_STRETCH, "", "stretch λ0 of the line y = 0", UNIFORM),
     Column(CROWN_STRETCH, "", "stretch of the highest line", UNIFORM),
     Column(WORK, "mJ", "work of the loads since rest, Σ ∫ q dQ", ELEMENTS),
@@ -226,6 +233,16 @@ def contact(obstacle: str, quantity: str) -> str:
         quantity: of `CONTACT`.
     """
     return f"contact_{obstacle}_{quantity}"
+
+
+def zone(number: int, quantity: str) -> str:
+    """The column of a zone.
+
+    Args:
+        number: of the zone, from 0; columns count from 1, the zone at the root.
+        quantity: of `ZONE`.
+    """
+    return f"zone_{number + 1}_{quantity}"
 
 
 def obstacles(rows: Iterable[Row]) -> list[str]:

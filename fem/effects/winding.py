@@ -71,6 +71,7 @@ class CalibratedWinding(_Fibers):
         tension_only: bool = False,
     ) -> None:
         super().__init__(segments, stiffness, tension_only)
+        self._stiffness = stiffness
         if not np.any(segments.curvature):
             raise ValueError(
                 "the winding is nowhere curved: a stiffness against bulges has no effect, expected "
@@ -81,5 +82,5 @@ class CalibratedWinding(_Fibers):
     def discrete(self, body: Kinematics) -> BulgingPotential:
         """The potential of fibers and bulge on this body."""
         return BulgingPotential(
-            body, self.segments, self.stiffness, self.bulging, self.tension_only
+            body, self.segments, self._stiffness, self.bulging, self.tension_only
         )

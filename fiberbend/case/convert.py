@@ -71,9 +71,11 @@ def curves(given: case.Case) -> list[Floats]:
     if not zones.differing(given):
         actuator = dimensions(given.actuator)
         return [curve for effect in given.effects for curve in effect.curves(actuator)]
+    import numpy as np
+
     found = []
     for start, zone in zip(zones.bounds(given), zones.zone_cases(given), strict=False):
-        found += [curve + (0.0, 0.0, start) for curve in curves(zone)]
+        found += [curve + np.array([0.0, 0.0, start]) for curve in curves(zone)]
     return found
 
 

@@ -14,6 +14,7 @@ from fiberbend.case.case import Case
 from fiberbend.case.section_beside import section_guides
 from fiberbend.case.zones import borders, differing, effects_of, own_regions, zone_cases
 from fiberbend.columns import BODY, MIDDLE
+from fiberbend.columns import ZONES as ZONE_COLUMNS
 from fiberbend.effects.effect import (
     CHAMBER,
     ENDS,
@@ -63,7 +64,7 @@ class Body(MeshedModel):
 
     name = "body"
     offers = frozenset({CHAMBER, WOUND, SPACE, ENDS, STRIPS, VOLUME, TWIST, THREAD, TURNS, ZONES})
-    fills = MeshedModel.fills | {MIDDLE, BODY}
+    fills = MeshedModel.fills | {MIDDLE, BODY, ZONE_COLUMNS}
     shared = True
     resumes = True
     takes_mesh_as_given = True
@@ -121,7 +122,7 @@ class Body(MeshedModel):
         return Observables(
             frames,
             BendingAngle(line),
-            lambda: BodyGauge(scene, line),
+            lambda: BodyGauge(scene, line, borders(case)),
             lambda: BodyRod(scene.body, frames),
         )
 

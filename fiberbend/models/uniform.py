@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.columns import UNIFORM
+from fiberbend.columns import UNIFORM, ZONES
 from fiberbend.models.model import (
     ENDS_BEND,
     MeshedModel,
@@ -30,7 +30,7 @@ _HELD_HELIX = (
 class UniformModel(MeshedModel):
     """Curvature and stretch, and twist where the winding has a hand, are global unknowns."""
 
-    fills = MeshedModel.fills | {UNIFORM}
+    fills = MeshedModel.fills | {UNIFORM, ZONES}
     gives_blocked_force = True
     agreement = 0.5
     straight_start = 1 / 20

@@ -54,7 +54,9 @@ _CHAMBER = _EVERYWHERE | {"chamber", "winding", "roof"}
 def body_stations(actuator: Actuator, size: MeshSize, strips: Strips | None = None) -> Stations:
     """Stations of the whole body: root cap, chamber, tip cap, and the post's strip at its end.
 
-    The chamber is divided at the borders that the fineness names. Surfaces: "clamp" and "tip" (end faces), "section_root" and "section_tip" (the ring of material
+    The chamber is divided at the borders that the fineness names.
+
+    Surfaces: "clamp" and "tip" (end faces), "section_root" and "section_tip" (the ring of material
     at z = 0 and z = L), "chamber" with its end planes, "winding" and "roof" for 0 ≤ z ≤ L,
     "post", and everywhere "outer" and "symmetry".
 
