@@ -29,6 +29,7 @@ from fiberbend.effects.effect import (
     Effect,
     tip_strips,
 )
+from fiberbend.models.costs.size import pieces
 from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import (
     ENDS_BEND,
@@ -39,7 +40,6 @@ from fiberbend.models.model import (
     Rung,
     count,
     found_pressure,
-    pieces,
 )
 
 if TYPE_CHECKING:

@@ -12,9 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.case.zones import zone_cases
 from fiberbend.effects.effect import ARC, CHAMBER, THREAD, TURNS, TWIST, VOLUME, WOUND, ZONES
+from fiberbend.models.costs.size import pieces, summed
 from fiberbend.models.mesh_error import cell_section_error, section_error
-from fiberbend.models.model import Objection, ProblemSize, Rung, completed_mesh, count, pieces
+from fiberbend.models.model import (
+    Objection,
+    ProblemSize,
+    Rung,
+    completed_mesh,
+    count,
+)
 from fiberbend.models.uniform import UniformModel, twists
 from fiberbend.schema.units import show
 
@@ -45,10 +53,11 @@ class Cell(UniformModel):
 
     def completed(self, case: Case) -> Case:
         """Four layers in half a pitch: layers count most."""
-        turns = case.turns
-        if turns is None:
+        found = (zone.turns for zone in zone_cases(case))
+        pitches = [turns.pitch for turns in found if turns is not None]
+        if not pitches:
             return case
-        axial = turns.pitch / self.layers_a_pitch
+        axial = min(pitches) / self.layers_a_pitch
         return case.model_copy(update={"mesh": completed_mesh(case.mesh, axial=axial)})
 
     def limits(self, case: Case) -> Iterator[Objection]:
@@ -109,7 +118,9 @@ class Cell(UniformModel):
         return 1.0 if turns is not None and turns.discrete else super().resolved_bulging(case)
 
     def size(self, case: Case) -> ProblemSize:
-        """Of its mesh."""
+        """Of its mesh, or of those of all zones."""
+        if case.zones is not None:
+            return summed(self.size(zone) for zone in zone_cases(case, self.name))
         from geometry.bodies.counts import slice_counts, winding_sides
 
         half, _ = self.half(case)
@@ -142,6 +153,9 @@ class Cell(UniformModel):
 
     def drawn(self, case: Case, size: ProblemSize) -> float:
         """All slices of the length."""
+        if case.zones is not None:
+            zones = zone_cases(case, self.name)
+            return sum(self.drawn(zone, self.size(zone)) for zone in zones)
         extent = self.slice(case, self.half(case)[0])[0]
         return size.elements * max(1.0, case.actuator.length / extent)
 

@@ -13,6 +13,8 @@ from fiberbend.case.zones import path_of, zone_cases
 from fiberbend.columns import ELEMENTS, RUN
 from fiberbend.effects.effect import ZONES, mirror_breakers
 from fiberbend.models.costs.price import Price, price
+from fiberbend.models.costs.size import ProblemSize as ProblemSize
+from fiberbend.models.costs.size import thread_mb
 
 if TYPE_CHECKING:
     from fem.effects.effect import Effect as Term
@@ -33,11 +35,6 @@ ENDS_BEND = (
     "the whole body bends further than its middle, the baseline's by 0.6 to 1.4 % "
     "(docs/evidence/free.md)"
 )
-
-_POINTS = 9
-"""Quadrature points of a facet, of each a piece of every helix of a winding that is spread."""
-_SEGMENT_MB = 0.025
-"""Measured on bodies of 14 000 and 60 000 unknowns with pitches from 6 to 0.5 mm."""
 
 Objection = tuple[str, str]
 """A path within a case, and what a model has against it."""
@@ -87,29 +84,6 @@ class Rung:
     section: int
     layers: float = 0.0
     axial: float = 0.0
-
-
-@dataclasses.dataclass(frozen=True)
-class ProblemSize:
-    """How large a problem is.
-
-    Attributes:
-        elements: number of elements.
-        kind: what they are.
-        unknowns: displacements and pressures, before any are fixed.
-        scalars: global unknowns beside them.
-        layers: elements along the axis.
-        segments: pieces of thread, each within an element.
-        exact: elements and unknowns are those of the run; else about as many.
-    """
-
-    elements: int
-    kind: str
-    unknowns: int
-    scalars: tuple[str, ...]
-    layers: float
-    segments: float
-    exact: bool = True
 
 
 class ModelKind(ABC):
@@ -276,6 +250,13 @@ class MeshedModel(ModelKind):
         """The model itself."""
         return self
 
+    def repeats(self, case: Case) -> bool:
+        """Whether its mesh is one section or slice that goes on alike along the axis.
+
+        Zones are put together in space: the run leaves the mesh of the whole length.
+        """
+        return not self.ends and case.zones is None
+
     @abstractmethod
     def mesh_size(self, case: Case, half: bool) -> MeshSize:
         """Fineness of its mesh, of x ≥ 0 only or of all."""
@@ -362,30 +343,6 @@ def count(counts: Counts, components: int, pressures: int) -> int:
     """
     constraints = pressures * counts.cells if pressures else counts.pressures
     return components * counts.nodes + constraints
-
-
-def pieces(case: Case, half: bool, around: int, length: float, layers: float) -> float:
-    """Pieces of thread, each within an element: one for each facet that a curve crosses.
-
-    Args:
-        case: has the thread, or none.
-        half: half the section is modelled.
-        around: facets around what is modelled of the section.
-        length: of the wound part, mm.
-        layers: facets along it.
-    """
-    turns = case.turns
-    if turns is None:
-        return 0.0
-    if not turns.discrete:
-        return float(turns.curves * _POINTS * around * layers)
-    part = 0.5 if half else 1.0
-    return turns.curves * (length / turns.pitch * around + part * layers)
-
-
-def thread_mb(segments: float) -> float:
-    """Memory of pieces of thread with their matrices, MB."""
-    return _SEGMENT_MB * segments
 
 
 def found_pressure(case: Case) -> tuple[str, ...]:

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.case.zones import zone_cases
 from fiberbend.effects.effect import ARC, CHAMBER, THREAD, TWIST, VOLUME, WOUND, ZONES
+from fiberbend.models.costs.size import summed
 from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import Objection, ProblemSize, Rung, completed_mesh, count
 from fiberbend.models.uniform import UniformModel, twists
@@ -88,7 +90,9 @@ class Section(UniformModel):
         return [TwofoldAxis() if twists(case) else Symmetry(halves=True)]
 
     def size(self, case: Case) -> ProblemSize:
-        """Of its mesh."""
+        """Of its mesh, or of those of all zones."""
+        if case.zones is not None:
+            return summed(self.size(zone) for zone in zone_cases(case, self.name))
         from geometry.bodies.counts import section_counts
 
         size = self.mesh_size(case, self.half(case)[0])
@@ -109,6 +113,9 @@ class Section(UniformModel):
 
     def drawn(self, case: Case, size: ProblemSize) -> float:
         """The section along the whole length."""
+        if case.zones is not None:
+            zones = zone_cases(case, self.name)
+            return sum(self.drawn(zone, self.size(zone)) for zone in zones)
         return float(size.elements * picture_layers(case))
 
     def mesh_error(self, case: Case) -> float:

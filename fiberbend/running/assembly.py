@@ -58,7 +58,7 @@ class Assembly:
             fibers=self.parts.fibers,
             smeared=self.parts.smeared,
             title=case.title,
-            uniform=not meshed(case).ends,
+            uniform=meshed(case).repeats(case),
         )
 
 
