@@ -6,12 +6,10 @@ import dataclasses
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
 from mpi4py import MPI
 
 from fem.march.hooks import Hook, Marching
-from fem.march.position import Position
-from fem.march.records import Ramp, Report, State, measure
+from fem.march.records import Report, State, measure
 from fem.results.checkpoint import Archive
 from fem.results.walls import Walls
 from fem.solver.newton import Outcome
@@ -28,6 +26,8 @@ from fiberbend.states.bend import Bend
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 
 PRESSURE = "pressure"
+_NEIGHBOURS = 4
+"""States from which one between them is interpolated."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -78,6 +78,7 @@ class ZoneMarch:
         self.rest = self._kept(self.assembly.march.rest, rows[0])
         self.kept: dict[float, Kept] = {0.0: self.rest}
         self.report = Report()
+        self._path: list[float] = []
 
     @property
     def name(self) -> str:
@@ -103,19 +104,28 @@ class ZoneMarch:
         listener = _Listener(self, rows, pressures, progress, zones)
         self.report = march.run([ramp], [self.walls, listener])
         self._count(self.report)
+        self._path = list(self.kept)
 
     def solve(self, pressure: float) -> Kept | None:
         """The state at a pressure in MPa between those that are kept; None where it has none."""
         if pressure in self.kept:
             return self.kept[pressure]
-        side = np.sign(pressure)
-        below = max((p for p in self.kept if side * p < side * pressure), key=abs)
-        march = self.assembly.march
-        march.resume(Position([self.kept[below].state]))
+        march, key = self.assembly.march, measure("value", PRESSURE)
+        near = sorted(self._path, key=lambda known: abs(known - pressure))[:_NEIGHBOURS]
+        states = [self.kept[known].state for known in sorted(near)]
+        equilibrium = march.equilibrium
+        equilibrium.restore(self.kept[near[0]].state)
+        outcome = equilibrium.find(PRESSURE, "value", pressure, (states, key, pressure))
+        self._counts.count(outcome)
+        if not outcome.converged:
+            return None
+        state = equilibrium.capture()
+        equilibrium.assess_stability(state, self.kept[near[0]].state, PRESSURE, exactly=True)
         rows = Recorder(self.assembly.scene, self._gauge, self._model, march.rest, [])
-        listener = _Listener(self, rows, [pressure])
-        self._count(march.run([Ramp(PRESSURE, pressure)], [self.walls, listener]))
-        return self.kept.get(pressure)
+        self.keep(pressure, state, rows.add(state, outcome))
+        self._counts.steps += 1
+        signals.check()
+        return self.kept[pressure]
 
     def counts(self) -> dict[str, int]:
         """What all its marches together have cost."""
