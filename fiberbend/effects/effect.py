@@ -38,6 +38,8 @@ VOLUME = "volume"
 """A model can be driven by the volume of its chamber."""
 TWIST = "twist"
 """A model can twist."""
+SIDE = "side"
+"""A model can bend to the side."""
 THREAD = "thread"
 """A winding has its pitch and its thread stretches."""
 TURNS = "turns"
@@ -178,6 +180,21 @@ class Effect(Spec):
     def mirror_breaker(self) -> str:
         """Why x = 0 is no mirror plane of it; empty where it is one."""
         return f"{self.name} is not known to be mirror-symmetric"
+
+    def end_breaker(self) -> str:
+        """Why z = 0, and with it others along the axis, is no mirror plane of it; empty: it is.
+
+        Without that plane a body that bends uniformly may twist, and its sections may warp.
+        """
+        return f"{self.name} is not known to be alike forward and backward"
+
+    def turn_breaker(self) -> str:
+        """Why half a turn about y does not map it onto itself; empty where it does.
+
+        Where neither that turn nor the mirror planes do, a body that bends uniformly may bend to
+        the side.
+        """
+        return f"{self.name} is not known to be its own image by half a turn about y"
 
     def bends(self) -> bool:
         """Whether it may bend an actuator that is alike above and below."""
