@@ -164,6 +164,8 @@ class Effect(Spec):
     """The key under which a case lists it."""
     load: ClassVar[bool] = False
     """True where the march has something to ramp."""
+    several: ClassVar[bool] = False
+    """True where a case may list it more than once."""
     needs_density: ClassVar[bool] = False
     """True where it needs the density of every material."""
 
@@ -330,6 +332,14 @@ class Effect(Spec):
     def alone(self) -> str:
         """What acts on the run and on no model beside it, in words; empty where nothing does."""
         return f"{self.name} acts"
+
+    def unmeasured(self) -> str:
+        """What of it the measured errors of meshes do not hold for, in words; empty: they hold."""
+        return self.alone()
+
+    def no_closed_form(self) -> str:
+        """Why no closed form is drawn beside a case with it; empty where one is."""
+        return ""
 
     # --- increment control ---------------------------------------------------------------------
 
