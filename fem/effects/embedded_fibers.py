@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -39,6 +40,9 @@ class FiberPotential:
         stiffness: axial stiffness EA of a whole fiber, N; or that of each piece's, (pieces,).
         tension_only: slack fibers carry nothing.
     """
+
+    thread: ClassVar[bool] = True
+    """Its pieces are those of a winding, whose forces are told."""
 
     def __init__(
         self,

@@ -42,7 +42,7 @@ class Carry:
 
     Attributes:
         stretch: λ0.
-        spin: (k, 0, τ), 1/mm.
+        spin: (k_x, k_y, τ), 1/mm.
         rates: by scalar, its derivative as a pair (of the vector λ0 e_z, of the spin).
     """
 

@@ -38,6 +38,8 @@ VOLUME = "volume"
 """A model can be driven by the volume of its chamber."""
 TWIST = "twist"
 """A model can twist."""
+SIDE = "side"
+"""A model can bend to the side."""
 THREAD = "thread"
 """A winding has its pitch and its thread stretches."""
 TURNS = "turns"
@@ -181,6 +183,8 @@ class Effect(Spec):
     """The key under which a case lists it."""
     load: ClassVar[bool] = False
     """True where the march has something to ramp."""
+    several: ClassVar[bool] = False
+    """True where a case may list it more than once."""
     needs_density: ClassVar[bool] = False
     """True where it needs the density of every material."""
 
@@ -197,6 +201,21 @@ class Effect(Spec):
     def mirror_breaker(self) -> str:
         """Why x = 0 is no mirror plane of it; empty where it is one."""
         return f"{self.name} is not known to be mirror-symmetric"
+
+    def end_breaker(self) -> str:
+        """Why z = 0, and with it others along the axis, is no mirror plane of it; empty: it is.
+
+        Without that plane a body that bends uniformly may twist, and its sections may warp.
+        """
+        return f"{self.name} is not known to be alike forward and backward"
+
+    def turn_breaker(self) -> str:
+        """Why half a turn about y does not map it onto itself; empty where it does.
+
+        Where neither that turn nor the mirror planes do, a body that bends uniformly may bend to
+        the side.
+        """
+        return f"{self.name} is not known to be its own image by half a turn about y"
 
     def bends(self) -> bool:
         """Whether it may bend an actuator that is alike above and below."""
@@ -332,6 +351,14 @@ class Effect(Spec):
     def alone(self) -> str:
         """What acts on the run and on no model beside it, in words; empty where nothing does."""
         return f"{self.name} acts"
+
+    def unmeasured(self) -> str:
+        """What of it the measured errors of meshes do not hold for, in words; empty: they hold."""
+        return self.alone()
+
+    def no_closed_form(self) -> str:
+        """Why no closed form is drawn beside a case with it; empty where one is."""
+        return ""
 
     # --- increment control ---------------------------------------------------------------------
 

@@ -14,6 +14,7 @@ from fiberbend.effects.gravity import GravityEffect
 from fiberbend.effects.hoops import HoopsEffect
 from fiberbend.effects.pressure import PressureEffect
 from fiberbend.effects.straight import StraightEffect
+from fiberbend.effects.strip import StripEffect
 from fiberbend.effects.winding import WindingEffect
 from fiberbend.schema.quantities import Spec
 
@@ -27,9 +28,10 @@ EFFECTS: dict[str, type[Effect]] = {
         BlockedTipEffect,
         ContactEffect,
         StraightEffect,
+        StripEffect,
     )
 }
-"""Each at most once in a case."""
+"""Each at most once in a case, but for those of which there may be several."""
 
 
 class _OneEffect(Spec):

@@ -18,6 +18,7 @@ from fiberbend.columns import ZONES as ZONE_COLUMNS
 from fiberbend.effects.effect import (
     CHAMBER,
     ENDS,
+    SIDE,
     SPACE,
     STRIPS,
     THREAD,
@@ -63,7 +64,9 @@ class Body(MeshedModel):
     """Everything that can act on an actuator acts on it here."""
 
     name = "body"
-    offers = frozenset({CHAMBER, WOUND, SPACE, ENDS, STRIPS, VOLUME, TWIST, THREAD, TURNS, ZONES})
+    offers = frozenset(
+        {CHAMBER, WOUND, SPACE, ENDS, STRIPS, VOLUME, TWIST, SIDE, THREAD, TURNS, ZONES}
+    )
     fills = MeshedModel.fills | {MIDDLE, BODY, ZONE_COLUMNS}
     shared = True
     resumes = True
