@@ -6,6 +6,7 @@ values against each other, and reports every problem at once.
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
 from pydantic import (
@@ -237,8 +238,8 @@ class Case(Spec):
     @property
     def acting(self) -> tuple[Effect, ...]:
         """Effects that act anywhere along the length: the case's and those of its zones."""
-        own = (effect for zone in self.zones or () for effect in zone.effects.values())
-        return (*self.effects, *(effect for effect in own if effect is not None))
+        own = (effects for zone in self.zones or () for effects in zone.effects.values())
+        return (*self.effects, *itertools.chain.from_iterable(own))
 
     @property
     def inflation(self) -> Inflation | None:

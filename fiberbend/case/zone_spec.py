@@ -4,15 +4,27 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, Self
 
-from pydantic import model_validator
+from pydantic import BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from fiberbend.case.materials import MaterialSpec
+from fiberbend.effects.strip import StripEffect
 from fiberbend.effects.winding import WindingEffect
 from fiberbend.schema.quantities import NONE, Dimension, OrNone, Spec
 
 if TYPE_CHECKING:
     from fiberbend.effects.effect import Effect
+
+
+def _listed(value: Any) -> Any:
+    """One as a list of one."""
+    return [value] if isinstance(value, dict | StripEffect) else value
+
+
+def _all(value: Any) -> tuple[Effect, ...]:
+    if value == NONE:
+        return ()
+    return value if isinstance(value, tuple) else (value,)
 
 
 class ZoneSpec(Spec):
@@ -22,6 +34,10 @@ class ZoneSpec(Spec):
     """Its part of the chamber's length; one zone may leave it out and is what the others leave."""
     winding: Annotated[WindingEffect, OrNone()] | None = None
     """In place of the case's winding, its phase from the zone's own root end; "none": unwound."""
+    strip: Annotated[tuple[StripEffect, ...], BeforeValidator(_listed), OrNone()] | None = Field(
+        default=None, strict=False
+    )
+    """One strip or a list of them, in place of the case's strips; "none": without any."""
     floor: MaterialSpec | None = None
     """Material of its floor, in place of materials.floor."""
     layer: MaterialSpec | None = None
@@ -37,14 +53,10 @@ class ZoneSpec(Spec):
         return data
 
     @property
-    def effects(self) -> dict[str, Effect | None]:
-        """Effects that it has in place of the case's, by name; None: absent here."""
-        given = {name: getattr(self, name) for name in ("winding",)}
-        return {
-            name: None if value == NONE else value
-            for name, value in given.items()
-            if value is not None
-        }
+    def effects(self) -> dict[str, tuple[Effect, ...]]:
+        """Effects that it has in place of the case's of that name; nothing: absent here."""
+        given = {name: getattr(self, name) for name in (WindingEffect.name, StripEffect.name)}
+        return {name: _all(value) for name, value in given.items() if value is not None}
 
     @property
     def materials(self) -> dict[str, MaterialSpec]:
@@ -59,10 +71,12 @@ class ZoneSpec(Spec):
             offers: what the model of the case offers; None where the model is still to be chosen.
             weighs: densities count.
         """
-        update: dict[str, Any] = {
-            name: effect.completed(offers)
-            for name, effect in self.effects.items()
-            if effect is not None
-        }
+        update: dict[str, Any] = {}
+        for name in self.effects:
+            value = getattr(self, name)
+            if isinstance(value, tuple):
+                update[name] = tuple(effect.completed(offers) for effect in value)
+            elif value != NONE:
+                update[name] = value.completed(offers)
         update |= {part: spec.plain(weighs) for part, spec in self.materials.items()}
         return self.model_copy(update=update) if update else self

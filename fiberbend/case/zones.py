@@ -50,8 +50,9 @@ def effects_of(case: Case, number: int) -> dict[str, Effect]:
         if effect.name not in own:
             found[f"effects.{index}.{effect.name}"] = effect
     for name, mine in own.items():
-        if mine is not None:
-            found[f"zones.{number}.{name}"] = mine
+        for index, effect in enumerate(mine):
+            place = f".{index}" if effect.several else ""
+            found[f"zones.{number}.{name}{place}"] = effect
     return found
 
 

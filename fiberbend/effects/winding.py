@@ -350,21 +350,22 @@ class WindingEffect(Effect):
         return ""
 
     def build_along(self, zones: Sequence[Stretch], requests: Requests) -> Built:
-        """One term: pieces of thread with the stiffness of their zone."""
+        """Of every kind of term one, its pieces of thread with the stiffness of their zone."""
         from fem.effects.winding import SmearedWinding, Winding
         from geometry.bodies.zones import joined
 
-        pieces, stiffness = [], []
-        for zone in zones:
-            found = zone.effect.build(zone.site, zone.mesh, requests).fibers
-            assert found is not None
-            assert isinstance(zone.effect, WindingEffect)
-            pieces.append(found)
-            stiffness.append(zone.effect.fiber.thread().stiffness)
-        fibers, own = joined(pieces, [zone.start for zone in zones], stiffness)
-        spread = not self.turns().discrete
-        kind = SmearedWinding if spread else Winding
-        return Built((kind(fibers, own, self.tension_only),), (), fibers, spread)
+        parts = [(zone.start, zone.effect.build(zone.site, zone.mesh, requests)) for zone in zones]
+        terms: list[SmearedWinding | Winding] = []
+        for kind in (SmearedWinding, Winding):
+            pieces = [
+                (term.segments, start, term.stiffness)
+                for start, part in parts
+                for term in part.terms
+                if isinstance(term, kind)
+            ]
+            if pieces:
+                terms.append(kind(*joined(pieces), self.tension_only))
+        return Built(tuple(terms), (), terms[0].segments, parts[0][1].smeared)
 
 
 def _rounded(actuator: Actuator) -> bool:

@@ -69,14 +69,12 @@ def build(case: Case, mesh: MeshData, model: MeshedModel) -> SceneParts:
     for region, material in materials.items():
         laws.setdefault(material.law, {})[region] = dict(material.parameters)
     bulk = {region: m.bulk for region, m in materials.items() if m.bulk is not None}
+    apart = differing(case)
     built = [
-        effect.build(site, mesh, requests)
-        if effect.name not in differing(case)
-        else _along(case, effect.name, mesh, requests)
+        Built(()) if effect.name in apart else effect.build(site, mesh, requests)
         for effect in case.effects
     ]
-    alone = differing(case) - {effect.name for effect in case.effects}
-    built += [_along(case, name, mesh, requests) for name in sorted(alone)]
+    built += [_along(case, name, mesh, requests) for name in sorted(apart)]
     wound = next((item for item in built if item.fibers is not None), None)
     return SceneParts(
         effects=[
@@ -97,9 +95,11 @@ def _along(case: Case, name: str, mesh: MeshData, requests: Requests) -> Built:
     stretches = []
     for number, (start, zone) in enumerate(zip(bounds(case), zone_cases(case), strict=False)):
         part = wound_part(mesh, borders(case), number, _SURFACES)
-        effect = next((effect for effect in zone.effects if effect.name == name), None)
-        if effect is not None:
-            stretches.append(Stretch(effect, convert.site(zone), part, start))
+        stretches += [
+            Stretch(effect, convert.site(zone), part, start)
+            for effect in zone.effects
+            if effect.name == name
+        ]
     return stretches[0].effect.build_along(stretches, requests)
 
 

@@ -90,8 +90,8 @@ def _idle(case: Case) -> Iterator[Problem]:
         yield Problem("zones", f"no effect without {' or '.join(names)} in one of them")
     everywhere = {effect.name for effect in case.effects}
     for number, zone in enumerate(case.zones):
-        for name, effect in zone.effects.items():
-            if effect is None and name not in everywhere:
+        for name, effects in zone.effects.items():
+            if not effects and name not in everywhere:
                 text = f'"none", no effect where the case has no {name}, expected no value'
                 yield Problem(f"zones.{number}.{name}", text)
     for index, effect in enumerate(case.effects):
@@ -103,6 +103,5 @@ def _idle(case: Case) -> Iterator[Problem]:
 def _named(case: Case) -> Iterator[tuple[str, Effect]]:
     yield from ((f"effects.{n}.{effect.name}", effect) for n, effect in enumerate(case.effects))
     for number, zone in enumerate(case.zones or ()):
-        for name, effect in zone.effects.items():
-            if effect is not None:
-                yield f"zones.{number}.{name}", effect
+        for name, effects in zone.effects.items():
+            yield from ((f"zones.{number}.{name}", effect) for effect in effects)

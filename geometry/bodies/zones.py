@@ -69,25 +69,26 @@ def _zone(mesh: MeshData, nodes: Ints, borders: Sequence[float]) -> Ints:
 
 
 def joined(
-    pieces: Sequence[EmbeddedFibers], starts: Sequence[float], values: Sequence[float]
+    pieces: Sequence[tuple[EmbeddedFibers, float, float | Floats]],
 ) -> tuple[EmbeddedFibers, Floats]:
     """Fibers of several zones on one mesh, sorted by curve and z.
 
     Curves of the same number go on from zone to zone, with a gap where they do not meet.
 
     Args:
-        pieces: of one class, each with z from its zone's end at the root.
-        starts: z of those ends, mm.
-        values: of every zone, such as the stiffness of its thread.
+        pieces: of every zone its fibers, of one class, with z from its end at the root; z of that
+            end, mm; and a value of all of them or of every segment, such as the thread's stiffness.
 
     Returns:
-        The fibers, and the value of every segment's zone, (segments,).
+        The fibers, and the value of every segment, (segments,).
     """
-    (kind,) = {type(piece) for piece in pieces}
+    parts, starts, values = zip(*pieces, strict=True)
+    (kind,) = {type(part) for part in parts}
     names = [field.name for field in dataclasses.fields(kind)]
-    rows = {name: np.concatenate([getattr(piece, name) for piece in pieces]) for name in names}
-    zone = np.repeat(np.arange(len(pieces)), [len(piece.cell) for piece in pieces])
-    rows["z"] = rows["z"] + np.asarray(starts, dtype=float)[zone]
+    rows = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
+    counts = [len(part.cell) for part in parts]
+    rows["z"] = rows["z"] + np.repeat(np.array(starts), counts)
+    each = [np.broadcast_to(value, count) for value, count in zip(values, counts, strict=True)]
     order = np.lexsort((rows["z"], rows["curve"]))
-    own = np.asarray(values, dtype=float)[zone[order]]
+    own = np.concatenate(each).astype(float)[order]
     return kind(**{name: value[order] for name, value in rows.items()}), own
