@@ -120,3 +120,21 @@ def own_regions(case: Case) -> list[dict[str, str]]:
         {part: region_name(part, number) for part in zone.materials}
         for number, zone in enumerate(case.zones or ())
     ]
+
+
+def words(case: Case) -> list[str]:
+    """Every zone in words: its length, and what it has in place of the case's."""
+    found = []
+    resolved = case.resolved().get("zones", [])
+    for zone, length in zip(resolved, lengths(case), strict=False):
+        own = [f"{name} {_said(value)}" for name, value in zone.items() if name != "length"]
+        found.append(f"{length:g} mm: {'; '.join(own) or 'as the case says'}")
+    return found
+
+
+def _said(value: Any) -> str:
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_said(part)}" for key, part in value.items() if part is not False)
+    if isinstance(value, list):
+        return " and ".join(_said(part) for part in value)
+    return str(value)

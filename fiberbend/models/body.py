@@ -33,6 +33,7 @@ from fiberbend.effects.effect import (
 from fiberbend.models.costs.size import pieces
 from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import (
+    AT_ENDS,
     ENDS_BEND,
     MeshedModel,
     Objection,
@@ -222,7 +223,7 @@ class Body(MeshedModel):
         for effect in case.effects:
             yield from effect.uncertainties(case.straight)
         if not case.straight and not any(effect.alone() for effect in case.effects):
-            yield f"ends: {ENDS_BEND}: see uniform_angle_deg"
+            yield f"{AT_ENDS}{ENDS_BEND}: see uniform_angle_deg"
 
 
 MODEL = Body()

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
     KinematicsFactory = Callable[[Domain, Iterable[str]], Kinematics]
 
+AT_ENDS = "ends: "
+"""Begins what a model says of the bend near caps; zones say it of their borders as well."""
 ENDS_BEND = (
     "the whole body bends further than its middle, the baseline's by 0.6 to 1.4 % "
     "(docs/evidence/free.md)"
@@ -212,6 +214,10 @@ class ModelKind(ABC):
 
     def errors(self, case: Case) -> Iterator[str]:
         """How far its answer is expected to be off, a line with its source each."""
+        yield from ()
+
+    def errors_of_zones(self) -> Iterator[str]:
+        """How far zones beside each other are expected to be off, with the source."""
         yield from ()
 
 

@@ -11,6 +11,7 @@ from fiberbend.case.case import Case
 from fiberbend.case.symmetry import Symmetry
 from fiberbend.columns import UNIFORM, ZONES
 from fiberbend.models.model import (
+    AT_ENDS,
     ENDS_BEND,
     MeshedModel,
     Objection,
@@ -103,7 +104,7 @@ class UniformModel(MeshedModel):
             )
             return
         yield f"mesh: moves P by up to {self.mesh_error(case)} % (docs/evidence/uniform.md)"
-        yield f"ends: left out; {ENDS_BEND}"
+        yield f"{AT_ENDS}left out; {ENDS_BEND}"
 
 
 def not_uniform(case: Case, twists: bool) -> Iterator[Objection]:

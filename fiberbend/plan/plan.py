@@ -11,6 +11,7 @@ from fiberbend.accuracy.words import expected_lines
 from fiberbend.calibration.expected import expected
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import twists
+from fiberbend.case.zones import words
 from fiberbend.models.choice import MODELS, choose_model, objection
 from fiberbend.models.model import MeshedModel, ModelKind
 from fiberbend.models.resolution import winding_remark
@@ -88,6 +89,7 @@ def make_plan(case: Case) -> Plan:
     beside = [] if picked(case) else _cheaper(case, model)
     head = {
         "effects": [", ".join(effect.name for effect in case.effects)],
+        "zones": [f"{n}: {text}" for n, text in enumerate(words(case), start=1)],
         "model": [f"{model.name} ({why})", *beside],
     }
     tail = {
