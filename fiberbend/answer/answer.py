@@ -12,6 +12,7 @@ from typing import Any
 from fiberbend import columns as col
 from fiberbend.answer.numbers import number, quantity
 from fiberbend.answer.touch import touches
+from fiberbend.answer.zones import parts_of_zones
 from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
 from fiberbend.models.model import ModelKind
@@ -99,6 +100,7 @@ def answer(case: Case, rows: Sequence[col.Row], run: Mapping[str, Any]) -> Answe
         _end(case, rows),
         *_tip(case, rows),
         *_turns(rows),
+        *(Entry(*told) for told in parts_of_zones(rows[-1], len(case.zones or ()))),
         *_contacts(case, rows),
         *_critical(run),
         *_strain(run),

@@ -225,5 +225,9 @@ class Body(MeshedModel):
         if not case.straight and not any(effect.alone() for effect in case.effects):
             yield f"{AT_ENDS}{ENDS_BEND}: see uniform_angle_deg"
 
+    def errors_of_zones(self) -> Iterator[str]:
+        """It has the borders."""
+        yield f"{AT_ENDS}caps and borders of zones are those of the mesh, as long as its elements"
+
 
 MODEL = Body()

@@ -122,7 +122,7 @@ def test_what_is_wrong_is_said_with_its_path(
     assert any(line.startswith(f"{path}:") and words in line for line in lines), lines
 
 
-TWO = ({"length": "60 mm", "winding": HAND}, {})
+TWO: tuple[dict[str, Any], ...] = ({"length": "60 mm", "winding": HAND}, {})
 
 
 @pytest.mark.parametrize(

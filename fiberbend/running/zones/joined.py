@@ -30,12 +30,13 @@ class Joined:
     Args:
         case: of the whole.
         zones: from root to tip.
+        model: name of the model that solves them.
 
     Attributes:
         model_mesh: mesh, materials and fibers of all zones.
     """
 
-    def __init__(self, case: Case, zones: Sequence[ZoneMarch]) -> None:
+    def __init__(self, case: Case, zones: Sequence[ZoneMarch], model: str) -> None:
         own = [zone.model_mesh(case.title) for zone in zones]
         spaces = [Space(z.case, mesh) for z, mesh in zip(zones, own, strict=True)]
         if not all(space.model_mesh.mesh.half for space in spaces):
@@ -57,7 +58,7 @@ class Joined:
             },
             fibers=fibers,
             smeared=fibers is None and any(each.smeared for each in own),
-            title=case.title,
+            title=f"{case.title}: {model} model, caps not modelled",
         )
 
     def snapshot(self, link: Link, label: str, row: dict[str, Any], remark: str) -> Snapshot:

@@ -299,7 +299,7 @@ class _ZonedRun:
         if self.states is not None and (folder is None or shows_states(case.output)):
             from fiberbend.running.zones.joined import Joined
 
-            joined = Joined(case, self.zones)
+            joined = Joined(case, self.zones, self.model.name)
             self.states.write(MESH, joined.model_mesh.mesh.save)
             if joined.model_mesh.fibers is not None:
                 write_fibers(self.states, joined.model_mesh.fibers, joined.model_mesh.smeared)
