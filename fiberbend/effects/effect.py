@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from geometry.mesh.data import Floats, MeshData
     from geometry.sections.size import MeshSize, Strips
     from geometry.winding.segments import EmbeddedFibers
+    from geometry.winding.strip import Window
     from materials.bulging import Bulging
     from materials.material import Material
 
@@ -296,6 +297,10 @@ class Effect(Spec):
         Obstacles are named as in `obstacle_shapes`; those whose force is not known are left out.
         """
         return {}
+
+    def windows(self, actuator: Actuator) -> list[Window]:
+        """Parts of the outline that it covers with fabric, as pictures show them."""
+        return []
 
     def curves(self, actuator: Actuator) -> list[Floats]:
         """Polylines in space, (n, 3), mm, that are to be seen in the mesh file."""
