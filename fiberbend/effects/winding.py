@@ -298,7 +298,7 @@ class WindingEffect(Effect):
 
     def curves(self, actuator: Actuator) -> list[Floats]:
         """The axis of every fiber."""
-        return self._threads.curves(actuator)
+        return self._threads.curves(actuator, self.width, self._lines(self.width))
 
     def not_beside(self) -> str:
         """Threads that bend it sideways."""

@@ -152,9 +152,9 @@ class ByFamilies(Threads):
             found.append(dataclasses.replace(family, width=own))
         return Ribbons(tuple(found), lines)
 
-    def curves(self, actuator: Actuator) -> list[Floats]:
-        """The axis of every thread."""
-        return self.ribbons(actuator, 0.0, 1).curves(actuator, POINTS_A_TURN)
+    def curves(self, actuator: Actuator, width: float | None, lines: int) -> list[Floats]:
+        """Every line of every thread."""
+        return self.ribbons(actuator, width, lines).curves(actuator, POINTS_A_TURN)
 
     def words(self, perimeter: float) -> list[str]:
         """Angle, pitch, starts, spacing and hand of each."""

@@ -108,11 +108,12 @@ class ByPattern(Threads):
         width = self.fiber.diameter if width is None else width
         return Winding(self.name, self.pitch, width, lines).ribbons(actuator)
 
-    def curves(self, actuator: Actuator) -> list[Floats]:
-        """The axis of every helix."""
+    def curves(self, actuator: Actuator, width: float | None, lines: int) -> list[Floats]:
+        """Every line of every helix."""
         from geometry.winding.helix import Winding
 
-        helix = Winding(self.name, self.pitch, 0.0, 1)
+        width = self.fiber.diameter if width is None else width
+        helix = Winding(self.name, self.pitch, width, lines)
         count = math.ceil(actuator.length / self.pitch) * POINTS_A_TURN
         return [helix.points(actuator, curve, count)[0] for curve in range(helix.curves)]
 

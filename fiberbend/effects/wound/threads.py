@@ -67,8 +67,8 @@ class Threads(Protocol):
             lines: of a ribbon.
         """
 
-    def curves(self, actuator: Actuator) -> list[Floats]:
-        """The axis of every thread in space, (n, 3), mm."""
+    def curves(self, actuator: Actuator, width: float | None, lines: int) -> list[Floats]:
+        """Every line of the ribbons in space, (n, 3), mm; see `ribbons`."""
 
     def words(self, perimeter: float) -> list[str]:
         """How they run, a line for each family, as a plan shows it; may be empty."""
