@@ -83,8 +83,9 @@ class FamilySpec(Spec):
     def problems(self, path: str) -> Iterator[Problem]:
         """What is missing or without effect, the actuator unknown."""
         if (self.angle_from_axis is None) == (self.pitch is None):
-            found = "neither" if self.pitch is None else "both"
-            yield Problem(path, f"{found} angle_from_axis and pitch, expected one of them")
+            both = "neither {} nor {}" if self.pitch is None else "both {} and {}"
+            text = both.format("angle_from_axis", "pitch")
+            yield Problem(path, f"{text}, expected one of them")
             return
         angle = self.angle
         if angle is not None and angle > UPRIGHT:
