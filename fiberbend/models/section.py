@@ -50,7 +50,7 @@ class Section(UniformModel):
 
     def half(self, case: Case) -> tuple[bool, str]:
         """Where it has both mirror planes, or half a turn about y maps the section onto itself."""
-        symmetry = Symmetry.of(case)
+        symmetry = Symmetry.of(case.effects)
         return symmetry.halved, symmetry.words()
 
     def unused(self, case: Case) -> dict[str, set[str]]:
@@ -72,7 +72,7 @@ class Section(UniformModel):
         """Two components of the displacement, three where it may twist."""
         from fem.kinematics.section import Section as Bending
 
-        symmetry = Symmetry.of(case)
+        symmetry = Symmetry.of(case.effects)
         return functools.partial(
             Bending,
             length=case.actuator.length,

@@ -39,7 +39,7 @@ class UniformModel(MeshedModel):
     def limits(self, case: Case) -> Iterator[Objection]:
         """No uniform bend."""
         yield from super().limits(case)
-        yield from not_uniform(case, Symmetry.of(case).twists)
+        yield from not_uniform(case, Symmetry.of(case.effects).twists)
 
     def observables(self, case: Case, scene: Scene) -> Observables:
         """Angle, stretch and twist are scalars."""
@@ -59,7 +59,7 @@ class UniformModel(MeshedModel):
     def scalars(self, case: Case) -> tuple[str, ...]:
         """Global unknowns: those of uniform bending that no effect fixes, and a pressure found."""
         fixed = {name for effect in case.effects for name in effect.fixed_scalars()}
-        names = Symmetry.of(case).scalars()
+        names = Symmetry.of(case.effects).scalars()
         return (*(name for name in names if name not in fixed), *found_pressure(case))
 
     def force_named(self) -> str:

@@ -174,7 +174,7 @@ def test_unknowns_follow_from_what_symmetry_is_left(
     at: Any, pattern: str, scalars: tuple[str, ...], half: bool
 ) -> None:
     case = as_case(_case(_strip(at), pattern=pattern))
-    assert Symmetry.of(case).scalars() == scalars
+    assert Symmetry.of(case.effects).scalars() == scalars
     assert MODELS["section"].half(case)[0] is half
     rows = dict(make_plan(case).rows)
     assert rows["unknowns"][0].endswith(f", and {', '.join(scalars)}")
