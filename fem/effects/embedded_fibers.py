@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
 
+from fem.effects.effect import Natural
 from fem.effects.mean_stretch import MeanStretch, Second
 from fem.kinematics.kinematics import Kinematics
 from fem.ranks import total
@@ -39,6 +41,14 @@ class FiberPotential:
         stiffness: axial stiffness EA of a whole fiber, N.
         tension_only: slack fibers carry nothing.
     """
+
+    natural: ClassVar[Mapping[str, Natural]] = {}
+    conservative: ClassVar[bool] = True
+    pair_units: ClassVar[Mapping[str, tuple[str, str]]] = {}
+
+    def pairs(self) -> dict[str, tuple[float, float]]:
+        """None: it has a potential."""
+        return {}
 
     def __init__(
         self,
