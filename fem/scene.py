@@ -261,7 +261,7 @@ class Scene(OwnCode):
             mine = 0.0
             if f"energy {key}" in self._forms:
                 mine += compat.assemble_scalar(self._forms[f"energy {key}"])
-            elif key not in self.discrete:
+            elif key not in self.discrete or self.effects[key].shares:
                 continue
             if key in self.discrete:
                 mine += self.discrete[key].energy()

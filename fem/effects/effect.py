@@ -136,10 +136,12 @@ class Effect:
     Attributes:
         fields: names of the fields it needs.
         outside: its forces act from outside, as a support's do; they have a resultant.
+        shares: global scalars that it brings whose work its `Discrete.pairs` do.
         units: by global scalar that it brings, the units of its value and of its work-conjugate.
     """
 
     fields: ClassVar[tuple[str, ...]] = ("u",)
+    shares: ClassVar[tuple[str, ...]] = ()
     outside: ClassVar[bool] = False
     units: ClassVar[Mapping[str, tuple[str, str]]] = {}
 

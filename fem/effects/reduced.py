@@ -212,9 +212,9 @@ class Linked(Reduced):
     """Π = −Σ f_j (a_j − b_j) + U(b, r): own unknowns b_j for the places a_j of the fields.
 
     The forces f on the fields, the places b and further unknowns r are global unknowns; the
-    stationarity of Π in f makes b = a, that in b makes f = ∂U/∂b. Whatever U is, K is that of the
+    stationarity of Π in f makes b = a, that in b makes f = −∂U/∂b. Whatever U is, K is that of the
     rest of the scene, and Newton's method on the bordered system has the exact tangent. A subclass
-    gives f = g(b, r) in place of ∂U/∂b, which need not have a potential.
+    gives f = g(b, r) in place of −∂U/∂b, which need not have a potential.
 
     Args:
         body: the kinematics.

@@ -190,18 +190,14 @@ class FollowingTipLoad(Effect):
     Args:
         force: F in N.
         moment: M in N mm.
-        force_follows: F turns with the face.
-        moment_follows: M does.
+        follows: F and M turn with the face.
     """
 
     scalar = TipForce.scalar
-    units: ClassVar = {scalar: ("", "")}
+    shares: ClassVar = (scalar,)
 
-    def __init__(
-        self, force: Vector, moment: Vector, force_follows: bool, moment_follows: bool
-    ) -> None:
-        self.force, self.moment = force, moment
-        self.follows = force_follows, moment_follows
+    def __init__(self, force: Vector, moment: Vector, follows: bool) -> None:
+        self.force, self.moment, self.follows = force, moment, follows
 
     def discrete(self, body: Kinematics) -> Discrete:
         """The load's virtual work."""
@@ -232,8 +228,11 @@ class _Following(Linked):
         names = [f"tip force {_NAMES[i]}" for i in face.components]
         names += [f"tip couple {axis} {_NAMES[i]}" for axis in axes for i in face.components]
         self._pairs = names
+        self._working = [any(load.force if j < shift else load.moment) for j in range(len(names))]
         self.pair_units = {
-            name: ("N", "mm") if j < shift else ("Nmm", "") for j, name in enumerate(names)
+            name: ("N", "mm") if j < shift else ("Nmm", "")
+            for j, name in enumerate(names)
+            if self._working[j]
         }
 
     def _shares(self, places: Any) -> Any:
@@ -245,11 +244,10 @@ class _Following(Linked):
         else:
             axes[:] = places[self._shift :].reshape(2, 3)
         a_x, a_y = axes
-        turned = section_axes(a_x, a_y, np.cross(a_x, a_y))
-        force, moment = (
-            turned @ np.array(vector) if follows else np.array(vector, dtype=places.dtype)
-            for vector, follows in zip((load.force, load.moment), load.follows, strict=True)
-        )
+        turned = np.eye(3, dtype=places.dtype)
+        if load.follows:
+            turned = section_axes(a_x, a_y, np.cross(a_x, a_y))
+        force, moment = turned @ np.array(load.force), turned @ np.array(load.moment)
         gram = sum(np.sum(a * a) * np.eye(3) - np.outer(a, a) for a in axes)
         pull = np.linalg.solve(gram, moment)
         couples = [cross_matrix(pull) @ a for a in axes]
@@ -286,4 +284,9 @@ class _Following(Linked):
     def pairs(self) -> dict[str, tuple[float, float]]:
         """Forces with the displacements, couples with the axes, of the whole body."""
         forces = self.own(self.held) / self._face.part
-        return dict(zip(self._pairs, zip(forces.tolist(), self.own(self.at), strict=True)))
+        pairs = zip(forces.tolist(), self.own(self.at).tolist(), strict=True)
+        return {
+            name: pair
+            for name, pair, works in zip(self._pairs, pairs, self._working, strict=True)
+            if works
+        }

@@ -28,6 +28,8 @@ WOUND = "wound"
 """A model has the thread around the body, in turns, spread, or as a fixed circumference."""
 ARC = "arc"
 """A model bends uniformly all along, so that it can be kept straight all along."""
+HELD = "held"
+"""A model has the centre-line of a uniform bend, whose stretch and turns can be held."""
 SPACE = "space"
 """A model is a whole body in space, with everything that can act on one."""
 ENDS = "ends"
@@ -107,11 +109,15 @@ class Site:
         actuator: dimensions.
         materials: of each of its parts.
         straight: an effect keeps the actuator from bending.
+        mirrored: no effect breaks its mirror plane x = 0.
+        weight: acceleration by which it is heavy, x, y and z, mm/s²; None: without weight.
     """
 
     actuator: Actuator
     materials: Mapping[str, Material]
     straight: bool
+    mirrored: bool = True
+    weight: tuple[float, float, float] | None = None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -235,6 +241,10 @@ class Effect(Spec):
         """How it loads the chamber; None where it does not."""
         return None
 
+    def weight(self) -> tuple[float, float, float] | None:
+        """Acceleration by which it makes everything heavy, mm/s²; None where it does not."""
+        return None
+
     def turns(self) -> Turns | None:
         """The thread that it winds around the body; None where it winds none."""
         return None
@@ -254,6 +264,15 @@ class Effect(Spec):
     def strips(self) -> Strips | None:
         """Strips of the surface that a mesh must show for it."""
         return None
+
+    def twists(self) -> bool:
+        """Whether it may twist a body."""
+        turns = self.turns()
+        return turns is not None and turns.twists
+
+    def fixes_angle(self) -> bool:
+        """Whether it holds the bending angle, so that no load can reach one."""
+        return "curvature" in self.fixed_scalars()
 
     def fixed_scalars(self) -> tuple[str, ...]:
         """Global unknowns of uniform bending that it fixes."""

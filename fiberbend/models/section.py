@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.effect import ARC, CHAMBER, THREAD, TWIST, VOLUME, WOUND
+from fiberbend.effects.effect import ARC, CHAMBER, HELD, THREAD, TWIST, VOLUME, WOUND
 from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import Objection, ProblemSize, Rung, completed_mesh, count
 from fiberbend.models.uniform import UniformModel, twists
@@ -34,7 +34,7 @@ class Section(UniformModel):
     """Nothing depends on z in the frame that turns with the section."""
 
     name = "section"
-    offers = frozenset({CHAMBER, WOUND, ARC, VOLUME, TWIST, THREAD})
+    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, THREAD})
     turn = math.radians(10)
     first_turn = math.radians(10)
     memory = 5
@@ -55,9 +55,9 @@ class Section(UniformModel):
         """No uniform bend, and no effect that breaks the symmetry otherwise than a hand does."""
         yield from super().limits(case)
         for index, effect in enumerate(case.effects):
-            turns, reason = effect.turns(), effect.mirror_breaker()
+            reason = effect.mirror_breaker()
             known = self.offers.issuperset(effect.needs())
-            if known and reason and not (turns is not None and turns.twists):
+            if known and reason and not effect.twists():
                 yield f"effects.{index}.{effect.name}", f"half a section is solved, and {reason}"
 
     def unused(self, case: Case) -> dict[str, set[str]]:

@@ -93,9 +93,9 @@ class UniformModel(MeshedModel):
 
 def not_uniform(case: Case) -> Iterator[Objection]:
     """Why a case does not bend uniformly, beside its effects."""
-    if case.inflation is None:
-        yield "effects", "nothing bends it uniformly but a pressure"
-    elif case.straight and case.inflation.angle is not None:
+    if not any(effect.load for effect in case.effects):
+        yield "effects", "nothing bends it uniformly but a pressure or effect hold"
+    elif case.straight and case.inflation is not None and case.inflation.angle is not None:
         yield "effects", "kept straight, it reaches no angle: expected a pressure by its value"
     if twists(case):
         for index, effect in enumerate(case.effects):
@@ -106,6 +106,5 @@ def not_uniform(case: Case) -> Iterator[Objection]:
 
 
 def twists(case: Case) -> bool:
-    """Whether a winding may twist the body."""
-    found = (effect.turns() for effect in case.effects)
-    return any(turns.twists for turns in found if turns is not None)
+    """Whether an effect may twist the body: a winding, or a twist that is held."""
+    return any(effect.twists() for effect in case.effects)

@@ -17,12 +17,12 @@ LOADS = {
     "force": (TipForce((0.1, -0.2, 0.3)), TipForce((0.0, -0.2, 0.3))),
     "moment": (TipMoment(3.0), TipMoment(3.0)),
     "follower": (
-        FollowingTipLoad((0.1, -0.2, 0.3), (1.0, 2.0, -3.0), True, True),
-        FollowingTipLoad((0.0, -0.2, 0.3), (1.0, 0.0, 0.0), True, True),
+        FollowingTipLoad((0.1, -0.2, 0.3), (1.0, 2.0, -3.0), True),
+        FollowingTipLoad((0.0, -0.2, 0.3), (1.0, 0.0, 0.0), True),
     ),
     "dead moment": (
-        FollowingTipLoad((0.1, -0.2, 0.3), (1.0, 2.0, -3.0), False, False),
-        FollowingTipLoad((0.0, -0.2, 0.3), (1.0, 0.0, 0.0), False, False),
+        FollowingTipLoad((0.1, -0.2, 0.3), (1.0, 2.0, -3.0), False),
+        FollowingTipLoad((0.0, -0.2, 0.3), (1.0, 0.0, 0.0), False),
     ),
 }
 
