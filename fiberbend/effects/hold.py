@@ -53,7 +53,7 @@ class HoldEffect(Effect):
             if effect is self:
                 continue
             if effect.fixed_scalars():
-                yield Problem(path, f"{other} holds it already, expected one of them")
+                yield Problem(path, f"{other} holds it already, expected one of the two")
             load = effect.inflation()
             if load is not None and load.angle is not None and self.bend is not None:
                 text = f"the angle is held (effects.{self.name}), expected a pressure or a volume"

@@ -33,7 +33,8 @@ class TipMassEffect(Effect):
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
         """Without gravity it does nothing."""
         if all(effect.weight() is None for effect in draft.effects.values()):
-            yield Problem(path, "no effect without gravity, expected effect gravity beside it")
+            text = "weighs nothing without effect gravity, expected that beside it"
+            yield Problem(path, f"{path} {text}")
 
     def alone(self) -> str:
         """No section has a tip."""

@@ -33,7 +33,7 @@ def _scene(load: str, half: bool) -> Scene:
     return Scene(stub("hexahedron", half), effects)
 
 
-class _Whole:
+class Bordered:
     """Fields and natural scalars as one vector."""
 
     def __init__(self, scene: Scene) -> None:
@@ -68,7 +68,7 @@ class _Whole:
 @pytest.mark.parametrize("half", [False, True])
 @pytest.mark.parametrize("load", LOADS)
 def test_bordered_tangent_is_the_derivative_of_the_equations(load: str, half: bool) -> None:
-    whole = _Whole(_scene(load, half))
+    whole = Bordered(_scene(load, half))
     scene, owned = whole.scene, whole.scene.body.owned
     scene.set_scalar("tip-load", 0.7)
     rng = np.random.default_rng(3)
