@@ -84,5 +84,5 @@ class HoldEffect(Effect):
 
         given = {LENGTHENED: self.stretch, BEND: self.bend, TWISTED: self.twist}
         targets = {name: value for name, value in given.items() if value is not None}
-        ramps = (Ramp(HOLD, 1.0),) if self._moves() else ()
+        ramps = (Ramp(HOLD, 1.0, conjugated=False),) if self._moves() else ()
         return Built((Hold(targets),), ramps)

@@ -68,8 +68,9 @@ class TipLoadEffect(Effect):
         from fem.effects.tip_load import FollowingTipLoad, TipForce, TipMoment
         from fem.march.records import Ramp
 
-        ramp = Ramp(TipForce.scalar, 1.0)
-        if self.follows or (any(self.moment) and not site.mirrored):
+        free = self.follows or (any(self.moment) and not site.mirrored)
+        ramp = Ramp(TipForce.scalar, 1.0, conjugated=not free)
+        if free:
             term = FollowingTipLoad(self.force, self.moment, self.follows)
             return Built((term,), (ramp,))
         terms: list[Term] = []
