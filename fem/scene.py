@@ -184,9 +184,13 @@ class Scene(OwnCode):
         ).astype(np.int32)
 
     def hold(self, scalars: Mapping[str, float]) -> None:
-        """Hold these natural scalars at given values, and no others: no kernel hangs on that."""
+        """Hold these natural scalars at given values, and no others: no kernel hangs on that.
+
+        One that symmetry keeps at zero may be held there.
+        """
         for name, value in scalars.items():
-            self.set_scalar(name, value)
+            if name in self.body.natural or not self.body.natural or value:
+                self.set_scalar(name, value)
         kept = tuple(name for name in self.body.natural if name not in scalars)
         self.natural = (*kept, *self.added)
 

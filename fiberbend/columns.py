@@ -36,6 +36,7 @@ FLOOR_STRETCH = "floor_stretch"
 CROWN_STRETCH = "crown_stretch"
 TWIST = "twist_deg"
 MOMENT = "blocked_moment_Nmm"
+SIDE_MOMENT = "blocked_side_moment_Nmm"
 AXIAL_FORCE = "axial_force_N"
 MOMENT_X = "moment_x_Nmm"
 MOMENT_Y = "moment_y_Nmm"
@@ -188,6 +189,7 @@ COLUMNS = (
     Column(BALANCE_FORCE, "", "what is left of all forces, over their scale", BODY),
     Column(BALANCE_MOMENT, "", "what is left of all moments, over theirs", BODY),
     Column(MOMENT, "N mm", "moment about the centroid, kept straight", UNIFORM),
+    Column(SIDE_MOMENT, "N mm", "the same about the section's y, where it may bend so", UNIFORM),
     Column(AXIAL_FORCE, "N", "axial force with which it pushes; tension is negative", ELEMENTS),
     Column(MOMENT_X, "N mm", "moment about the centroid with which it bends toward −y", ELEMENTS),
     Column(MOMENT_Y, "N mm", "the same about its own y, toward x", ELEMENTS),

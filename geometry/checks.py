@@ -9,7 +9,8 @@ from geometry.mesh.data import Floats, MeshData
 from geometry.mesh.errors import MeshError
 from geometry.mesh.reference import area_vectors, cell_rule, determinants
 from geometry.winding.embed import embed
-from geometry.winding.helix import Winding
+from geometry.winding.ribbons import Wound
+from geometry.winding.symmetry import mirrored
 
 
 def region_volumes(mesh: MeshData) -> dict[str, float]:
@@ -62,7 +63,7 @@ def geometry_error(mesh: MeshData) -> float:
 
 
 def check(
-    mesh: MeshData, actuator: Actuator, winding: Winding | None = None
+    mesh: MeshData, actuator: Actuator, winding: Wound | None = None
 ) -> dict[str, dict[str, float]]:
     """Compare the mesh of a whole body with the closed forms.
 
@@ -91,9 +92,9 @@ def check(
     area = part * actuator.winding_perimeter * actuator.length
     pairs["winding area"] = (surface_area(mesh, "winding"), area)
     if winding is not None:
-        fibers = embed(mesh, actuator, winding)
-        expected = len(winding.hands) * winding.curve_length(actuator)
-        if not mesh.half or winding.mirrored:
+        fibers, laid = embed(mesh, actuator, winding), winding.ribbons(actuator)
+        expected = float(laid.lengths(actuator).sum())
+        if not mesh.half or mirrored(laid.families):
             pairs["winding length"] = (float(fibers.length @ fibers.share), part * expected)
 
     report = {

@@ -42,9 +42,11 @@ class FiberPotential:
         tension_only: slack fibers carry nothing.
     """
 
-    natural: ClassVar[Mapping[str, Natural]] = {}
-    conservative: ClassVar[bool] = True
-    pair_units: ClassVar[Mapping[str, tuple[str, str]]] = {}
+    natural: Mapping[str, Natural] = {}
+    conservative: bool = True
+    pair_units: Mapping[str, tuple[str, str]] = {}
+    thread: ClassVar[bool] = True
+    """Its pieces are those of a winding, whose forces are told."""
 
     def pairs(self) -> dict[str, tuple[float, float]]:
         """None: it has a potential."""

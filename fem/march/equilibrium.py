@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fem.march.predictor import Predictor
-from fem.march.records import MODES, State, measure
+from fem.march.records import MODES, TURN, State, measure
 from fem.ranks import total
 from fem.scene import Scene
 from fem.solver.bordered import SideCondition
@@ -73,6 +73,9 @@ class Equilibrium:
                 measures[measure("conjugate", name)] = scene.conjugate(name)
         if self._control is not None:
             measures["control"] = self._control.value()
+        turned = scene.body.turned()
+        if turned is not None:
+            measures[TURN] = turned
         return State(
             w=scene.w.copy(),
             scalars=scalars,

@@ -17,6 +17,8 @@ Floats = npt.NDArray[np.float64]
 DRIVES = ("value", "conjugate", "control")
 """What a ramp may drive."""
 MODES = "modes"
+TURN = "turn"
+"""Measure of all that a body turns, where its bending angle is a part of that."""
 """Name of the measure that counts unstable modes."""
 
 

@@ -119,6 +119,6 @@ def balance(scene: Scene, mirror: str = "symmetry") -> Balance:
 def fiber_forces(scene: Scene) -> tuple[float, float] | None:
     """Least and greatest axial force of a scene's fibers, N; None without fibers; collective."""
     for discrete in scene.discrete.values():
-        if isinstance(discrete, FiberPotential):
+        if isinstance(discrete, FiberPotential) and discrete.thread:
             return discrete.force_range()
     return None

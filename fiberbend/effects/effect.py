@@ -2,158 +2,78 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+from fiberbend.effects.records import (
+    ARC as ARC,
+)
+from fiberbend.effects.records import (
+    CHAMBER as CHAMBER,
+)
+from fiberbend.effects.records import (
+    ENDS as ENDS,
+)
+from fiberbend.effects.records import (
+    HELD as HELD,
+)
+from fiberbend.effects.records import (
+    HOOPS as HOOPS,
+)
+from fiberbend.effects.records import (
+    SIDE as SIDE,
+)
+from fiberbend.effects.records import (
+    SPACE as SPACE,
+)
+from fiberbend.effects.records import (
+    STRIPS as STRIPS,
+)
+from fiberbend.effects.records import (
+    THREAD as THREAD,
+)
+from fiberbend.effects.records import (
+    TURNS as TURNS,
+)
+from fiberbend.effects.records import (
+    TWIST as TWIST,
+)
+from fiberbend.effects.records import (
+    VOLUME as VOLUME,
+)
+from fiberbend.effects.records import (
+    WOUND as WOUND,
+)
+from fiberbend.effects.records import (
+    Built as Built,
+)
+from fiberbend.effects.records import (
+    Draft as Draft,
+)
+from fiberbend.effects.records import (
+    Inflation as Inflation,
+)
+from fiberbend.effects.records import (
+    Requests as Requests,
+)
+from fiberbend.effects.records import (
+    Site as Site,
+)
+from fiberbend.effects.records import (
+    Turns as Turns,
+)
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Spec
 
 if TYPE_CHECKING:
-    from fem.effects.effect import Effect as Term
-    from fem.march.records import Ramp, Rules
+    from fem.march.records import Rules
     from fem.solver.newton import Settings
     from fiberbend.states.obstacles import Shape
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
     from geometry.sections.size import MeshSize, Strips
-    from geometry.winding.segments import EmbeddedFibers
     from materials.bulging import Bulging
-    from materials.material import Material
-
-CHAMBER = "chamber"
-"""A model has the chamber that a pressure inflates."""
-WOUND = "wound"
-"""A model has the thread around the body, in turns, spread, or as a fixed circumference."""
-ARC = "arc"
-"""A model bends uniformly all along, so that it can be kept straight all along."""
-HELD = "held"
-"""A model has the centre-line of a uniform bend, whose stretch and turns can be held."""
-SPACE = "space"
-"""A model is a whole body in space, with everything that can act on one."""
-ENDS = "ends"
-"""A model gives the force of a support of the tip."""
-STRIPS = "strips"
-"""Roof and post are surfaces of the model, sheath and cap under them yield."""
-VOLUME = "volume"
-"""A model can be driven by the volume of its chamber."""
-TWIST = "twist"
-"""A model can twist."""
-THREAD = "thread"
-"""A winding has its pitch and its thread stretches."""
-TURNS = "turns"
-"""Every turn of a winding lies where it is wound."""
-HOOPS = "hoops"
-"""A circumference can be fixed."""
-
-
-@dataclasses.dataclass(frozen=True)
-class Inflation:
-    """How the chamber is loaded: one of the three is given.
-
-    Attributes:
-        to: pressure at the end, MPa.
-        volume: chamber volume at the end, mm³.
-        angle: bending angle at the end, rad.
-    """
-
-    to: float | None = None
-    volume: float | None = None
-    angle: float | None = None
-
-
-@dataclasses.dataclass(frozen=True)
-class Turns:
-    """Thread wound around the body.
-
-    Attributes:
-        pitch: length along the axis of one turn, mm.
-        discrete: every turn by itself, not spread over its surface.
-        twists: the pattern has a hand, so that the body may twist.
-        stiffness: axial stiffness EA of the thread, N.
-        modulus: Young's modulus of the thread, MPa.
-        curves: lines that stand for the thread: helices, times the lines of a ribbon.
-        bulges: spread over its surface, with rubber that bulges between the turns.
-    """
-
-    pitch: float
-    discrete: bool
-    twists: bool
-    stiffness: float
-    modulus: float
-    curves: int
-    bulges: bool = False
-
-
-@dataclasses.dataclass(frozen=True)
-class Draft:
-    """What is valid of a case that is being checked.
-
-    Attributes:
-        actuator: its dimensions, where they go together, else None.
-        length: of the chamber, mm, where it is valid, else None.
-        effects: by their paths.
-    """
-
-    actuator: Actuator | None
-    length: float | None
-    effects: Mapping[str, Effect]
-
-
-@dataclasses.dataclass(frozen=True)
-class Site:
-    """The actuator of a case as its effects see it.
-
-    Attributes:
-        actuator: dimensions.
-        materials: of each of its parts.
-        straight: an effect keeps the actuator from bending.
-        mirrored: no effect breaks its mirror plane x = 0.
-        weight: acceleration by which it is heavy, x, y and z, mm/s²; None: without weight.
-    """
-
-    actuator: Actuator
-    materials: Mapping[str, Material]
-    straight: bool
-    mirrored: bool = True
-    weight: tuple[float, float, float] | None = None
-
-
-@dataclasses.dataclass(frozen=True)
-class Requests:
-    """What a case asks of the path of a load.
-
-    Attributes:
-        first: first step, MPa, or None.
-        largest: greatest step, MPa, or None.
-        at_pressures: pressures to be hit, MPa.
-        at_angles: bending angles to be hit under any load, rad.
-        stop_at_angle: where the run ends early, rad, or None.
-    """
-
-    first: float | None
-    largest: float | None
-    at_pressures: tuple[float, ...]
-    at_angles: tuple[float, ...]
-    stop_at_angle: float | None
-
-
-@dataclasses.dataclass(frozen=True)
-class Built:
-    """An effect as the finite-element code takes it.
-
-    Attributes:
-        terms: summands of the potential, constraints.
-        ramps: loads of the whole actuator, in order.
-        fibers: thread on the mesh, if the effect has any.
-        smeared: that thread is spread over its surface.
-    """
-
-    terms: tuple[Term, ...]
-    ramps: tuple[Ramp, ...] = ()
-    fibers: EmbeddedFibers | None = None
-    smeared: bool = False
 
 
 class Effect(Spec):
@@ -168,6 +88,8 @@ class Effect(Spec):
     """The key under which a case lists it."""
     load: ClassVar[bool] = False
     """True where the march has something to ramp."""
+    several: ClassVar[bool] = False
+    """True where a case may list it more than once."""
     needs_density: ClassVar[bool] = False
     """True where it needs the density of every material."""
 
@@ -184,6 +106,21 @@ class Effect(Spec):
     def mirror_breaker(self) -> str:
         """Why x = 0 is no mirror plane of it; empty where it is one."""
         return f"{self.name} is not known to be mirror-symmetric"
+
+    def end_breaker(self) -> str:
+        """Why z = 0, and with it others along the axis, is no mirror plane of it; empty: it is.
+
+        Without that plane a body that bends uniformly may twist, and its sections may warp.
+        """
+        return f"{self.name} is not known to be alike forward and backward"
+
+    def turn_breaker(self) -> str:
+        """Why half a turn about y does not map it onto itself; empty where it does.
+
+        Where neither that turn nor the mirror planes do, a body that bends uniformly may bend to
+        the side.
+        """
+        return f"{self.name} is not known to be its own image by half a turn about y"
 
     def bends(self) -> bool:
         """Whether it may bend an actuator that is alike above and below."""
@@ -265,11 +202,6 @@ class Effect(Spec):
         """Strips of the surface that a mesh must show for it."""
         return None
 
-    def twists(self) -> bool:
-        """Whether it may twist a body."""
-        turns = self.turns()
-        return turns is not None and turns.twists
-
     def fixes_angle(self) -> bool:
         """Whether it holds the bending angle, so that no load can reach one."""
         return "curvature" in self.fixed_scalars()
@@ -332,6 +264,14 @@ class Effect(Spec):
     def alone(self) -> str:
         """What acts on the run and on no model beside it, in words; empty where nothing does."""
         return f"{self.name} acts"
+
+    def unmeasured(self) -> str:
+        """What of it the measured errors of meshes do not hold for, in words; empty: they hold."""
+        return self.alone()
+
+    def no_closed_form(self) -> str:
+        """Why no closed form is drawn beside a case with it; empty where one is."""
+        return ""
 
     # --- increment control ---------------------------------------------------------------------
 

@@ -24,7 +24,9 @@ class HoldEffect(Effect):
     stretch: float | None = Field(default=None, ge=0.2, le=5.0)
     """Stretch of the centre-line; 1 keeps its length."""
     bend: AngleOrZero | None = None
-    """Bending angle between z = 0 and z = L; "0 deg" keeps it straight."""
+    """Bending angle between z = 0 and z = L, toward -y; "0 deg" keeps it from bending."""
+    side_bend: AngleOrZero | None = None
+    """The same about the section's own y, toward x."""
     twist: AngleOrZero | None = None
     """Turn of the sections about the centre-line between z = 0 and z = L, from x to y."""
 
@@ -33,12 +35,16 @@ class HoldEffect(Effect):
         return {HELD: "only section and cell hold a uniform bend (body: tip-load, blocked-tip)"}
 
     def mirror_breaker(self) -> str:
-        """A twist."""
-        return "a twist that is held turns it out of its mirror plane" if self.twists() else ""
+        """A twist, a bend to the side."""
+        return self.end_breaker() or self.turn_breaker()
 
-    def twists(self) -> bool:
-        """Where it is held away from none."""
-        return bool(self.twist)
+    def end_breaker(self) -> str:
+        """A twist."""
+        return "a twist that is held turns it out of its mirror planes" if self.twist else ""
+
+    def turn_breaker(self) -> str:
+        """A bend to the side."""
+        return "a side bend that is held takes it to one side" if self.side_bend else ""
 
     def bends(self) -> bool:
         """Where that is asked of it."""
@@ -46,9 +52,9 @@ class HoldEffect(Effect):
 
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
         """Nothing held, held twice, or driven too."""
-        values = (self.stretch, self.bend, self.twist)
+        values = (self.stretch, self.bend, self.side_bend, self.twist)
         if all(value is None for value in values):
-            yield Problem(path, "nothing is held, expected stretch, bend or twist")
+            yield Problem(path, "nothing is held, expected stretch, bend, side_bend or twist")
         for other, effect in draft.effects.items():
             if effect is self:
                 continue
@@ -67,7 +73,7 @@ class HoldEffect(Effect):
 
     def _moves(self) -> bool:
         """Whether it is held elsewhere than at rest."""
-        return bool(self.bend or self.twist or (self.stretch or 1.0) != 1.0)
+        return bool(self.bend or self.side_bend or self.twist or (self.stretch or 1.0) != 1.0)
 
     def alone(self) -> str:
         """No model beside it is held."""
@@ -79,10 +85,15 @@ class HoldEffect(Effect):
 
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
         """From rest to the values."""
-        from fem.effects.hold import BEND, HOLD, LENGTHENED, TWISTED, Hold
+        from fem.effects.sums.hold import BEND, HOLD, LENGTHENED, SIDE_BEND, TWISTED, Hold
         from fem.march.records import Ramp
 
-        given = {LENGTHENED: self.stretch, BEND: self.bend, TWISTED: self.twist}
+        given = {
+            LENGTHENED: self.stretch,
+            BEND: self.bend,
+            SIDE_BEND: self.side_bend,
+            TWISTED: self.twist,
+        }
         targets = {name: value for name, value in given.items() if value is not None}
         ramps = (Ramp(HOLD, 1.0, conjugated=False),) if self._moves() else ()
         return Built((Hold(targets),), ramps)

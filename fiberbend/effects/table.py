@@ -15,8 +15,9 @@ from fiberbend.effects.hold import HoldEffect
 from fiberbend.effects.hoops import HoopsEffect
 from fiberbend.effects.pressure import PressureEffect
 from fiberbend.effects.straight import StraightEffect
-from fiberbend.effects.tip_load import TipLoadEffect
-from fiberbend.effects.tip_mass import TipMassEffect
+from fiberbend.effects.strip import StripEffect
+from fiberbend.effects.tip.load import TipLoadEffect
+from fiberbend.effects.tip.mass import TipMassEffect
 from fiberbend.effects.winding import WindingEffect
 from fiberbend.schema.quantities import Spec
 
@@ -33,9 +34,10 @@ EFFECTS: dict[str, type[Effect]] = {
         HoldEffect,
         TipLoadEffect,
         TipMassEffect,
+        StripEffect,
     )
 }
-"""Each at most once in a case."""
+"""Each at most once in a case, but for those of which there may be several."""
 
 
 class _OneEffect(Spec):

@@ -131,6 +131,17 @@ class WindingEffect(Effect):
         meaning = PATTERNS[self.pattern].meaning
         return f"{meaning} is not its own mirror image" if self._twists else ""
 
+    def end_breaker(self) -> str:
+        """The same: both mirror planes change the hand."""
+        return self.mirror_breaker()
+
+    def turn_breaker(self) -> str:
+        """Half a turn keeps the hand, and moves starts where turns lie by themselves."""
+        pattern = PATTERNS[self.pattern]
+        if pattern.turned or (self.representation is not None and not self.turns().discrete):
+            return ""
+        return f"half a turn about y does not map {pattern.meaning} onto itself"
+
     def bends(self) -> bool:
         """Half a turn about the axis maps every pattern onto itself, half a pitch on."""
         return False

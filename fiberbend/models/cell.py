@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.effect import ARC, CHAMBER, HELD, THREAD, TURNS, TWIST, VOLUME, WOUND
+from fiberbend.case.symmetry import Symmetry
+from fiberbend.effects.effect import ARC, CHAMBER, HELD, SIDE, THREAD, TURNS, TWIST, VOLUME, WOUND
 from fiberbend.models.mesh_error import cell_section_error, section_error
 from fiberbend.models.model import Objection, ProblemSize, Rung, completed_mesh, count, pieces
-from fiberbend.models.uniform import UniformModel, twists
+from fiberbend.models.uniform import UniformModel
 from fiberbend.schema.units import show
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ class Cell(UniformModel):
     """Half a pitch between mirror planes, or a whole pitch with tied ends."""
 
     name = "cell"
-    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, THREAD, TURNS})
+    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, SIDE, THREAD, TURNS})
     layers_a_pitch = 8.0
     turn = math.radians(45)
     first_turn = math.radians(10)
@@ -52,8 +53,11 @@ class Cell(UniformModel):
         return case.model_copy(update={"mesh": completed_mesh(case.mesh, axial=axial)})
 
     def limits(self, case: Case) -> Iterator[Objection]:
-        """No uniform bend, and no slice that the chamber has no room for."""
+        """No uniform bend, half a slice without mirror planes, and one that has no room."""
         yield from super().limits(case)
+        symmetry = Symmetry.of(case)
+        if case.mesh.symmetry == "half" and symmetry.along:
+            yield "mesh.symmetry", f"its ends are no mirror planes: {'; '.join(symmetry.along)}"
         extent, length = self.slice(case, self.half(case)[0])[0], case.actuator.length
         for index, effect in enumerate(case.effects):
             turns = effect.turns()
@@ -64,16 +68,29 @@ class Cell(UniformModel):
                     f"chamber, {show(length, 'length')} (as: smeared, or model body)",
                 )
 
+    def half(self, case: Case) -> tuple[bool, str]:
+        """Between mirror planes, where it has both."""
+        if case.mesh.symmetry != "auto":
+            return super().half(case)
+        symmetry = Symmetry.of(case)
+        return symmetry.plane, symmetry.words()
+
+    def _tied(self, case: Case, half: bool) -> bool:
+        """Whether the ends of the slice go on alike, and are no mirror planes."""
+        symmetry = Symmetry.of(case)
+        return symmetry.twists or (symmetry.plane and not half)
+
     def slice(self, case: Case, half: bool) -> tuple[float, int]:
         """Length in mm of the slice that repeats, and its number of layers.
 
         Half a pitch between mirror planes, a whole one without; without a winding any length does.
+        A whole section that the case asks for is a whole pitch too.
         """
         from geometry.sections.size import divisions
 
         turns = case.turns
         pitch = turns.pitch if turns is not None else 2 * case.mesh.axial
-        extent = pitch / 2 if half else pitch
+        extent = pitch if self._tied(case, half) else pitch / 2
         return extent, divisions(extent, case.mesh.axial)
 
     def mesh_size(self, case: Case, half: bool) -> MeshSize:
@@ -93,15 +110,23 @@ class Cell(UniformModel):
         """Three components of the displacement."""
         from fem.kinematics.cell import Cell as Bending
 
-        return functools.partial(Bending, length=case.actuator.length, twisted=twists(case))
+        symmetry = Symmetry.of(case)
+        return functools.partial(
+            Bending,
+            length=case.actuator.length,
+            twisted=symmetry.twists,
+            sideways=symmetry.sideways,
+            tied=self._tied(case, self.half(case)[0]),
+        )
 
     def supports(self, case: Case, mesh: MeshData) -> list[Term]:
-        """Three mirror planes; a whole pitch has none."""
-        from fem.effects.supports import Symmetry
+        """Mirror planes x = 0 and at both ends, as far as there are any; a whole pitch has none."""
+        from fem.effects.supports import Symmetry as Mirror
 
-        if not mesh.half:
+        if self._tied(case, mesh.half):
             return []
-        return [Symmetry(halves=True), Symmetry("section_root", 2), Symmetry("section_tip", 2)]
+        across = [Mirror(halves=True)] if mesh.half else []
+        return [*across, Mirror("section_root", 2), Mirror("section_tip", 2)]
 
     def resolved_bulging(self, case: Case) -> float:
         """All of it, where every turn lies by itself."""
@@ -152,7 +177,7 @@ class Cell(UniformModel):
             # alike along the axis: no layers count
             return section_error(case)
         half, _ = self.half(case)
-        layers = self.slice(case, half)[1] / (1 if half else 2)
+        layers = self.slice(case, half)[1] / (2 if self._tied(case, half) else 1)
         return max(across, next(error for least, error in _ERRORS if layers >= least))
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from analytic.path import CentreLine as UniformLine
-from fem.effects.hold import BEND, LENGTHENED, SIDE_BEND, TWISTED
-from fem.kinematics.uniform import CURVATURE, STRETCH, Uniform
+from fem.effects.sums.hold import BEND, LENGTHENED, SIDE_BEND, TWISTED
+from fem.kinematics.uniform import CURVATURE, SIDE, STRETCH, Uniform
 from fem.march.records import State
 from fem.results.centre_line import CentreLine
 from fem.results.measures import (
@@ -145,10 +145,10 @@ class UniformGauge:
         return float(x), height + float(y), float(z)
 
     def columns(self, state: State) -> dict[str, float]:
-        """Side angle and twist where it twists, and stretches of three lines."""
+        """Side angle and twist where it may leave its plane, and stretches of three lines."""
         line, length = self._line(state), self._actuator.length
         row = {}
-        if self._body.twisted:
+        if self._body.twisted or self._body.sideways:
             row = _turns(length * line.rates)
         floor, crown = (
             float(np.linalg.norm(line.advance(self._place(state, node))))
@@ -174,28 +174,30 @@ class UniformGauge:
         return place
 
     def last_columns(self, state: State) -> dict[str, float]:
-        """Forces and moments that hold it; kept straight, moment and force, and the tip force that the moment makes.
+        """Forces and moments of what holds it; kept straight, with the tip force of the moment.
 
-        A force N along the axis and a moment M about the line y = 0, conjugate to stretch and
-        curvature, are a force N through the centroid and a moment M − N c_y about it.
+        A force N along the axis and moments M_x, M_y about the lines y = 0 and x = 0, conjugate to
+        stretch and curvatures, are a force N through the centroid and moments M_x − N c_y and
+        M_y + N c_x about it.
         """
         if any(name in state.scalars for name in _HELD):
             # what it does to what holds it
             return {column: 0.0 - state.scalars.get(name, 0.0) for name, column in _HELD.items()}
         if not self._straight:
             return {}
-        moment = self._per_length * state.measures[f"conjugate {CURVATURE}"]
-        if not self._held:
-            tip_force = moment / self._actuator.cap
-            return {col.TIP_FORCE: tip_force, col.MOMENT: moment, col.MOMENT_X: moment}
-        force = self._per_length * state.measures[f"conjugate {STRETCH}"]
-        moment -= force * float(self._line(state).centre[1])
-        return {
-            col.TIP_FORCE: moment / self._actuator.cap,
-            col.MOMENT: moment,
-            col.MOMENT_X: moment,
-            col.AXIAL_FORCE: force,
-        }
+        moment, side = (
+            self._per_length * state.measures.get(f"conjugate {name}", 0.0)
+            for name in (CURVATURE, SIDE)
+        )
+        row = {}
+        if self._held:
+            force = row[col.AXIAL_FORCE] = self._per_length * state.measures[f"conjugate {STRETCH}"]
+            x, y, _ = self._line(state).centre
+            moment, side = moment - force * float(y), side + force * float(x)
+        if self._body.sideways:
+            row |= {col.SIDE_MOMENT: side, col.MOMENT_Y: side}
+        row |= {col.MOMENT: moment, col.MOMENT_X: moment}
+        return {col.TIP_FORCE: moment / self._actuator.cap} | row
 
 
 def _turns(turns: Floats) -> dict[str, float]:

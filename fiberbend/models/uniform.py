@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.case.symmetry import Symmetry
 from fiberbend.columns import UNIFORM
 from fiberbend.models.model import (
     ENDS_BEND,
@@ -28,7 +29,7 @@ _HELD_HELIX = (
 
 
 class UniformModel(MeshedModel):
-    """Curvature and stretch, and twist where the winding has a hand, are global unknowns."""
+    """Curvature and stretch are global unknowns, and by symmetry side curvature and twist."""
 
     fills = MeshedModel.fills | {UNIFORM}
     gives_blocked_force = True
@@ -38,7 +39,7 @@ class UniformModel(MeshedModel):
     def limits(self, case: Case) -> Iterator[Objection]:
         """No uniform bend."""
         yield from super().limits(case)
-        yield from not_uniform(case)
+        yield from not_uniform(case, Symmetry.of(case).twists)
 
     def observables(self, case: Case, scene: Scene) -> Observables:
         """Angle, stretch and twist are scalars."""
@@ -58,7 +59,7 @@ class UniformModel(MeshedModel):
     def scalars(self, case: Case) -> tuple[str, ...]:
         """Global unknowns: those of uniform bending that no effect fixes, and a pressure found."""
         fixed = {name for effect in case.effects for name in effect.fixed_scalars()}
-        names = ["curvature", "stretch", *(["twist"] if twists(case) else [])]
+        names = Symmetry.of(case).scalars()
         return (*(name for name in names if name not in fixed), *found_pressure(case))
 
     def force_named(self) -> str:
@@ -91,20 +92,20 @@ class UniformModel(MeshedModel):
         yield f"ends: left out; {ENDS_BEND}"
 
 
-def not_uniform(case: Case) -> Iterator[Objection]:
-    """Why a case does not bend uniformly, beside its effects."""
+def not_uniform(case: Case, twists: bool) -> Iterator[Objection]:
+    """Why a case does not bend uniformly, beside its effects.
+
+    Args:
+        case: the case.
+        twists: something may twist the body.
+    """
     if not any(effect.load for effect in case.effects):
         yield "effects", "nothing bends it uniformly but a pressure or effect hold"
     elif case.straight and case.inflation is not None and case.inflation.angle is not None:
         yield "effects", "kept straight, it reaches no angle: expected a pressure by its value"
-    if twists(case):
+    if twists:
         for index, effect in enumerate(case.effects):
             if effect.keeps_straight():
                 yield f"effects.{index}.{effect.name}", _HELD_HELIX
     if case.mesh.element == "tetrahedron":
         yield "mesh.element", "tetrahedra are for a body"
-
-
-def twists(case: Case) -> bool:
-    """Whether an effect may twist the body: a winding, or a twist that is held."""
-    return any(effect.twists() for effect in case.effects)

@@ -119,7 +119,7 @@ def _dimensions(parts: ValidParts) -> Iterator[Problem]:
 def _effects(parts: ValidParts) -> Iterator[Problem]:
     first: dict[str, int] = {}
     for index, effect in parts.effects.items():
-        if effect.name in first:
+        if effect.name in first and not effect.several:
             yield Problem(
                 f"effects.{index}.{effect.name}",
                 f"a second {effect.name}, expected one (the first is effects.{first[effect.name]})",

@@ -10,8 +10,8 @@ import pytest
 
 from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.effect import Effect
-from fem.effects.hold import BEND, HOLD, LENGTHENED, TWISTED, Hold
 from fem.effects.incompressible import Incompressible
+from fem.effects.sums.hold import BEND, HOLD, LENGTHENED, SIDE_BEND, TWISTED, Hold
 from fem.effects.supports import StraightAxis, Symmetry, TwofoldAxis
 from fem.kinematics.cell import Cell
 from fem.kinematics.domain import Domain
@@ -24,7 +24,7 @@ from fem.solver.newton import Newton, Settings
 from geometry.bodies.extrude import hexahedral_slice, section_quadrilaterals
 from geometry.sections.size import MeshSize
 from tests.exact.solutions import Torsion
-from tests.fem.parts import PITCH, SHORT, Floats, law, smeared
+from tests.fem.parts import PITCH, SHORT, law, smeared
 from tests.fem.test_tip_load import STENCIL, Bordered
 from tests.verify import uniform_limits as limits
 from tests.verify.uniform import domain, march, rubber, section
@@ -185,3 +185,21 @@ def test_what_is_not_held_costs_nothing() -> None:
     assert free.natural == free.body.natural
     assert free.multipliers == 0
     assert (free.kernels, free.body.size) == (held.kernels, held.body.size)
+
+
+def test_a_section_that_is_held_to_the_side_bends_as_far_either_way() -> None:
+    where = Domain(section_quadrilaterals(SHORT, MeshSize(section=1, half=False)))
+    found = []
+    for side in (0.4, -0.4):
+        effects = [law("yeoh", REGIONS), Incompressible(), ChamberPressure(), smeared(where, SHORT)]
+        hold = Hold({BEND: 0.3, SIDE_BEND: side, LENGTHENED: 1.02})
+        kind = functools.partial(Section, length=SHORT.length, sideways=True)
+        scene = Scene(where, [*effects, hold], kind)
+        scene.set(scene.w.copy())
+        _solved(scene, 1.0, 0.01)
+        found.append([scene.scalar(name) for name in (LENGTHENED, BEND, SIDE_BEND)])
+    (force, moment, pull), (other_force, other_moment, other_pull) = found
+    assert abs(pull) > 1
+    assert force == pytest.approx(other_force, rel=1e-10)
+    assert moment == pytest.approx(other_moment, rel=1e-10)
+    assert pull == pytest.approx(-other_pull, rel=1e-10)

@@ -50,9 +50,8 @@ class TipMassEffect(Effect):
 
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
         """Its weight, scaled as gravity is."""
-        from fem.effects.gravity import Gravity
-        from fem.effects.tip_load import TipForce
+        from fem.effects.sums.tip_load import TipWeight
 
         assert site.weight is not None, "checked when the case was read"
         x, y, z = (self.mass * acceleration for acceleration in site.weight)
-        return Built((TipForce((x, y, z), Gravity.scalar),))
+        return Built((TipWeight((x, y, z)),))

@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from analytic.path import cross_matrix, section_axes
 from fem.effects.effect import Discrete, Effect, Natural
-from fem.effects.reduced import Functionals, Linear, Linked
+from fem.effects.gravity import Gravity
+from fem.effects.sums.functionals import Functionals, Linear, Linked
 from fem.kinematics.kinematics import Kinematics
 
 Floats = npt.NDArray[np.float64]
@@ -80,25 +81,26 @@ class TipForce(Effect):
 
     Args:
         force: F in N, x, y and z.
-        scalar: name of q: a share of its own, or of a load that it belongs to.
     """
 
     scalar = "tip-load"
+    units: ClassVar = {scalar: ("", "mJ")}
 
-    def __init__(self, force: Vector, scalar: str = scalar) -> None:
-        self.force, self._scalar = force, scalar
-        self.units = {scalar: ("", "mJ")}
-
-    @property
-    def key(self) -> str:
-        """Several loads may have one."""
-        return f"TipForce[{self._scalar}]"
+    def __init__(self, force: Vector) -> None:
+        self.force = force
 
     def discrete(self, body: Kinematics) -> Discrete:
         """The load's potential."""
         face = Face(body)
         load = face.part * np.array([self.force[i] for i in face.components])
-        return Linear(body, face.moved(), self._scalar, load)
+        return Linear(body, face.moved(), self.scalar, load)
+
+
+class TipWeight(TipForce):
+    """The weight F of a mass that hangs at the face, scaled as gravity is."""
+
+    scalar = Gravity.scalar
+    units: ClassVar = Gravity.units
 
 
 class TipMoment(Effect):
@@ -181,8 +183,8 @@ class _Turning(Linked):
 class FollowingTipLoad(Effect):
     """A force F and a moment M on the tip cap's outer face that have no potential.
 
-    F acts at the centroid c, spread evenly; M by forces f_x and f_y on the images a_x and a_y of the
-    face's axes, f_i = μ × a_i with μ such that Σ a_i × f_i = M: the virtual work is
+    F acts at the centroid c, spread evenly; M by forces f_x and f_y on the images a_x and a_y of
+    the face's axes, f_i = μ × a_i with μ such that Σ a_i × f_i = M: the virtual work is
     F·δc + M·δθ, δθ = G⁻¹ Σ a_i × δa_i the mean turn of the two axes, G = Σ |a_i|² I − a_i a_iᵀ.
     Loads that follow are R F and R M, R from the face's axes at rest to those of
     `analytic.path.section_axes`. All of it is scaled by q.
@@ -207,7 +209,7 @@ class FollowingTipLoad(Effect):
 class _Following(Linked):
     """f = q g(b), b the centroid's displacement and the axes."""
 
-    conservative: ClassVar[bool] = False
+    conservative = False
 
     def __init__(self, face: Face, load: FollowingTipLoad) -> None:
         functionals = face.all()

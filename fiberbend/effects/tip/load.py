@@ -65,7 +65,7 @@ class TipLoadEffect(Effect):
 
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
         """It grows from zero to the whole; with a potential where it has one."""
-        from fem.effects.tip_load import FollowingTipLoad, TipForce, TipMoment
+        from fem.effects.sums.tip_load import FollowingTipLoad, TipForce, TipMoment
         from fem.march.records import Ramp
 
         free = self.follows or (any(self.moment) and not site.mirrored)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from analytic.path import centre_line
 from fem.effects.effect import Discrete, Effect, Natural
-from fem.effects.reduced import Functionals, Linked
+from fem.effects.sums.functionals import Functionals, Linked
 from fem.kinematics.kinematics import Kinematics
 from fem.kinematics.uniform import AXES, STRETCH, Uniform
 from geometry.mesh.centroid import section_fit

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -73,10 +72,10 @@ class Reduced:
     """
 
     natural: Mapping[str, Natural] = {}
-    conservative: ClassVar[bool] = True
+    conservative: bool = True
     pair_units: Mapping[str, tuple[str, str]] = {}
-    mixed: ClassVar[bool] = True
-    undecided: ClassVar[bool] = False
+    mixed: bool = True
+    undecided: bool = False
 
     def __init__(self, body: Kinematics, functionals: Functionals) -> None:
         self._body, self._functionals = body, functionals
