@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import Symmetry
-from fiberbend.effects.effect import ARC, CHAMBER, SIDE, THREAD, TURNS, TWIST, VOLUME, WOUND
+from fiberbend.effects.effect import ARC, CHAMBER, HELD, SIDE, THREAD, TURNS, TWIST, VOLUME, WOUND
 from fiberbend.models.mesh_error import cell_section_error, section_error
 from fiberbend.models.model import Objection, ProblemSize, Rung, completed_mesh, count, pieces
 from fiberbend.models.uniform import UniformModel
@@ -34,7 +34,7 @@ class Cell(UniformModel):
     """Half a pitch between mirror planes, or a whole pitch with tied ends."""
 
     name = "cell"
-    offers = frozenset({CHAMBER, WOUND, ARC, VOLUME, TWIST, SIDE, THREAD, TURNS})
+    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, SIDE, THREAD, TURNS})
     layers_a_pitch = 8.0
     turn = math.radians(45)
     first_turn = math.radians(10)

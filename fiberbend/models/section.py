@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import Symmetry, twists
-from fiberbend.effects.effect import ARC, CHAMBER, SIDE, THREAD, TWIST, VOLUME, WOUND
+from fiberbend.effects.effect import ARC, CHAMBER, HELD, SIDE, THREAD, TWIST, VOLUME, WOUND
 from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import ProblemSize, Rung, completed_mesh, count
 from fiberbend.models.uniform import UniformModel
@@ -35,7 +35,7 @@ class Section(UniformModel):
     """Nothing depends on z in the frame that turns with the section."""
 
     name = "section"
-    offers = frozenset({CHAMBER, WOUND, ARC, VOLUME, TWIST, SIDE, THREAD})
+    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, SIDE, THREAD})
     turn = math.radians(10)
     first_turn = math.radians(10)
     memory = 5

@@ -99,9 +99,9 @@ def not_uniform(case: Case, twists: bool) -> Iterator[Objection]:
         case: the case.
         twists: something may twist the body.
     """
-    if case.inflation is None:
-        yield "effects", "nothing bends it uniformly but a pressure"
-    elif case.straight and case.inflation.angle is not None:
+    if not any(effect.load for effect in case.effects):
+        yield "effects", "nothing bends it uniformly but a pressure or effect hold"
+    elif case.straight and case.inflation is not None and case.inflation.angle is not None:
         yield "effects", "kept straight, it reaches no angle: expected a pressure by its value"
     if twists:
         for index, effect in enumerate(case.effects):

@@ -120,7 +120,7 @@ def test_kept_straight_it_pushes_to_its_side() -> None:
     moment = below.last("blocked_moment_Nmm")
     assert moment > 10
     assert right.last("blocked_moment_Nmm") == pytest.approx(0, abs=1e-7)
-    assert right.last("blocked_side_moment_Nmm") == pytest.approx(moment, rel=1e-9)
+    assert right.last("moment_y_Nmm") == pytest.approx(moment, rel=1e-9)
 
 
 def test_a_strip_over_the_whole_floor_is_a_thin_stiff_layer() -> None:
