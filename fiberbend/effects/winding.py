@@ -57,20 +57,21 @@ class WindingEffect(Effect):
 
     model_config = ConfigDict(
         json_schema_extra={
-            "anyOf": [{"required": ["pattern", "pitch", "fiber"]}, {"required": ["families"]}]
+            "oneOf": [{"required": ["pattern", "pitch", "fiber"]}, {"required": ["families"]}]
         }
     )
 
     pattern: PatternName | None = None
-    """Double helix: one right-handed and one left-handed, crossing on the plane of symmetry."""
+    """Double helix: one right-handed and one left-handed, crossing on the plane of symmetry;
+    needed without families."""
     pitch: Length | None = None
-    """Length along the axis of one turn."""
+    """Length along the axis of one turn; needed without families."""
     families: tuple[FamilySpec, ...] | None = Field(default=None, strict=False, min_length=1)
     """Threads of any angle, in place of pattern and pitch."""
     around: Around | None = None
     """Where families lie: all around, or wall, not under the floor; all by default."""
     fiber: FiberSpec | None = None
-    """A named fiber or its modulus and diameter."""
+    """A named fiber or its modulus and diameter; needed unless every family has its own."""
     representation: Kind | None = Field(default=None, alias="as")
     """Every turn by itself (discrete); the same thread spread over its surface, with rubber that
     bulges between the turns as in the cell of this section, which is solved before (calibrated); or
