@@ -21,7 +21,7 @@ from fiberbend.effects.effect import (
 )
 from fiberbend.effects.wound.by_families import ByFamilies
 from fiberbend.effects.wound.by_pattern import ByPattern
-from fiberbend.effects.wound.family import Around, FamilySpec
+from fiberbend.effects.wound.family import Around, FamilySpec, bend
 from fiberbend.effects.wound.thread import BulgingSpec, FiberSpec
 from fiberbend.effects.wound.threads import Threads
 from fiberbend.schema.problems import Problem
@@ -176,10 +176,8 @@ class WindingEffect(Effect):
         return self.representation not in (DISCRETE, None)
 
     def bends(self) -> bool:
-        """Not by a pattern: half a turn about the axis maps each onto itself, half a pitch on."""
-        places = (family.at is not None or family.angle == 0 for family in self.families or ())
-        walls = (family.around == "wall" for family in self.families or ())
-        return self.around == "wall" or any(places) or any(walls)
+        """Where its threads are not alike above and below."""
+        return bend(self.families or (), self.around)
 
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
         """Ribbon and thread, and whether there is room for them."""

@@ -75,16 +75,11 @@ class Cell(UniformModel):
                 )
 
     def half(self, case: Case) -> tuple[bool, str]:
-        """Between mirror planes, where it has both."""
+        """Half a section between mirror planes, where it has both; else a whole period."""
         if case.mesh.symmetry != "auto":
             return super().half(case)
         symmetry = Symmetry.of(case.effects)
         return symmetry.plane, symmetry.words()
-
-    def _tied(self, case: Case, half: bool) -> bool:
-        """Whether the ends of the slice go on alike, and are no mirror planes."""
-        symmetry = Symmetry.of(case.effects)
-        return symmetry.twists or (symmetry.plane and not half)
 
     def origin(self, case: Case) -> float:
         """Where half a turn about a line along y maps the threads onto themselves."""
@@ -96,7 +91,6 @@ class Cell(UniformModel):
 
         Half a period between mirror planes, a whole one without; of a pattern a period is its
         pitch, of n equal starts a pitch over n. Without turns any length does.
-        A whole section that the case asks for is a whole period too.
         """
         from geometry.sections.size import divisions
 
@@ -104,7 +98,7 @@ class Cell(UniformModel):
         period = None if turns is None else turns.period if turns.discrete else turns.spacing
         if period is None or math.isinf(period):
             period = 2 * case.mesh.axial
-        extent = period if self._tied(case, half) else period / 2
+        extent = period / 2 if half else period
         return extent, divisions(extent, case.mesh.axial)
 
     def mesh_size(self, case: Case, half: bool) -> MeshSize:
@@ -130,17 +124,15 @@ class Cell(UniformModel):
             length=case.actuator.length,
             twisted=symmetry.twists,
             sideways=symmetry.sideways,
-            tied=self._tied(case, self.half(case)[0]),
         )
 
     def supports(self, case: Case, mesh: MeshData) -> list[Term]:
-        """Mirror planes x = 0 and at both ends, as far as there are any; a whole pitch has none."""
+        """Three mirror planes; a whole pitch has none."""
         from fem.effects.supports import Symmetry as Mirror
 
-        if self._tied(case, mesh.half):
+        if not mesh.half:
             return []
-        across = [Mirror(halves=True)] if mesh.half else []
-        return [*across, Mirror("section_root", 2), Mirror("section_tip", 2)]
+        return [Mirror(halves=True), Mirror("section_root", 2), Mirror("section_tip", 2)]
 
     def resolved_bulging(self, case: Case) -> float:
         """All of it, where every turn lies by itself."""

@@ -72,12 +72,12 @@ def _domain(model: str, half: bool = True) -> Domain:
 
 
 def _kind(model: str, freedom: str) -> Make:
-    """Its kinematics; a slice with tied ends only where it is free."""
+    """Its kinematics; a whole slice has tied ends."""
     how = FREEDOMS[freedom]
     length, free = SHORT.length, (how.twisted, how.sideways)
     if model == "section":
         return lambda domain, fields: Section(domain, fields, length, *free)
-    return lambda domain, fields: Cell(domain, fields, length, *free, tied=freedom == "free")
+    return lambda domain, fields: Cell(domain, fields, length, *free)
 
 
 def _effects(domain: Domain, name: str) -> list[Effect]:
@@ -302,7 +302,7 @@ def test_pins_take_every_rigid_motion_away_and_nothing_else(model: str, freedom:
     effects = [law("yeoh", REGIONS), Incompressible(dict.fromkeys(REGIONS, 40.0))]
     if how.half:
         effects.append(TwofoldAxis() if how.twisted else Symmetry())
-    if model == "cell" and not how.twisted:
+    if model == "cell" and how.half and not how.twisted:
         effects += [Symmetry("section_root", 2), Symmetry("section_tip", 2)]
     scene = Scene(_domain(model, how.half), effects, _kind(model, freedom))
     body, names = scene.body, scene.natural

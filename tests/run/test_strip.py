@@ -101,7 +101,7 @@ def test_a_cell_is_the_section_to_round_off() -> None:
     _same(cell, section, 1e-8)
 
 
-def test_between_mirror_planes_too() -> None:
+def test_without_twist_too() -> None:
     section, cell = (_at(135.0, model=model) for model in ("section", "cell"))
     for column in ("angle_deg", "side_angle_deg", "tip_x_mm"):
         assert cell.last(column) == pytest.approx(section.last(column), rel=1e-8), column
@@ -249,3 +249,40 @@ def test_neighbours_may_touch() -> None:
     perimeter = 2 * np.pi * 10
     strips = [_strip({"arc": f"{arc:.12g} mm"}) for arc in (3.0, 9.0, perimeter - 3)]
     assert len(as_case(_case(*strips)).effects) == 5
+
+
+# --- threads instead of fabric ------------------------------------------------------------------
+
+
+def _threaded(*at: str, model: str = "section", kind: str = "smeared") -> dict[str, Any]:
+    """The tube with crossing families and threads along the axis at places of their own."""
+    families = [
+        {"pitch": "6 mm", "hand": "right"},
+        {"pitch": "6 mm", "hand": "left"},
+        {"angle_from_axis": "0 deg", "at": list(at)},
+    ]
+    case = _case(model=model, mesh={"section": 1, "axial": "1.5 mm"})
+    case["effects"] = [
+        {"pressure": {"to": "20 kPa"}},
+        {"winding": {"families": families, "fiber": "kevlar", "as": kind}},
+    ]
+    return case
+
+
+@pytest.mark.parametrize("kind", ["smeared", "discrete"])
+def test_a_tube_bends_toward_a_thread_along_its_axis(kind: str) -> None:
+    # spread, or every turn of the crossing families in a cell
+    model = "section" if kind == "smeared" else "cell"
+    below, right = (run(_threaded(at, model=model, kind=kind)) for at in ("180 deg", "90 deg"))
+    bend = below.last("angle_deg")
+    assert bend > 15
+    rel = 1e-9 if kind == "smeared" else 0.01
+    assert right.last("side_angle_deg") == pytest.approx(bend, rel=rel)
+    assert right.last("angle_deg") == pytest.approx(0, abs=1e-7 if kind == "smeared" else 0.2)
+    assert right.last("chamber_mm3") == pytest.approx(below.last("chamber_mm3"), rel=rel)
+
+
+def test_a_thread_on_each_side_is_symmetric_again() -> None:
+    case = as_case(_threaded("90 deg", "270 deg"))
+    assert Symmetry.of(case.effects).plane
+    assert not Symmetry.of(as_case(_threaded("90 deg", "271 deg")).effects).plane
