@@ -18,7 +18,7 @@ class _Fibers(Effect):
 
     Args:
         segments: pieces of fiber on the mesh's winding surface.
-        stiffness: axial stiffness EA of a fiber, N; or that of each piece's fiber, (pieces,).
+        stiffness: axial stiffness EA of a fiber, N; of several the one of every segment, (n,).
         tension_only: slack fibers carry nothing.
 
     Raises:
@@ -44,7 +44,7 @@ class Winding(_Fibers):
 
 
 class SmearedWinding(_Fibers):
-    """The same winding as a membrane: a fiber length √(S² + p²)/(S p) per area and helix."""
+    """The same winding as a membrane: a fiber length 1/spacing per area and family."""
 
 
 class CalibratedWinding(_Fibers):
@@ -71,7 +71,7 @@ class CalibratedWinding(_Fibers):
         tension_only: bool = False,
     ) -> None:
         super().__init__(segments, stiffness, tension_only)
-        self._stiffness = stiffness
+        self.whole = stiffness
         if not np.any(segments.curvature):
             raise ValueError(
                 "the winding is nowhere curved: a stiffness against bulges has no effect, expected "
@@ -81,6 +81,4 @@ class CalibratedWinding(_Fibers):
 
     def discrete(self, body: Kinematics) -> BulgingPotential:
         """The potential of fibers and bulge on this body."""
-        return BulgingPotential(
-            body, self.segments, self._stiffness, self.bulging, self.tension_only
-        )
+        return BulgingPotential(body, self.segments, self.whole, self.bulging, self.tension_only)

@@ -15,8 +15,8 @@ from fem.kinematics.uniform import Uniform
 class Cell(Uniform):
     """A slice that repeats along the axis, with every fiber in it; x' depends on z too.
 
-    Half a section is a slice between mirror planes. A whole section is one too where these are
-    left, or a full pitch that repeats: x' at its end is tied to x' at its start. Half a turn about
+    Half a section is a slice between mirror planes. A whole section is a full pitch that repeats:
+    x' at its end is tied to x' at its start. Half a turn about
     the y axis through a point where a fiber crosses x = 0 maps a helix onto itself, so that
     u = w = 0 there is no constraint, but takes away what rigid motion is left. Where k_y is an
     unknown a turn about z is no more than another frame, and u = w = 0 chooses one.
@@ -27,7 +27,6 @@ class Cell(Uniform):
         length: L, mm.
         twisted: no mirror plane z = 0: τ is an unknown.
         sideways: k_y is one; of a whole section alone.
-        tied: the ends go on alike; None: where the section is whole. Else they are mirror planes.
 
     Raises:
         ValueError: tied ends on several ranks.
@@ -40,11 +39,10 @@ class Cell(Uniform):
         length: float,
         twisted: bool = False,
         sideways: bool = False,
-        tied: bool | None = None,
     ) -> None:
         data = domain.data
         extent = float(np.ptp(data.nodes[:, 2]))
-        tied = not data.half if tied is None else tied
+        tied = not data.half
         super().__init__(domain, fields, length, twisted, sideways, 3, extent, drifts=tied)
         if tied:
             if domain.comm.size > 1:

@@ -174,6 +174,10 @@ class Kinematics:
         """How the axis carries positions along z at the present state; None in a 3-D body."""
         return None
 
+    def turned(self) -> float | None:
+        """All that the centre-line turns, rad, where the bending angle is a part of it alone."""
+        return None
+
     def dx(self) -> Any:
         """Reference volume measure, mm³."""
         return self.domain.dx()

@@ -161,6 +161,10 @@ class Uniform(Kinematics):
                 rates[name] = (np.zeros(3), axes[axis])
         return Carry(values[STRETCH], self.spin(values), rates)
 
+    def turned(self) -> float | None:
+        """L |ω|, where the body bends to the side as well: its angle may be none."""
+        return float(np.linalg.norm(self.carry().spin)) * self.length if self.sideways else None
+
     @functools.cached_property
     def fit(self) -> SectionFit:
         """Centroid and axes of what lies inside the winding."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fiberbend.case.case import Case, Output, Solver
+from fiberbend.case.symmetry import Symmetry
 from fiberbend.effects.effect import Effect
 from fiberbend.schema.problems import CaseError, Problem
 
@@ -46,8 +47,8 @@ def as_section(case: Case, load: Effect) -> Case:
 
 def section_guides(case: Case) -> bool:
     """Whether a section bends as the body of a case does, between its ends."""
-    return (
-        case.zones is None
-        and case.inflation is not None
-        and all(effect.follows_section() for effect in case.effects)
-    )
+    alike = case.zones is None and case.inflation is not None
+    if not alike or not all(effect.follows_section() for effect in case.effects):
+        return False
+    beside = (effect.beside() for effect in case.effects)
+    return Symmetry.of([effect for effect in beside if effect is not None]).plane

@@ -9,9 +9,10 @@ axial vector a mm of z: the mirror plane z = 0 leaves (k_x, k_y, 0), the mirror 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from fiberbend.case.case import Case
+from fiberbend.effects.effect import Effect
 
 
 @dataclasses.dataclass(frozen=True)
@@ -29,9 +30,8 @@ class Symmetry:
     turn: tuple[str, ...]
 
     @classmethod
-    def of(cls, case: Case) -> Symmetry:
+    def of(cls, effects: Sequence[Effect]) -> Symmetry:
         """Of the effects of a case."""
-        effects = case.acting
         return cls(
             _reasons(effect.mirror_breaker() for effect in effects),
             _reasons(effect.end_breaker() for effect in effects),
@@ -86,7 +86,7 @@ class Symmetry:
 
 def twists(case: Case) -> bool:
     """Whether a case may twist the body."""
-    return Symmetry.of(case).twists
+    return Symmetry.of(case.acting).twists
 
 
 def _reasons(found: Iterable[str]) -> tuple[str, ...]:

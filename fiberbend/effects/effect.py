@@ -2,173 +2,85 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+from fiberbend.effects.records import (
+    ARC as ARC,
+)
+from fiberbend.effects.records import (
+    CHAMBER as CHAMBER,
+)
+from fiberbend.effects.records import (
+    ENDS as ENDS,
+)
+from fiberbend.effects.records import (
+    HELD as HELD,
+)
+from fiberbend.effects.records import (
+    HOOPS as HOOPS,
+)
+from fiberbend.effects.records import (
+    SIDE as SIDE,
+)
+from fiberbend.effects.records import (
+    SPACE as SPACE,
+)
+from fiberbend.effects.records import (
+    STRIPS as STRIPS,
+)
+from fiberbend.effects.records import (
+    THREAD as THREAD,
+)
+from fiberbend.effects.records import (
+    TURNS as TURNS,
+)
+from fiberbend.effects.records import (
+    TWIST as TWIST,
+)
+from fiberbend.effects.records import (
+    VOLUME as VOLUME,
+)
+from fiberbend.effects.records import (
+    WOUND as WOUND,
+)
+from fiberbend.effects.records import (
+    ZONES as ZONES,
+)
+from fiberbend.effects.records import (
+    Built as Built,
+)
+from fiberbend.effects.records import (
+    Draft as Draft,
+)
+from fiberbend.effects.records import (
+    Inflation as Inflation,
+)
+from fiberbend.effects.records import (
+    Requests as Requests,
+)
+from fiberbend.effects.records import (
+    Site as Site,
+)
+from fiberbend.effects.records import (
+    Stretch as Stretch,
+)
+from fiberbend.effects.records import (
+    Turns as Turns,
+)
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Spec
 
 if TYPE_CHECKING:
-    from fem.effects.effect import Effect as Term
-    from fem.march.records import Ramp, Rules
+    from fem.march.records import Rules
     from fem.solver.newton import Settings
     from fiberbend.states.obstacles import Shape
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
     from geometry.sections.size import MeshSize, Strips
-    from geometry.winding.segments import EmbeddedFibers
+    from geometry.winding.strip import Window
     from materials.bulging import Bulging
-    from materials.material import Material
-
-CHAMBER = "chamber"
-"""A model has the chamber that a pressure inflates."""
-WOUND = "wound"
-"""A model has the thread around the body, in turns, spread, or as a fixed circumference."""
-ARC = "arc"
-"""A model bends uniformly all along, so that it can be kept straight all along."""
-SPACE = "space"
-"""A model is a whole body in space, with everything that can act on one."""
-ENDS = "ends"
-"""A model gives the force of a support of the tip."""
-STRIPS = "strips"
-"""Roof and post are surfaces of the model, sheath and cap under them yield."""
-VOLUME = "volume"
-"""A model can be driven by the volume of its chamber."""
-TWIST = "twist"
-"""A model can twist."""
-SIDE = "side"
-"""A model can bend to the side."""
-THREAD = "thread"
-"""A winding has its pitch and its thread stretches."""
-TURNS = "turns"
-"""Every turn of a winding lies where it is wound."""
-HOOPS = "hoops"
-"""A circumference can be fixed."""
-ZONES = "zones"
-"""Winding and materials may differ along the length."""
-
-
-@dataclasses.dataclass(frozen=True)
-class Inflation:
-    """How the chamber is loaded: one of the three is given.
-
-    Attributes:
-        to: pressure at the end, MPa.
-        volume: chamber volume at the end, mm³.
-        angle: bending angle at the end, rad.
-    """
-
-    to: float | None = None
-    volume: float | None = None
-    angle: float | None = None
-
-
-@dataclasses.dataclass(frozen=True)
-class Turns:
-    """Thread wound around the body.
-
-    Attributes:
-        pitch: length along the axis of one turn, mm.
-        discrete: every turn by itself, not spread over its surface.
-        twists: the pattern has a hand, so that the body may twist.
-        stiffness: axial stiffness EA of the thread, N.
-        modulus: Young's modulus of the thread, MPa.
-        curves: lines that stand for the thread: helices, times the lines of a ribbon.
-        bulges: spread over its surface, with rubber that bulges between the turns.
-    """
-
-    pitch: float
-    discrete: bool
-    twists: bool
-    stiffness: float
-    modulus: float
-    curves: int
-    bulges: bool = False
-
-
-@dataclasses.dataclass(frozen=True)
-class Draft:
-    """What is valid of a case that is being checked.
-
-    Attributes:
-        actuator: its dimensions, where they go together, else None.
-        length: of the chamber, mm, where it is valid, else None.
-        effects: by their paths.
-    """
-
-    actuator: Actuator | None
-    length: float | None
-    effects: Mapping[str, Effect]
-
-
-@dataclasses.dataclass(frozen=True)
-class Site:
-    """The actuator of a case as its effects see it.
-
-    Attributes:
-        actuator: dimensions.
-        materials: of each of its parts.
-        straight: an effect keeps the actuator from bending.
-    """
-
-    actuator: Actuator
-    materials: Mapping[str, Material]
-    straight: bool
-
-
-@dataclasses.dataclass(frozen=True)
-class Requests:
-    """What a case asks of the path of a load.
-
-    Attributes:
-        first: first step, MPa, or None.
-        largest: greatest step, MPa, or None.
-        at_pressures: pressures to be hit, MPa.
-        at_angles: bending angles to be hit under any load, rad.
-        stop_at_angle: where the run ends early, rad, or None.
-    """
-
-    first: float | None
-    largest: float | None
-    at_pressures: tuple[float, ...]
-    at_angles: tuple[float, ...]
-    stop_at_angle: float | None
-
-
-@dataclasses.dataclass(frozen=True)
-class Stretch:
-    """A zone along the length as an effect of its own is built there.
-
-    Attributes:
-        effect: of the zone.
-        site: the actuator, as long as the zone, with the materials there.
-        mesh: of the whole body, its winding that of the zone alone, z = 0 at the zone's root end.
-        start: z of that end in the body, mm.
-    """
-
-    effect: Effect
-    site: Site
-    mesh: MeshData
-    start: float
-
-
-@dataclasses.dataclass(frozen=True)
-class Built:
-    """An effect as the finite-element code takes it.
-
-    Attributes:
-        terms: summands of the potential, constraints.
-        ramps: loads of the whole actuator, in order.
-        fibers: thread on the mesh, if the effect has any.
-        smeared: that thread is spread over its surface.
-    """
-
-    terms: tuple[Term, ...]
-    ramps: tuple[Ramp, ...] = ()
-    fibers: EmbeddedFibers | None = None
-    smeared: bool = False
 
 
 class Effect(Spec):
@@ -273,9 +185,21 @@ class Effect(Spec):
         """How it loads the chamber; None where it does not."""
         return None
 
-    def turns(self) -> Turns | None:
+    def weight(self) -> tuple[float, float, float] | None:
+        """Acceleration by which it makes everything heavy, mm/s²; None where it does not."""
+        return None
+
+    def winds(self) -> bool:
+        """Whether it winds thread around the body."""
+        return False
+
+    def turns(self, actuator: Actuator) -> Turns | None:
         """The thread that it winds around the body; None where it winds none."""
         return None
+
+    def runs(self, actuator: Actuator) -> list[str]:
+        """How its thread runs, a line for each family of it; may be empty."""
+        return []
 
     def fixes_circumference(self) -> bool:
         """Whether it fixes the circumference of the section, as the closed form assumes."""
@@ -292,6 +216,10 @@ class Effect(Spec):
     def strips(self) -> Strips | None:
         """Strips of the surface that a mesh must show for it."""
         return None
+
+    def fixes_angle(self) -> bool:
+        """Whether it holds the bending angle, so that no load can reach one."""
+        return "curvature" in self.fixed_scalars()
 
     def fixed_scalars(self) -> tuple[str, ...]:
         """Global unknowns of uniform bending that it fixes."""
@@ -315,6 +243,10 @@ class Effect(Spec):
         Obstacles are named as in `obstacle_shapes`; those whose force is not known are left out.
         """
         return {}
+
+    def windows(self, actuator: Actuator) -> list[Window]:
+        """Parts of the outline that it covers with fabric, as pictures show them."""
+        return []
 
     def curves(self, actuator: Actuator) -> list[Floats]:
         """Polylines in space, (n, 3), mm, that are to be seen in the mesh file."""

@@ -194,18 +194,19 @@ class StripEffect(Effect):
         """It is no load."""
         return 0
 
-    def window(self, actuator: Actuator) -> Window:
-        """Where it lies on the outline."""
+    def windows(self, actuator: Actuator) -> list[Window]:
+        """Where it lies."""
         from geometry.winding.strip import Window
 
-        return Window(self.at.along(actuator), self.width)
+        return [Window(self.at.along(actuator), self.width)]
 
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
         """Warp and weft on the faces of the mesh."""
         from fem.effects.fabric import Strip
         from geometry.winding.strip import lay
 
-        laid = lay(mesh, site.actuator, self.window(site.actuator))
+        (window,) = self.windows(site.actuator)
+        laid = lay(mesh, site.actuator, window)
         return Built((Strip(str(self.at), laid, self.modulus * self.thickness, self.tension_only),))
 
     def unlike(self, other: Effect) -> str:
@@ -221,7 +222,8 @@ class StripEffect(Effect):
         for zone in zones:
             strip, actuator = zone.effect, zone.site.actuator
             assert isinstance(strip, StripEffect)
-            laid = lay(zone.mesh, actuator, strip.window(actuator))
+            (window,) = strip.windows(actuator)
+            laid = lay(zone.mesh, actuator, window)
             laid = dataclasses.replace(laid, z=laid.z + zone.start)
             name = f"{strip.at} from {show(zone.start, 'length')} on"
             stiffness = strip.modulus * strip.thickness

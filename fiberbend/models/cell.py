@@ -17,6 +17,7 @@ from fiberbend.case.zones import zone_cases
 from fiberbend.effects.effect import (
     ARC,
     CHAMBER,
+    HELD,
     SIDE,
     THREAD,
     TURNS,
@@ -46,7 +47,7 @@ class Cell(UniformModel):
     """Half a pitch between mirror planes, or a whole pitch with tied ends."""
 
     name = "cell"
-    offers = frozenset({CHAMBER, WOUND, ARC, VOLUME, TWIST, SIDE, THREAD, TURNS, ZONES})
+    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, SIDE, THREAD, TURNS, ZONES})
     layers_a_pitch = 8.0
     turn = math.radians(45)
     first_turn = math.radians(10)
@@ -59,22 +60,29 @@ class Cell(UniformModel):
     def completed(self, case: Case) -> Case:
         """Four layers in half a pitch: layers count most."""
         found = (zone.turns for zone in zone_cases(case))
-        pitches = [turns.pitch for turns in found if turns is not None]
-        if not pitches:
+        spacings = [turns.spacing for turns in found if turns is not None]
+        finite = [spacing for spacing in spacings if not math.isinf(spacing)]
+        if not finite:
             return case
-        axial = min(pitches) / self.layers_a_pitch
+        axial = min(finite) / self.layers_a_pitch
         return case.model_copy(update={"mesh": completed_mesh(case.mesh, axial=axial)})
 
     def limits(self, case: Case) -> Iterator[Objection]:
         """No uniform bend, half a slice without mirror planes, and one that has no room."""
         yield from super().limits(case)
-        symmetry = Symmetry.of(case)
+        symmetry = Symmetry.of(case.acting)
         if case.mesh.symmetry == "half" and symmetry.along:
             yield "mesh.symmetry", f"its ends are no mirror planes: {'; '.join(symmetry.along)}"
-        extent, length = self.slice(case, self.half(case)[0])[0], case.actuator.length
+        turns, length = case.turns, case.actuator.length
+        if turns is None or not turns.discrete:
+            return
+        extent = self.slice(case, self.half(case)[0])[0]
         for index, effect in enumerate(case.effects):
-            turns = effect.turns()
-            if turns is not None and turns.discrete and extent > length * (1 + 1e-9):
+            if not effect.winds():
+                continue
+            if turns.misfit:
+                yield f"effects.{index}.{effect.name}", turns.misfit
+            elif extent > length * (1 + 1e-9):
                 yield (
                     f"effects.{index}.{effect.name}",
                     f"the slice that repeats is {show(extent, 'length')} long, longer than the "
@@ -82,28 +90,30 @@ class Cell(UniformModel):
                 )
 
     def half(self, case: Case) -> tuple[bool, str]:
-        """Between mirror planes, where it has both."""
+        """Half a section between mirror planes, where it has both; else a whole period."""
         if case.mesh.symmetry != "auto":
             return super().half(case)
-        symmetry = Symmetry.of(case)
+        symmetry = Symmetry.of(case.acting)
         return symmetry.plane, symmetry.words()
 
-    def _tied(self, case: Case, half: bool) -> bool:
-        """Whether the ends of the slice go on alike, and are no mirror planes."""
-        symmetry = Symmetry.of(case)
-        return symmetry.twists or (symmetry.plane and not half)
+    def origin(self, case: Case) -> float:
+        """Where half a turn about a line along y maps the threads onto themselves."""
+        turns = case.turns
+        return 0.0 if turns is None or not turns.discrete else turns.origin or 0.0
 
     def slice(self, case: Case, half: bool) -> tuple[float, int]:
         """Length in mm of the slice that repeats, and its number of layers.
 
-        Half a pitch between mirror planes, a whole one without; without a winding any length does.
-        A whole section that the case asks for is a whole pitch too.
+        Half a period between mirror planes, a whole one without; of a pattern a period is its
+        pitch, of n equal starts a pitch over n. Without turns any length does.
         """
         from geometry.sections.size import divisions
 
         turns = case.turns
-        pitch = turns.pitch if turns is not None else 2 * case.mesh.axial
-        extent = pitch if self._tied(case, half) else pitch / 2
+        period = None if turns is None else turns.period if turns.discrete else turns.spacing
+        if period is None or math.isinf(period):
+            period = 2 * case.mesh.axial
+        extent = period / 2 if half else period
         return extent, divisions(extent, case.mesh.axial)
 
     def mesh_size(self, case: Case, half: bool) -> MeshSize:
@@ -123,23 +133,21 @@ class Cell(UniformModel):
         """Three components of the displacement."""
         from fem.kinematics.cell import Cell as Bending
 
-        symmetry = Symmetry.of(case)
+        symmetry = Symmetry.of(case.acting)
         return functools.partial(
             Bending,
             length=case.actuator.length,
             twisted=symmetry.twists,
             sideways=symmetry.sideways,
-            tied=self._tied(case, self.half(case)[0]),
         )
 
     def supports(self, case: Case, mesh: MeshData) -> list[Term]:
-        """Mirror planes x = 0 and at both ends, as far as there are any; a whole pitch has none."""
+        """Three mirror planes; a whole pitch has none."""
         from fem.effects.supports import Symmetry as Mirror
 
-        if self._tied(case, mesh.half):
+        if not mesh.half:
             return []
-        across = [Mirror(halves=True)] if mesh.half else []
-        return [*across, Mirror("section_root", 2), Mirror("section_tip", 2)]
+        return [Mirror(halves=True), Mirror("section_root", 2), Mirror("section_tip", 2)]
 
     def resolved_bulging(self, case: Case) -> float:
         """All of it, where every turn lies by itself."""
@@ -170,7 +178,7 @@ class Cell(UniformModel):
             yield from ({"section": number} for number in (1, 2, 3, 4))
             return
         for number, layers in itertools.product((1, 2), (1, 2, 4, 8)):
-            yield {"section": number, "axial": turns.pitch / 2 / layers}
+            yield {"section": number, "axial": turns.spacing / 2 / layers}
 
     def rung(self, case: Case) -> Rung:
         """Along it nothing counts where no turn lies by itself."""
@@ -178,7 +186,7 @@ class Cell(UniformModel):
         if turns is None or not turns.discrete:
             return Rung(case.mesh.section)
         extent, layers = self.slice(case, self.half(case)[0])
-        return Rung(case.mesh.section, layers * turns.pitch / 2 / extent)
+        return Rung(case.mesh.section, layers * turns.spacing / 2 / extent)
 
     def drawn(self, case: Case, size: ProblemSize) -> float:
         """All slices of the length."""
@@ -194,8 +202,8 @@ class Cell(UniformModel):
         if turns is None or not turns.discrete:
             # alike along the axis: no layers count
             return section_error(case)
-        half, _ = self.half(case)
-        layers = self.slice(case, half)[1] / (2 if self._tied(case, half) else 1)
+        extent, number = self.slice(case, self.half(case)[0])
+        layers = number * (turns.spacing / 2 / extent)
         return max(across, next(error for least, error in _ERRORS if layers >= least))
 
 

@@ -170,6 +170,10 @@ class ModelKind(ABC):
 
     # --- what it makes of a case ---------------------------------------------------------------
 
+    def origin(self, case: Case) -> float:
+        """z on the actuator where its mesh begins, mm: that of a slice that repeats."""
+        return 0.0
+
     def completed(self, case: Case) -> Case:
         """The case with the defaults that depend on the model."""
         return case

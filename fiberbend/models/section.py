@@ -13,7 +13,17 @@ from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import Symmetry, twists
 from fiberbend.case.zones import zone_cases
-from fiberbend.effects.effect import ARC, CHAMBER, SIDE, THREAD, TWIST, VOLUME, WOUND, ZONES
+from fiberbend.effects.effect import (
+    ARC,
+    CHAMBER,
+    HELD,
+    SIDE,
+    THREAD,
+    TWIST,
+    VOLUME,
+    WOUND,
+    ZONES,
+)
 from fiberbend.models.costs.size import summed
 from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import ProblemSize, Rung, completed_mesh, count
@@ -37,7 +47,7 @@ class Section(UniformModel):
     """Nothing depends on z in the frame that turns with the section."""
 
     name = "section"
-    offers = frozenset({CHAMBER, WOUND, ARC, VOLUME, TWIST, SIDE, THREAD, ZONES})
+    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, SIDE, THREAD, ZONES})
     turn = math.radians(10)
     first_turn = math.radians(10)
     memory = 5
@@ -52,7 +62,7 @@ class Section(UniformModel):
 
     def half(self, case: Case) -> tuple[bool, str]:
         """Where it has both mirror planes, or half a turn about y maps the section onto itself."""
-        symmetry = Symmetry.of(case)
+        symmetry = Symmetry.of(case.acting)
         return symmetry.halved, symmetry.words()
 
     def unused(self, case: Case) -> dict[str, set[str]]:
@@ -74,7 +84,7 @@ class Section(UniformModel):
         """Two components of the displacement, three where it may twist."""
         from fem.kinematics.section import Section as Bending
 
-        symmetry = Symmetry.of(case)
+        symmetry = Symmetry.of(case.acting)
         return functools.partial(
             Bending,
             length=case.actuator.length,

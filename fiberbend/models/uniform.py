@@ -40,7 +40,7 @@ class UniformModel(MeshedModel):
     def limits(self, case: Case) -> Iterator[Objection]:
         """No uniform bend."""
         yield from super().limits(case)
-        yield from not_uniform(case, Symmetry.of(case).twists)
+        yield from not_uniform(case, Symmetry.of(case.acting).twists)
 
     def limits_of_zones(self, case: Case) -> Iterator[Objection]:
         """Zones that do not share one given pressure, and no more."""
@@ -74,7 +74,7 @@ class UniformModel(MeshedModel):
     def scalars(self, case: Case) -> tuple[str, ...]:
         """Global unknowns: those of uniform bending that no effect fixes, and a pressure found."""
         fixed = {name for effect in case.effects for name in effect.fixed_scalars()}
-        names = Symmetry.of(case).scalars()
+        names = Symmetry.of(case.acting).scalars()
         return (*(name for name in names if name not in fixed), *found_pressure(case))
 
     def force_named(self) -> str:
@@ -122,9 +122,9 @@ def not_uniform(case: Case, twists: bool) -> Iterator[Objection]:
         case: the case.
         twists: something may twist the body.
     """
-    if case.inflation is None:
-        yield "effects", "nothing bends it uniformly but a pressure"
-    elif case.straight and case.inflation.angle is not None:
+    if not any(effect.load for effect in case.effects):
+        yield "effects", "nothing bends it uniformly but a pressure or effect hold"
+    elif case.straight and case.inflation is not None and case.inflation.angle is not None:
         yield "effects", "kept straight, it reaches no angle: expected a pressure by its value"
     if twists:
         for index, effect in enumerate(case.effects):

@@ -381,7 +381,7 @@ def _kept_straight(parts: ValidParts) -> Iterator[Problem]:
         load = effect.inflation()
         if holds and load is not None and load.angle is not None:
             yield Problem(f"{path}.angle", _NO_ANGLE.format(holds))
-    fixes = next((path for path, e in effects.items() if "curvature" in e.fixed_scalars()), "")
+    fixes = next((path for path, e in effects.items() if e.fixes_angle()), "")
     if fixes and parts.output is not None:
         if parts.output.stop_at_angle is not None:
             yield Problem("output.stop_at_angle", _NO_ANGLE.format(fixes))

@@ -61,6 +61,14 @@ class Bend:
         return CentreLine.of(spin, self.stretch, centre, a_x, a_y)
 
     @property
+    def rates(self) -> Floats:
+        """Turn of the centre-line about the section's own x and y, and twist, (3,), rad/mm."""
+        centre, a_x, a_y = (np.array(vector) for vector in (self.centre, self.a_x, self.a_y))
+        turned = self.side_curvature != 0
+        line = CentreLine.of(self.line.spin, self.stretch, centre, a_x, a_y, turned)
+        return line.rates
+
+    @property
     def is_rest(self) -> bool:
         """The turning frame is that of space: neither bent nor stretched nor twisted."""
         return self.stretch == 1.0 and not self.line.spin.any()

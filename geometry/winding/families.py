@@ -14,6 +14,8 @@ from __future__ import annotations
 import dataclasses
 import math
 
+from geometry.actuator import Actuator, Side
+
 UPRIGHT = math.pi / 2
 """Angle of hoops."""
 
@@ -141,3 +143,19 @@ def pitch_at(angle: float, perimeter: float) -> float:
 def angle_at(pitch: float, perimeter: float) -> float:
     """Angle from the axis of a thread with a pitch, rad."""
     return math.atan2(perimeter, pitch)
+
+
+def side_length(side: Side) -> float:
+    """Length of a straight line or an arc of less than half a turn, mm."""
+    if side.center is None:
+        return math.dist(side.start, side.end)
+    (x, y), radius = side.center, math.dist(side.start, side.center)
+    first, last = (math.atan2(b - y, a - x) for a, b in (side.start, side.end))
+    return radius * abs((last - first + math.pi) % (2 * math.pi) - math.pi)
+
+
+def wall_reach(actuator: Actuator) -> float | None:
+    """Length of the outline from the top to where the floor begins, mm; None without a floor."""
+    sides = actuator.outline()
+    floor = next((i for i, side in enumerate(sides) if side.name == "floor"), None)
+    return None if floor is None else sum(map(side_length, sides[:floor]))

@@ -86,7 +86,7 @@ class Ribbons:
         )
 
     def curves(self, actuator: Actuator, number: int) -> list[Floats]:
-        """The axis of every thread as polylines in space, (n, 3), mm; hoops are closed.
+        """Every line of every ribbon as a polyline in space, (n, 3), mm; hoops are closed.
 
         Args:
             actuator: dimensions.
@@ -95,7 +95,8 @@ class Ribbons:
         found: list[Floats] = []
         size = actuator.winding_perimeter, actuator.length
         for family in self.families:
-            for start, end in _threads(family, *size):
+            lines = [dataclasses.replace(family, offset=c) for c in self.offsets(family).tolist()]
+            for start, end in (ends for line in lines for ends in _threads(line, *size)):
                 turns = abs(end[0] - start[0]) / size[0]
                 count = max(2, math.ceil(number * max(turns, 0.25 if turns else 0.0)) + 1)
                 s = np.linspace(start[0], end[0], count)

@@ -127,6 +127,29 @@ def lay(mesh: MeshData, actuator: Actuator, window: Window) -> EmbeddedFibers:
     )
 
 
+def covered(mesh: MeshData, actuator: Actuator, window: Window, level: int) -> tuple[Ints, Floats]:
+    """The edges of a section within a window, or what of them lies within it.
+
+    Args:
+        mesh: quadrilaterals with the edges "winding".
+        actuator: dimensions the mesh was built from.
+        window: on the outline.
+        level: pieces along an edge.
+
+    Returns:
+        Host cells, (k,), and points along each edge in the reference cell, (k, level + 1, 2).
+    """
+    facets = develop(mesh, actuator)
+    line = np.linspace(0.0, 1.0, level + 1)[:, None]
+    parts = [
+        _cut(facets, line, np.ones(level + 1), low, high)[:2]
+        for low, high in window.intervals(actuator.winding_perimeter)
+    ]
+    edge, flat = (np.concatenate([part[i] for part in parts]) for i in range(2))
+    points = facets.base[edge] + flat * facets.edges[edge][:, 0]
+    return facets.cell[edge][:: level + 1], points.reshape(-1, level + 1, 2)
+
+
 def _cut(
     facets: Facets, flat: Floats, weights: Floats, low: float, high: float
 ) -> tuple[Ints, Floats, Floats]:

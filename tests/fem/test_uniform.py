@@ -13,6 +13,7 @@ from petsc4py import PETSc
 
 from fem.effects.chamber_pressure import ChamberPressure
 from fem.effects.effect import Effect
+from fem.effects.fabric import Strip
 from fem.effects.incompressible import Incompressible
 from fem.effects.supports import Symmetry, TwofoldAxis
 from fem.effects.winding import CalibratedWinding, SmearedWinding
@@ -28,6 +29,7 @@ from geometry.sections.size import MeshSize
 from geometry.winding.embed import embed
 from geometry.winding.helix import Winding
 from geometry.winding.smear import smear
+from geometry.winding.strip import Window, lay
 from tests.fem.parts import BULGING, EA, SHORT, Floats, law, perturb
 
 PITCH = 3.0
@@ -70,12 +72,12 @@ def _domain(model: str, half: bool = True) -> Domain:
 
 
 def _kind(model: str, freedom: str) -> Make:
-    """Its kinematics; a slice with tied ends only where it is free."""
+    """Its kinematics; a whole slice has tied ends."""
     how = FREEDOMS[freedom]
     length, free = SHORT.length, (how.twisted, how.sideways)
     if model == "section":
         return lambda domain, fields: Section(domain, fields, length, *free)
-    return lambda domain, fields: Cell(domain, fields, length, *free, tied=freedom == "free")
+    return lambda domain, fields: Cell(domain, fields, length, *free)
 
 
 def _effects(domain: Domain, name: str) -> list[Effect]:
@@ -85,6 +87,9 @@ def _effects(domain: Domain, name: str) -> list[Effect]:
         return [law("yeoh", REGIONS), Incompressible({"wall": 40.0})]
     if name == "pressure":
         return [ChamberPressure()]
+    if name == "strip":
+        laid = lay(mesh, SHORT, Window(11.0, 7.0))
+        return [soft, Strip("here", laid, 40.0), Strip("there", laid, 30.0, tension_only=True)]
     if name == "smeared":
         return [soft, SmearedWinding(smear(mesh, SHORT, helix), EA)]
     if name == "calibrated":
@@ -107,6 +112,7 @@ CASES = [
         "solid": ("section", "cell"),
         "pressure": ("section", "cell"),
         "smeared": ("section",),
+        "strip": ("section", "cell"),
         "calibrated": ("section", "cell"),
         "calibrated helix": ("section",),
         "discrete": ("cell",),
@@ -296,7 +302,7 @@ def test_pins_take_every_rigid_motion_away_and_nothing_else(model: str, freedom:
     effects = [law("yeoh", REGIONS), Incompressible(dict.fromkeys(REGIONS, 40.0))]
     if how.half:
         effects.append(TwofoldAxis() if how.twisted else Symmetry())
-    if model == "cell" and not how.twisted:
+    if model == "cell" and how.half and not how.twisted:
         effects += [Symmetry("section_root", 2), Symmetry("section_tip", 2)]
     scene = Scene(_domain(model, how.half), effects, _kind(model, freedom))
     body, names = scene.body, scene.natural

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from geometry.bodies.extrude import hexahedral_body, hexahedral_slice, section_quadrilaterals
-from geometry.checks import check
+from geometry.checks import check, loose_ends, open_threads
 from geometry.mesh.data import MeshData
+from geometry.mesh.errors import MeshError
 from geometry.mesh.reference import jacobians
 from geometry.mesh.tets import to_tetrahedra
 from geometry.sections.hemicircle import HemicircleActuator
@@ -230,6 +231,24 @@ def test_threads_around_a_part_are_drawn_there() -> None:
     assert total == pytest.approx(float(Ribbons((reach,)).lengths(BODY)[0]), rel=5e-3)
     low = BODY.outline_bottom
     assert all(line[:, 1].min() > low - 1e-9 for line in drawn)
+
+
+@pytest.mark.parametrize("reach", [math.inf, WALL], ids=["all around", "wall"])
+@pytest.mark.parametrize("half", [True, False])
+def test_threads_close_at_corners_and_at_the_seam(half: bool, reach: float) -> None:
+    families = [dataclasses.replace(FAMILIES[name], reach=reach) for name in FAMILIES]
+    for mesh in meshes(half):
+        for family in families[:-1]:
+            assert len(open_threads(mesh, BODY, Ribbons((family,)))) == 0
+    mesh = meshes(half=False)[0]
+    whole = Ribbons((hoops(3.0, 0.3), at(70, 6)))
+    fibers = embed(mesh, BODY, whole)
+    # hoops are closed: both ends of six threads are left
+    assert len(loose_ends(mesh, fibers)[0]) == 12
+    torn = Ribbons((at(70, 6), dataclasses.replace(at(70, 6, -1), spacing=2.5, threads=1)))
+    assert len(open_threads(mesh, BODY, torn)) > 0
+    with pytest.raises(MeshError, match="a thread does not go on at x = "):
+        check(mesh, BODY, torn)
 
 
 def test_angles_and_pitches() -> None:

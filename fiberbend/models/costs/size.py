@@ -67,7 +67,7 @@ def pieces(case: Case, half: bool, around: int, length: float, layers: float) ->
     if not turns.discrete:
         return float(turns.curves * _POINTS * around * layers)
     part = 0.5 if half else 1.0
-    return turns.curves * (length / turns.pitch * around + part * layers)
+    return length * turns.around * around + part * turns.curves * layers
 
 
 def thread_mb(segments: float) -> float:

@@ -1,0 +1,189 @@
+"""What effects and models tell each other: words for what a model offers, and small records."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fem.effects.effect import Effect as Term
+    from fem.march.records import Ramp
+    from fiberbend.effects.effect import Effect
+    from geometry.actuator import Actuator
+    from geometry.mesh.data import MeshData
+    from geometry.winding.segments import EmbeddedFibers
+    from materials.material import Material
+
+CHAMBER = "chamber"
+"""A model has the chamber that a pressure inflates."""
+WOUND = "wound"
+"""A model has the thread around the body, in turns, spread, or as a fixed circumference."""
+ARC = "arc"
+"""A model bends uniformly all along, so that it can be kept straight all along."""
+HELD = "held"
+"""A model has the centre-line of a uniform bend, whose stretch and turns can be held."""
+SPACE = "space"
+"""A model is a whole body in space, with everything that can act on one."""
+ENDS = "ends"
+"""A model gives the force of a support of the tip."""
+STRIPS = "strips"
+"""Roof and post are surfaces of the model, sheath and cap under them yield."""
+VOLUME = "volume"
+"""A model can be driven by the volume of its chamber."""
+TWIST = "twist"
+"""A model can twist."""
+SIDE = "side"
+"""A model can bend to the side."""
+THREAD = "thread"
+"""A winding has its pitch and its thread stretches."""
+TURNS = "turns"
+"""Every turn of a winding lies where it is wound."""
+HOOPS = "hoops"
+"""A circumference can be fixed."""
+ZONES = "zones"
+"""Winding and materials may differ along the length."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Inflation:
+    """How the chamber is loaded: one of the three is given.
+
+    Attributes:
+        to: pressure at the end, MPa.
+        volume: chamber volume at the end, mm³.
+        angle: bending angle at the end, rad.
+    """
+
+    to: float | None = None
+    volume: float | None = None
+    angle: float | None = None
+
+
+@dataclasses.dataclass(frozen=True)
+class Turns:
+    """Thread wound around the body.
+
+    Attributes:
+        pitch: length along the axis of one turn of a pattern, mm; None of families, of which no
+            table of errors knows.
+        spacing: distance along the axis of neighbouring turns of one family, the least of all, mm;
+            of a pattern its pitch; inf where all is alike along the axis.
+        period: length along the axis after which all repeats, mm; None where there is none of a
+            few turns.
+        origin: z of a line along y half a turn about which maps all onto itself, mm; None where
+            there is none, so that it bends sideways.
+        discrete: every turn by itself, not spread over its surface.
+        twists: the winding is not its own mirror image, so that the body may twist.
+        stiffness: axial stiffness EA of the thread, of several the greatest, N.
+        modulus: Young's modulus of the thread, of several the least, MPa.
+        curves: lines that stand for the thread and go on along the axis: helices, times the lines
+            of a ribbon.
+        around: times that lines go around the body, over a length along the axis, 1/mm.
+        bulges: spread over its surface, with rubber that bulges between the turns.
+        tight: threads lie all around and so nearly across that they fix the circumference.
+        misfit: why there is no period, with what would have one.
+    """
+
+    pitch: float | None
+    spacing: float
+    period: float | None
+    origin: float | None
+    discrete: bool
+    twists: bool
+    stiffness: float
+    modulus: float
+    curves: int
+    around: float
+    bulges: bool = False
+    tight: bool = True
+    misfit: str = ""
+
+
+@dataclasses.dataclass(frozen=True)
+class Draft:
+    """What is valid of a case that is being checked.
+
+    Attributes:
+        actuator: its dimensions, where they go together, else None.
+        length: of the chamber, mm, where it is valid, else None.
+        effects: by their paths.
+    """
+
+    actuator: Actuator | None
+    length: float | None
+    effects: Mapping[str, Effect]
+
+
+@dataclasses.dataclass(frozen=True)
+class Site:
+    """The actuator of a case as its effects see it.
+
+    Attributes:
+        actuator: dimensions.
+        materials: of each of its parts.
+        straight: an effect keeps the actuator from bending.
+        mirrored: no effect breaks its mirror plane x = 0.
+        weight: acceleration by which it is heavy, x, y and z, mm/s²; None: without weight.
+        origin: z on the actuator where the mesh of a slice that repeats begins, mm.
+    """
+
+    actuator: Actuator
+    materials: Mapping[str, Material]
+    straight: bool
+    mirrored: bool = True
+    weight: tuple[float, float, float] | None = None
+    origin: float = 0.0
+
+
+@dataclasses.dataclass(frozen=True)
+class Requests:
+    """What a case asks of the path of a load.
+
+    Attributes:
+        first: first step, MPa, or None.
+        largest: greatest step, MPa, or None.
+        at_pressures: pressures to be hit, MPa.
+        at_angles: bending angles to be hit under any load, rad.
+        stop_at_angle: where the run ends early, rad, or None.
+    """
+
+    first: float | None
+    largest: float | None
+    at_pressures: tuple[float, ...]
+    at_angles: tuple[float, ...]
+    stop_at_angle: float | None
+
+
+@dataclasses.dataclass(frozen=True)
+class Stretch:
+    """A zone along the length as an effect of its own is built there.
+
+    Attributes:
+        effect: of the zone.
+        site: the actuator, as long as the zone, with the materials there.
+        mesh: of the whole body, its winding that of the zone alone, z = 0 at the zone's root end.
+        start: z of that end in the body, mm.
+    """
+
+    effect: Effect
+    site: Site
+    mesh: MeshData
+    start: float
+
+
+@dataclasses.dataclass(frozen=True)
+class Built:
+    """An effect as the finite-element code takes it.
+
+    Attributes:
+        terms: summands of the potential, constraints.
+        ramps: loads of the whole actuator, in order.
+        fibers: thread on the mesh, if the effect has any.
+        smeared: that thread is spread over its surface.
+    """
+
+    terms: tuple[Term, ...]
+    ramps: tuple[Ramp, ...] = ()
+    fibers: EmbeddedFibers | None = None
+    smeared: bool = False
