@@ -21,7 +21,7 @@ from fiberbend.accuracy.table import (
     up_to,
 )
 from fiberbend.case.case import Case
-from fiberbend.effects.effect import Turns
+from fiberbend.effects.wound.turns import Turns
 from fiberbend.models.model import MeshedModel, Rung
 from fiberbend.models.resolution import CALIBRATED
 

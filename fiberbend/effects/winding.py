@@ -17,13 +17,13 @@ from fiberbend.effects.effect import (
     Effect,
     Requests,
     Site,
-    Turns,
 )
 from fiberbend.effects.wound.by_families import ByFamilies
 from fiberbend.effects.wound.by_pattern import ByPattern
-from fiberbend.effects.wound.family import Around, FamilySpec
+from fiberbend.effects.wound.family import Around, FamilySpec, fiber_problems
 from fiberbend.effects.wound.thread import BulgingSpec, FiberSpec
 from fiberbend.effects.wound.threads import Threads
+from fiberbend.effects.wound.turns import Turns
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Length, LengthOrZero, Quantity
 from geometry.winding.patterns import PATTERNS
@@ -183,7 +183,7 @@ class WindingEffect(Effect):
             yield Problem(f"{path}.lines", f"{self.lines}, expected 1 line where the width is zero")
         if self.bulging is not None:
             yield from self.bulging.problems(f"{path}.bulging")
-        wrong = [*self._runs(path), *self._made(path)]
+        wrong = [*self._runs(path), *fiber_problems(path, self.fiber, self.families or ())]
         yield from wrong
         if draft.actuator is None or wrong:
             return
@@ -222,20 +222,6 @@ class WindingEffect(Effect):
                 '"calibrated", but one stiffness of the bulge between turns stands for one pitch '
                 "all around, expected smeared or discrete with families",
             )
-
-    def _made(self, path: str) -> Iterator[Problem]:
-        """What is wrong with its fibers."""
-        own = [(n, each.fiber) for n, each in enumerate(self.families or ()) if each.fiber]
-        for number, fiber in own:
-            yield from fiber.problems(f"{path}.families.{number}.fiber")
-        if self.fiber is not None:
-            yield from self.fiber.problems(f"{path}.fiber")
-            if own and len(own) == len(self.families or ()):
-                text = "no effect where every family has its own, expected no value"
-                yield Problem(f"{path}.fiber", text)
-        elif not own or len(own) < len(self.families or ()):
-            text = "missing, expected a named fiber or its modulus and diameter"
-            yield Problem(f"{path}.fiber", text)
 
     def completed(self, offers: frozenset[str] | None) -> Self:
         """As finely as the model can have it; every turn where the model is to be chosen."""
