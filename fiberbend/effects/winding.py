@@ -21,6 +21,7 @@ from fiberbend.effects.effect import (
 from fiberbend.effects.wound.by_families import ByFamilies
 from fiberbend.effects.wound.by_pattern import ByPattern
 from fiberbend.effects.wound.family import Around, FamilySpec, fiber_problems
+from fiberbend.effects.wound.room import rounded
 from fiberbend.effects.wound.thread import BulgingSpec, FiberSpec
 from fiberbend.effects.wound.threads import Threads
 from fiberbend.effects.wound.turns import Turns
@@ -160,8 +161,8 @@ class WindingEffect(Effect):
         return {"as": DISCRETE} if self.representation == SMEARED else {}
 
     def mirror_breaker(self) -> str:
-        """A pattern with a hand, families that are not balanced."""
-        return self._breaker
+        """A pattern with a hand, families that are not balanced; nothing is known of wrong ones."""
+        return "" if any(self._wrong("")) else self._breaker
 
     def bends(self) -> bool:
         """Half a turn about the axis maps every pattern onto itself, half a pitch on."""
@@ -183,17 +184,21 @@ class WindingEffect(Effect):
             yield Problem(f"{path}.lines", f"{self.lines}, expected 1 line where the width is zero")
         if self.bulging is not None:
             yield from self.bulging.problems(f"{path}.bulging")
-        wrong = [*self._runs(path), *fiber_problems(path, self.fiber, self.families or ())]
+        wrong = list(self._wrong(path))
         yield from wrong
         if draft.actuator is None or wrong:
             return
-        if self._wanted == CALIBRATED and not _rounded(draft.actuator):
+        if self._wanted == CALIBRATED and not rounded(draft.actuator):
             yield Problem(
                 f"{path}.as",
                 '"calibrated", but the thread is straight apart from corners, where it presses on '
                 "no length of rubber: expected discrete or smeared",
             )
         yield from self._threads.room(path, draft.actuator, self.width or 0.0)
+
+    def _wrong(self, path: str) -> Iterator[Problem]:
+        yield from self._runs(path)
+        yield from fiber_problems(path, self.fiber, self.families or ())
 
     @property
     def _wanted(self) -> Kind | None:
@@ -392,8 +397,3 @@ def _stiffness(threads: Threads, laid: Ribbons, which: Ints) -> float | Floats:
     if len(each) == 1:
         return each[0]
     return np.array([each[family.thread] for family in laid.families])[which]
-
-
-def _rounded(actuator: Actuator) -> bool:
-    """Whether a thread around it is curved anywhere but at corners."""
-    return any(side.center is not None for side in actuator.outline())
