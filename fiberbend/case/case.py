@@ -23,8 +23,9 @@ from fiberbend.case.materials import Materials as Materials
 from fiberbend.case.materials import MaterialSpec as MaterialSpec
 from fiberbend.case.names import MODELS
 from fiberbend.case.zone_spec import ZoneSpec as ZoneSpec
-from fiberbend.effects.effect import Effect, Inflation, Turns, keep_straight
+from fiberbend.effects.effect import Effect, Inflation, keep_straight
 from fiberbend.effects.table import EffectEntry, unwrap
+from fiberbend.effects.wound.turns import Turns
 from fiberbend.schema.quantities import (
     Accuracy,
     Angle,

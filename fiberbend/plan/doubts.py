@@ -8,7 +8,8 @@ from collections.abc import Iterator
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.zones import zone_cases
-from fiberbend.effects.effect import Effect, Turns
+from fiberbend.effects.effect import Effect
+from fiberbend.effects.wound.turns import Turns
 from fiberbend.models.choice import choose_model
 from fiberbend.models.model import AT_ENDS, ModelKind
 from fiberbend.models.resolution import FARTHEST_PITCH, lost_pressure, winding_remark

@@ -179,10 +179,8 @@ def _material(path: str, material: MaterialSpec) -> Iterator[Problem]:
 
 def _bends(parts: ValidParts) -> Iterator[Problem]:
     """An angle that is asked of a pressure under which a section bends neither way."""
-    if parts.broken_effects or any(effect.bends() for effect in parts.effects.values()):
-        return
-    if parts.zoned:
-        # one of the zones may bend
+    bends = parts.zoned or any(effect.bends() for effect in parts.effects.values())
+    if parts.broken_effects or bends:
         return
     for index, effect in parts.effects.items():
         load = effect.inflation()
