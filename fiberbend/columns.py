@@ -48,8 +48,6 @@ BALANCE_MOMENT = "balance_moment"
 
 CONTACT = ("y_N", "z_N", "moment_x_Nmm", "area_mm2", "gap_mm")
 """Ends of an obstacle's columns: force on the body, its moment, area that touches, least gap."""
-ZONE = ("angle_deg", "twist_deg", "stretch")
-"""Ends of a zone's columns, as of the whole: bending angle, twist, stretch of the centre-line."""
 _OBSTACLE = re.compile(rf"contact_(\w+?)_(?:{'|'.join(CONTACT)})")
 
 RUN = "run"
@@ -250,7 +248,7 @@ def zone(number: int, quantity: str) -> str:
 
     Args:
         number: of the zone, from 0; columns count from 1, the zone at the root.
-        quantity: of `ZONE`.
+        quantity: end of its name, "angle_deg", "twist_deg" or "stretch".
     """
     return f"zone_{number + 1}_{quantity}"
 

@@ -16,13 +16,7 @@ from fiberbend.case.case import (
     Output,
     Solver,
 )
-from fiberbend.effects.effect import (
-    Draft,
-    Effect,
-    Inflation,
-    keep_straight,
-    mirror_breakers,
-)
+from fiberbend.effects.effect import Draft, Effect, Inflation, keep_straight, mirror_breakers
 from fiberbend.effects.table import EFFECTS
 from fiberbend.models.choice import MODELS, choose_model
 from fiberbend.reader.proportions import disproportions
@@ -179,8 +173,7 @@ def _material(path: str, material: MaterialSpec) -> Iterator[Problem]:
 
 def _bends(parts: ValidParts) -> Iterator[Problem]:
     """An angle that is asked of a pressure under which a section bends neither way."""
-    bends = parts.zoned or any(effect.bends() for effect in parts.effects.values())
-    if parts.broken_effects or bends:
+    if parts.broken_effects or parts.zoned or any(e.bends() for e in parts.effects.values()):
         return
     for index, effect in parts.effects.items():
         load = effect.inflation()
