@@ -60,15 +60,13 @@ from fiberbend.effects.records import (
 from fiberbend.effects.records import (
     Site as Site,
 )
-from fiberbend.effects.records import (
-    Turns as Turns,
-)
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Spec
 
 if TYPE_CHECKING:
     from fem.march.records import Rules
     from fem.solver.newton import Settings
+    from fiberbend.effects.wound.turns import Turns
     from fiberbend.states.obstacles import Shape
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
