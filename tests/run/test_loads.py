@@ -123,8 +123,8 @@ def test_a_mass_is_its_weight() -> None:
 
 def test_no_load_leaves_a_pressure_as_it_was() -> None:
     pressure = {"pressure": {"to": "10 kPa"}}
-    before = solve(TUBE, pressure).rows[-1]
-    after = solve(TUBE, pressure, load("0 N", "1e-9 N", "0 N")).rows
+    before = solve(TUBE, pressure, model="body").rows[-1]
+    after = solve(TUBE, pressure, load("0 N", "1e-9 N", "0 N"), model="body").rows
     at = next(row for row in after if row["pressure_kPa"] == 10.0)
     for key in ("chamber_mm3", "tip_z_mm", "stored_mJ"):
         assert at[key] == pytest.approx(before[key], rel=1e-10)
@@ -172,14 +172,14 @@ def test_bend_held_at_none_is_straight(stretch: bool) -> None:
 def test_every_hold_is_kept_and_the_rest_is_free(model: str) -> None:
     hold = {"hold": {"stretch": 1.05, "twist": "20 deg", "bend": "30 deg"}}
     case = SECTION | {"model": model}
-    row = solve(case, hold, PRESSURE, WINDING).rows[-1]
+    row = solve(case, PRESSURE, hold, WINDING).rows[-1]
     assert row["axis_stretch"] == pytest.approx(1.05, rel=1e-8)
     assert row["twist_deg"] == pytest.approx(20, rel=1e-8)
     assert row["angle_deg"] == pytest.approx(30, rel=1e-8)
     assert all(abs(row[key]) > 0.1 for key in ("axial_force_N", "moment_x_Nmm", "torque_Nmm"))
     assert row["unstable_modes"] == 0
     other = {"hold": {"stretch": 1.05, "twist": "-20 deg", "bend": "30 deg"}}
-    mirrored = solve(case, other, PRESSURE, WINDING).rows[-1]
+    mirrored = solve(case, PRESSURE, other, WINDING).rows[-1]
     assert mirrored["torque_Nmm"] == pytest.approx(-row["torque_Nmm"], rel=1e-8)
     assert mirrored["moment_x_Nmm"] == pytest.approx(row["moment_x_Nmm"], rel=1e-8)
 
@@ -200,7 +200,7 @@ def test_the_order_of_hold_and_pressure_does_not_matter_at_the_end() -> None:
 
 def test_volume_drives_it_too_and_an_angle_does_not() -> None:
     hold = {"hold": {"twist": "10 deg"}}
-    row = solve(SECTION, {"pressure": {"volume": "7 mL"}}, hold, WINDING).rows[-1]
+    row = solve(SECTION, hold, {"pressure": {"volume": "7 mL"}}, WINDING).rows[-1]
     assert row["chamber_mm3"] == pytest.approx(7000, rel=1e-7)
     assert row["twist_deg"] == pytest.approx(10, rel=1e-7)
     bend = {"hold": {"bend": "10 deg"}}
