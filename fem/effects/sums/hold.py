@@ -33,10 +33,10 @@ class Hold(Effect):
 
     c is the centroid of all inside the winding, with the images of its axes where the body bends to
     the side and the section may turn in its frame; q are the scalars of uniform bending, Ḡ grows
-    from its value at rest with the share h. Each μ_i is the work-conjugate of what it holds: the axial
-    force in N, the moments about d1 and d2 and the torque about the line in N mm. What is not held
-    is free, and its force zero. Where a force or moment could not be in balance along a line that
-    bends or twists, the rest is borne along it by f, which is spread over the section by the
+    from its value at rest with the share h. Each μ_i is the work-conjugate of what it holds: the
+    axial force in N, the moments about d1 and d2 and the torque about the line in N mm. What is not
+    held is free, and its force zero. Where a force or moment could not be in balance along a line
+    that bends or twists, the rest is borne along it by f, which is spread over the section by the
     weights of the centroid: as a guide without friction does.
 
     Args:
