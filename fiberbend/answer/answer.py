@@ -303,10 +303,9 @@ def _contacts(case: Case, rows: Sequence[col.Row]) -> Iterator[Entry]:
 def _critical(case: Case, run: Mapping[str, Any]) -> Iterator[Entry]:
     """Limit points, and where stability is lost; or that nobody has looked for it."""
     if run.get("stability_checked") is False:
-        why = "a load without a potential has no unstable modes to count"
-        if case.solver.linear == "iterative":
-            why = "solver.linear: iterative counts no unstable modes"
-        yield Entry("stability", "not checked", why)
+        iterative = case.solver.linear == "iterative"
+        why = "solver.linear: iterative" if iterative else "a load without a potential"
+        yield Entry("stability", "not checked", f"{why}: no unstable modes counted")
     for point in run.get("critical_points") or ():
         before, beyond = point["unstable_modes_before"], point["unstable_modes_beyond"]
         if beyond <= before:
