@@ -31,10 +31,10 @@ EFFECTS: dict[str, type[Effect]] = {
         BlockedTipEffect,
         ContactEffect,
         StraightEffect,
+        StripEffect,
         HoldEffect,
         TipLoadEffect,
         TipMassEffect,
-        StripEffect,
     )
 }
 """Each at most once in a case, but for those of which there may be several."""

@@ -10,6 +10,7 @@ from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import Symmetry
 from fiberbend.columns import UNIFORM, ZONES
+from fiberbend.effects.effect import SPACE
 from fiberbend.models.model import (
     AT_ENDS,
     ENDS_BEND,
@@ -122,7 +123,7 @@ def not_uniform(case: Case, twists: bool) -> Iterator[Objection]:
         case: the case.
         twists: something may twist the body.
     """
-    if not any(effect.load for effect in case.effects):
+    if not any(effect.load and SPACE not in effect.needs() for effect in case.effects):
         yield "effects", "nothing bends it uniformly but a pressure or effect hold"
     elif case.straight and case.inflation is not None and case.inflation.angle is not None:
         yield "effects", "kept straight, it reaches no angle: expected a pressure by its value"

@@ -31,11 +31,12 @@ the tangent no worse."""
 class Hold(Effect):
     """Π = −f·(c − b) + Σ μ_i (Ḡ_i − G_i(q, b)), G of the centroids' line: its length, its turns.
 
-    c is the centroid of all inside the winding, q are the scalars of uniform bending, Ḡ grows from
-    its value at rest with the share h. Each μ_i is the work-conjugate of what it holds: the axial
-    force in N, the moments about d1 and d2 and the torque about the line in N mm. What is not held
-    is free, and its force zero. Where a force or moment could not be in balance along a line that
-    bends or twists, the rest is borne along it by f, which is spread over the section by the
+    c is the centroid of all inside the winding, with the images of its axes where the body bends to
+    the side and the section may turn in its frame; q are the scalars of uniform bending, Ḡ grows
+    from its value at rest with the share h. Each μ_i is the work-conjugate of what it holds: the
+    axial force in N, the moments about d1 and d2 and the torque about the line in N mm. What is not
+    held is free, and its force zero. Where a force or moment could not be in balance along a line
+    that bends or twists, the rest is borne along it by f, which is spread over the section by the
     weights of the centroid: as a guide without friction does.
 
     Args:
@@ -67,10 +68,13 @@ class _Held(Linked):
 
     def __init__(self, body: Uniform, targets: Mapping[str, float]) -> None:
         rows, kept, rest = section_fit(body.domain.data)
-        components = [i for i in range(body.components) if kept[0, i]]
-        start = np.array([*rest, 0.0])[components]
-        functionals = Functionals.of_nodes(body, rows[:1], [(0, i) for i in components], start)
-        self._uniform, self._components, self._part = body, components, 1 / body.symmetry_factor
+        # centroid, and images of the axes where no symmetry keeps them
+        self._start: Floats = np.array([[*rest, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+        sums, components = range(3 if body.sideways else 1), range(body.components)
+        self._places = [(k, i) for k in sums for i in components if kept[k, i]]
+        start = np.array([self._start[place] for place in self._places])
+        functionals = Functionals.of_nodes(body, rows, self._places, start)
+        self._uniform, self._part = body, 1 / body.symmetry_factor
         # a turn that its symmetry keeps from it is held already
         turns = {name for name, axis in _RATES.items() if axis in self._axes(body)}
         self.names = [name for name in targets if name in turns or name == LENGTHENED]
@@ -83,13 +87,15 @@ class _Held(Linked):
         self._way = np.array(ends) - self._from
         levers = {n: self._part * (length if n == LENGTHENED else 1.0) for n in self.names}
         more = {name: Natural(0.0, lever, False, True) for name, lever in levers.items()}
-        count = len(components)
-        span = np.full(count, body.span)
-        super().__init__(body, functionals, "hold centroid", span, np.ones(count), more)
+        number = np.array([k for k, _ in self._places])
+        lengths = np.where(number == 0, body.span, 1.0)
+        moments = np.where(number > 0, body.span, 1.0)
+        super().__init__(body, functionals, "hold section", lengths, moments, more)
         self._variables = [*body.natural, *self.at]
         height = 1 / body.size_of(body.natural[0])
         kinds = {STRETCH: 1.0} | dict.fromkeys(AXES, 1 / height)
-        self._steps = np.array([_DIFFERENCE * kinds.get(n, height) for n in self._variables])
+        kinds |= {n: 1.0 if k else height for n, k in zip(self.at, number, strict=True)}
+        self._steps = np.array([_DIFFERENCE * kinds[name] for name in self._variables])
         self._known: tuple[tuple[float, ...], _Derivatives] | None = None
         body.scalar(HOLD)
         self.pair_units = {n: ("N", "mm") if n == LENGTHENED else ("Nmm", "rad") for n in targets}
@@ -104,14 +110,15 @@ class _Held(Linked):
 
     def _line(self, values: Any) -> Any:
         """G of all variables, (n,); analytic."""
-        spin, centre = np.zeros(3, dtype=values.dtype), np.zeros(3, dtype=values.dtype)
+        spin, section = np.zeros(3, dtype=values.dtype), self._start.astype(values.dtype)
         stretch = values[self._variables.index(STRETCH)]
         for name, value in zip(self._variables, values, strict=True):
             if name in AXES:
                 spin[AXES[name]] = value
-        for name, component in zip(self.at, self._components, strict=True):
-            centre[component] = values[self._variables.index(name)]
-        length, rates, _ = centre_line(spin, stretch, centre)
+        for name, place in zip(self.at, self._places, strict=True):
+            section[place] = values[self._variables.index(name)]
+        across = (section[1], section[2]) if self._uniform.sideways else None
+        length, rates, _ = centre_line(spin, stretch, section[0], across)
         return self._uniform.length * np.array(
             [length if name == LENGTHENED else rates[_RATES[name]] for name in self.names]
         )

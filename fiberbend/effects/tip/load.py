@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
@@ -63,12 +63,27 @@ class TipLoadEffect(Effect):
         """Its own are those of the mesh."""
         yield "tip load: the mesh moves deflections as it moves P (docs/evidence/free.md)"
 
+    def _free(self, mirrored: bool) -> bool:
+        """Whether it has no potential: it follows, or is a moment on a tip that turns in space."""
+        return self.follows or (any(self.moment) and not mirrored)
+
+    def doubts(self, site: Site, rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+        """Nobody looks whether a state under a load without a potential is stable."""
+        if self._free(site.mirrored):
+            kind = (
+                "a load that follows" if self.follows else "a moment on a tip that turns in space"
+            )
+            yield (
+                f"tip-load: {kind} has no potential: no unstable modes are counted, and a body "
+                "that would buckle or flutter is passed unseen"
+            )
+
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
         """It grows from zero to the whole; with a potential where it has one."""
         from fem.effects.sums.tip_load import FollowingTipLoad, TipForce, TipMoment
         from fem.march.records import Ramp
 
-        free = self.follows or (any(self.moment) and not site.mirrored)
+        free = self._free(site.mirrored)
         ramp = Ramp(TipForce.scalar, 1.0, conjugated=not free)
         if free:
             term = FollowingTipLoad(self.force, self.moment, self.follows)
