@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field, model_validator
-from pydantic_core import PydanticCustomError
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, model_validator
+from pydantic_core import PydanticCustomError, core_schema
 
 from fiberbend.case.materials import MaterialSpec
 from fiberbend.effects.strip import StripEffect
@@ -16,9 +16,23 @@ if TYPE_CHECKING:
     from fiberbend.effects.effect import Effect
 
 
-def _listed(value: Any) -> Any:
-    """One as a list of one."""
-    return [value] if isinstance(value, dict | StripEffect) else value
+class _OneOrMore:
+    """Annotation of a list that may be one entry in its place."""
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        """One as a list of one."""
+        return core_schema.no_info_before_validator_function(
+            lambda value: [value] if isinstance(value, dict | Spec) else value, handler(source)
+        )
+
+    def __get_pydantic_json_schema__(
+        self, schema: Any, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """One entry is allowed too."""
+        several = handler(schema["schema"])
+        return {"anyOf": [several["items"], several]}
 
 
 def _all(value: Any) -> tuple[Effect, ...]:
@@ -34,7 +48,7 @@ class ZoneSpec(Spec):
     """Its part of the chamber's length; one zone may leave it out and is what the others leave."""
     winding: Annotated[WindingEffect, OrNone()] | None = None
     """In place of the case's winding, its phase from the zone's own root end; "none": unwound."""
-    strip: Annotated[tuple[StripEffect, ...], BeforeValidator(_listed), OrNone()] | None = Field(
+    strip: Annotated[tuple[StripEffect, ...], _OneOrMore(), OrNone()] | None = Field(
         default=None, strict=False
     )
     """One strip or a list of them, in place of the case's strips; "none": without any."""

@@ -112,7 +112,7 @@ class UniformModel(MeshedModel):
         yield (
             f"{AT_ENDS}caps and borders of zones are left out: zones seven to ten times as long as "
             "the tube is wide bend up to 3 % and twist 3 % further than in a body, zones three "
-            "times as long 7 % (docs/models.md)"
+            "times as long 12 % (docs/models.md)"
         )
 
 
