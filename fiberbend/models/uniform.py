@@ -110,9 +110,9 @@ class UniformModel(MeshedModel):
     def errors_of_zones(self) -> Iterator[str]:
         """As measured beside bodies."""
         yield (
-            f"{AT_ENDS}caps and borders of zones are left out: zones seven to ten times as long as "
+            f"{AT_ENDS}caps and borders of zones are left out: zones five to ten times as long as "
             "the tube is wide bend up to 3 % and twist 3 % further than in a body, zones three "
-            "times as long 12 % (docs/models.md)"
+            "times as long 13 % (docs/models.md)"
         )
 
 
