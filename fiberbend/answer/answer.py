@@ -12,7 +12,7 @@ from typing import Any
 from fiberbend import columns as col
 from fiberbend.answer.numbers import number, quantity
 from fiberbend.answer.touch import touches
-from fiberbend.answer.zones import parts_of_zones
+from fiberbend.answer.turned import turned
 from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
 from fiberbend.models.model import ModelKind
@@ -99,8 +99,7 @@ def answer(case: Case, rows: Sequence[col.Row], run: Mapping[str, Any]) -> Answe
         *(_forces(case, model, rows) if case.straight else _bending(case, rows)),
         _end(case, rows),
         *_tip(case, rows),
-        *_turns(rows),
-        *(Entry(*told) for told in parts_of_zones(rows[-1], len(case.zones or ()))),
+        *(Entry(*told) for told in turned(rows, len(case.zones or ()))),
         *_contacts(case, rows),
         *_critical(case, run),
         *_strain(run),
@@ -281,14 +280,6 @@ def _place(row: col.Row) -> str:
     if abs(known.get("x", 0.0)) <= _SEEN:
         known.pop("x", None)
     return ", ".join(f"{name} = {quantity(value, 'mm')}" for name, value in known.items())
-
-
-def _turns(rows: Sequence[col.Row]) -> Iterator[Entry]:
-    """Twist and side angle, where there are any."""
-    for key, label in ((col.TWIST, "twist"), (col.SIDE_ANGLE, "side angle")):
-        values = [row[key] for row in rows if row.get(key) is not None]
-        if values and max(map(abs, values)) > _SEEN:
-            yield Entry(f"{label} at the end", quantity(values[-1], "°"))
 
 
 def _contacts(case: Case, rows: Sequence[col.Row]) -> Iterator[Entry]:

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import itertools
+import math
 from typing import Any
 
 from fiberbend.case.case import Case
 from fiberbend.effects.effect import Effect
+
+_STEPS = 16
+"""Even steps of the pressure at which zones are chained, at least."""
+_CLOSE = 1e-6
+"""Part of the whole pressure up to which an even step and one that is asked for are one."""
 
 
 def lengths(case: Case) -> tuple[float, ...]:
@@ -120,6 +126,25 @@ def own_regions(case: Case) -> list[dict[str, str]]:
         {part: region_name(part, number) for part in zone.materials}
         for number, zone in enumerate(case.zones or ())
     ]
+
+
+def shared_pressures(case: Case) -> list[float]:
+    """Pressures at which all zones are chained, MPa: even ones and those asked for, the end last.
+
+    Args:
+        case: its pressure is given by its value.
+    """
+    load, output, solver = case.inflation, case.output, case.solver
+    assert load is not None
+    assert load.to is not None
+    number = _STEPS
+    if solver.max_step is not None:
+        number = max(number, math.ceil(abs(load.to) / solver.max_step - _CLOSE))
+    asked = [*output.at_pressures, load.to]
+    even = [load.to * k / number for k in range(1, number)]
+    close = _CLOSE * abs(load.to)
+    kept = [p for p in even if all(abs(p - goal) > close for goal in asked)]
+    return sorted({*kept, *asked}, key=abs)
 
 
 def words(case: Case) -> list[str]:

@@ -260,6 +260,10 @@ class MeshedModel(ModelKind):
         """The model itself."""
         return self
 
+    def steps_of_zones(self, case: Case) -> int | None:
+        """Load steps of a case with zones; None where they cannot be predicted."""
+        return None
+
     def repeats(self, case: Case) -> bool:
         """Whether its mesh is one section or slice that goes on alike along the axis.
 

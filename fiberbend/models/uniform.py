@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import Symmetry
+from fiberbend.case.zones import shared_pressures
 from fiberbend.columns import UNIFORM, ZONES
 from fiberbend.effects.effect import SPACE
 from fiberbend.models.model import (
@@ -106,6 +107,10 @@ class UniformModel(MeshedModel):
             return
         yield f"mesh: moves P by up to {self.mesh_error(case)} % (docs/evidence/uniform.md)"
         yield f"{AT_ENDS}left out; {ENDS_BEND}"
+
+    def steps_of_zones(self, case: Case) -> int:
+        """Pressures at which all zones are chained, and angles."""
+        return len(shared_pressures(case)) + len(case.output.at_angles)
 
     def errors_of_zones(self) -> Iterator[str]:
         """As measured beside bodies."""

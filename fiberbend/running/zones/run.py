@@ -14,7 +14,7 @@ from fiberbend import columns as col
 from fiberbend.answer.answer import answer
 from fiberbend.answer.strain import greatest_strain
 from fiberbend.case.case import Case
-from fiberbend.case.zones import lengths, zone_cases
+from fiberbend.case.zones import lengths, shared_pressures, zone_cases
 from fiberbend.models.model import MeshedModel
 from fiberbend.models.result import RunResult
 from fiberbend.plan.doubts import doubts
@@ -32,11 +32,6 @@ from fiberbend.running.zones.chain import Link, find_angle, passes_itself, row_o
 from fiberbend.running.zones.march import ZoneMarch
 from fiberbend.states.labels import angle_labels, pressure_labels, unused
 from fiberbend.states.snapshot import Snapshot
-
-STEPS = 16
-"""Even steps of the pressure at which zones are chained, at least."""
-_CLOSE = 1e-6
-"""Part of the whole pressure up to which an even step and one that is asked for are one."""
 
 
 def run_zones(
@@ -103,7 +98,7 @@ class _ZonedRun:
         for number, alone in enumerate(zone_cases(case, self.model.name)):
             self.zones.append(ZoneMarch(alone, number, self.model))
         progress.phase("solve")
-        goals = self._goals()
+        goals = shared_pressures(case)
         for zone in self.zones:
             zone.march(goals, progress, len(self.zones))
         links, status, reason = self._chain(goals)
@@ -134,20 +129,6 @@ class _ZonedRun:
                     self.progress.message(text)
 
     # --- the path ------------------------------------------------------------------------------
-
-    def _goals(self) -> list[float]:
-        """Pressures at which all zones are chained, MPa: even ones, and those asked for."""
-        load, output, solver = self.case.inflation, self.case.output, self.case.solver
-        assert load is not None
-        assert load.to is not None
-        number = STEPS
-        if solver.max_step is not None:
-            number = max(number, math.ceil(abs(load.to) / solver.max_step - _CLOSE))
-        asked = [*output.at_pressures, load.to]
-        even = [load.to * k / number for k in range(1, number)]
-        close = _CLOSE * abs(load.to)
-        kept = [p for p in even if all(abs(p - goal) > close for goal in asked)]
-        return sorted({*kept, *asked}, key=abs)
 
     def _solve(self, pressure: float) -> Link | None:
         """The state at a pressure in MPa; None where a zone has none."""
