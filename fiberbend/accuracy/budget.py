@@ -395,7 +395,6 @@ def _unknown(case: Case, model: MeshedModel, entries: Sequence[Known]) -> Iterat
         yield "nothing is known of a vacuum, and of bending the other way"
     if case.straight and model.ends:
         yield "strips of other widths move the force by up to 12 % (docs/evidence/blocked.md)"
-        if case.turns is not None and case.turns.spacing > BLOCKED_PITCH * radius(case) * (
-            1 + _END
-        ):
+        most = BLOCKED_PITCH * radius(case) * (1 + _END)
+        if case.turns is not None and case.turns.spacing > most:
             yield f"no tip was blocked with a pitch beyond {BLOCKED_PITCH:.3g} radii"
