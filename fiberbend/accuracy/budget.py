@@ -21,7 +21,6 @@ from fiberbend.accuracy.table import (
     up_to,
 )
 from fiberbend.case.case import Case
-from fiberbend.effects.wound.turns import Turns
 from fiberbend.models.model import MeshedModel, Rung
 from fiberbend.models.resolution import CALIBRATED
 
@@ -363,8 +362,7 @@ def _widening(
     if other := sorted(laws - _LAWS):
         reasons.append(f"law {', '.join(other)} (known: {', '.join(sorted(_LAWS))})")
         factor *= OTHER_LAW
-    turns: Turns | None = case.turns
-    if turns is not None and turns.twists:
+    if case.turns is not None and case.turns.twists:
         reasons.append("a winding with a hand (known: double helix)")
         factor *= OTHER_PATTERN
     return factor, tuple(reasons), beyond
@@ -395,6 +393,5 @@ def _unknown(case: Case, model: MeshedModel, entries: Sequence[Known]) -> Iterat
         yield "nothing is known of a vacuum, and of bending the other way"
     if case.straight and model.ends:
         yield "strips of other widths move the force by up to 12 % (docs/evidence/blocked.md)"
-        most = BLOCKED_PITCH * radius(case) * (1 + _END)
-        if case.turns is not None and case.turns.spacing > most:
+        if case.turns is not None and numbers(case).get(PITCH, 0.0) > BLOCKED_PITCH * (1 + _END):
             yield f"no tip was blocked with a pitch beyond {BLOCKED_PITCH:.3g} radii"
