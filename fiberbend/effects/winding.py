@@ -26,7 +26,7 @@ from fiberbend.effects.wound.family import Around, FamilySpec, bend, fiber_probl
 from fiberbend.effects.wound.felt import hardly_felt
 from fiberbend.effects.wound.room import rounded
 from fiberbend.effects.wound.thread import BulgingSpec, FiberSpec
-from fiberbend.effects.wound.threads import Threads
+from fiberbend.effects.wound.threads import Threads, stiffness_of
 from fiberbend.effects.wound.turns import Turns
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Length, LengthOrZero, Quantity
@@ -36,9 +36,8 @@ if TYPE_CHECKING:
     PatternName = str
     from fem.effects.effect import Effect as Term
     from geometry.actuator import Actuator
-    from geometry.mesh.data import Floats, Ints, MeshData
+    from geometry.mesh.data import Floats, MeshData
     from geometry.winding.helix import Winding
-    from geometry.winding.ribbons import Ribbons
     from geometry.winding.segments import EmbeddedFibers
     from materials.bulging import Bulging
 else:
@@ -351,7 +350,7 @@ class WindingEffect(Effect):
         flat = mesh.nodes.shape[1] == 2
         if self.representation in (DISCRETE, None):
             segments, which = embed_families(mesh, actuator, laid)
-            stiffness = _stiffness(threads, laid, which)
+            stiffness = stiffness_of(threads, laid, which)
             return Built((Winding(segments, stiffness, slack),), (), segments, flat)
         placed, spread = laid.chosen(places=True), laid.chosen(places=False)
         if self.representation == CALIBRATED:
@@ -364,12 +363,12 @@ class WindingEffect(Effect):
         shown: list[EmbeddedFibers] = []
         if spread is not None:
             over = smear(mesh, actuator, spread)
-            stiffness = _stiffness(threads, spread, over.curve)
+            stiffness = stiffness_of(threads, spread, over.curve)
             terms.append(SmearedWinding(over, stiffness, slack))
             shown.append(over)
         if placed is not None:
             segments, which = embed_families(mesh, actuator, placed)
-            stiffness = _stiffness(threads, placed, which)
+            stiffness = stiffness_of(threads, placed, which)
             terms.append(Winding(segments, stiffness, slack))
             shown.append(segments)
         return Built(tuple(terms), (), shown[0], spread is not None or flat)
@@ -381,13 +380,3 @@ class WindingEffect(Effect):
     def build_along(self, zones: Sequence[Stretch], requests: Requests) -> Built:
         """Every thread ends at the borders of its zone."""
         return zoned.build(zones, requests, self.tension_only)
-
-
-def _stiffness(threads: Threads, laid: Ribbons, which: Ints) -> float | Floats:
-    """EA in N of the thread of every segment, or of all where there is one."""
-    import numpy as np
-
-    each = [fiber.stiffness for fiber in threads.fibers]
-    if len(each) == 1:
-        return each[0]
-    return np.array([each[family.thread] for family in laid.families])[which]
