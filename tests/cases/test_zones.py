@@ -145,6 +145,17 @@ TWO: tuple[dict[str, Any], ...] = ({"length": "60 mm", "winding": HAND}, {})
             },
             "effects.2.straight: model section does not support it",
         ),
+        (
+            {
+                "model": "section",
+                "effects": [
+                    {"pressure": {"to": "9 kPa"}},
+                    {"winding": WOUND},
+                    {"hold": {"stretch": 1.0}},
+                ],
+            },
+            "effects.2.hold: model section does not support it: zones share a pressure",
+        ),
         ({"model": "body", "mesh": {"symmetry": "half"}}, "mesh.symmetry:"),
     ],
 )
