@@ -30,6 +30,22 @@ bring_records() {
     cp -u "$1"/bench/stacks/*.json bench/stacks/ 2>/dev/null || true
 }
 
+# Whether a mirror of Debian ($1) has the release $2 for us now.
+reached() {
+    python3 -c 'import sys, urllib.request; urllib.request.urlopen(sys.argv[1], timeout=30).read()' \
+        "$1/dists/$2/InRelease" 2>/dev/null
+}
+
+# Runs a command in the source of the Debian in $root. Mounts of this process alone: they end with
+# it, and `rm -r build` meets none of them.
+inside() {
+    unshare --mount --propagation private bash -euc '
+        mount -t proc proc "$0/proc"; mount --rbind /dev "$0/dev"; mount --rbind /sys "$0/sys"
+        exec chroot "$0" env -C /fiberbend -u PIP_FIND_LINKS -u PYTHONPATH -u PYTHON -u CC HOME=/root \
+            LC_ALL=C.UTF-8 PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
+            FIBERBEND_STACK=debian "$@"' "$root" "$@"
+}
+
 on_wheel() {
     local why python
     copy_source "$root"
@@ -57,8 +73,7 @@ on_debian() {
         2>/dev/null | head -n 1)}
     mirror=${mirror:-http://deb.debian.org/debian}
     if ! [[ -f $root.made ]]; then
-        python3 -c 'import sys, urllib.request; urllib.request.urlopen(sys.argv[1], timeout=30).read()' \
-            "$mirror/dists/$name/InRelease" 2>/dev/null || skip "$mirror is not reached."
+        reached "$mirror" "$name" || skip "$mirror is not reached."
         command -v debootstrap >/dev/null ||
             { apt-get update -qq && apt-get install -qq -y --no-install-recommends debootstrap; } \
                 >/dev/null 2>&1 || skip "debootstrap is missing, and apt-get cannot install it."
@@ -74,12 +89,14 @@ on_debian() {
         touch "$root.made"
     fi
     copy_source "$root/fiberbend"
-    # Mounts of this process alone: they end with it, and `rm -r build` meets none of them.
-    unshare --mount --propagation private bash -euc '
-        mount -t proc proc "$0/proc"; mount --rbind /dev "$0/dev"; mount --rbind /sys "$0/sys"
-        exec chroot "$0" env -u PIP_FIND_LINKS -u PYTHONPATH -u PYTHON -u CC HOME=/root LC_ALL=C.UTF-8 \
-            PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
-            FIBERBEND_STACK=debian make -C /fiberbend "$@"' "$root" setup "${targets[@]}"
+    if ! inside ./setup.sh; then
+        reached "$mirror" "$name" || skip "$mirror is not reached."
+        [[ ! -x $root/fiberbend/.venv/bin/python ]] ||
+            inside .venv/bin/python -m pip download -qq --no-cache-dir --no-deps --dest build \
+                "$(grep -m 1 == requirements.txt)" 2>/dev/null || skip "pip reaches no registry."
+        exit 1
+    fi
+    inside make "${targets[@]}"
     bring_records "$root/fiberbend"
 }
 
