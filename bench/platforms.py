@@ -223,8 +223,9 @@ def release(record: Mapping[str, Any]) -> str:
 
 
 def records() -> list[dict[str, Any]]:
-    """What all stacks have left, the oldest release first."""
+    """What stacks have left on which all cases were run, the oldest release first."""
     found = [json.loads(p.read_text(encoding="utf-8")) for p in RECORDS.glob("dolfinx-*.json")]
+    found = [record for record in found if record["runs"].keys() == CASES.keys()]
     return sorted(found, key=lambda record: [int(part) for part in release(record).split(".")])
 
 
@@ -356,9 +357,9 @@ def main() -> None:
         before = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
         record = measured(before, asked.only or [*CASES, "orderings"])
         file.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    complete = [record for record in records() if record["runs"].keys() == CASES.keys()]
-    if len(complete) > 1:
-        PAGE.write_text(page(complete), encoding="utf-8")
+    found = records()
+    if len(found) > 1:
+        PAGE.write_text(page(found), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -52,6 +52,20 @@ def test_the_page_says_how_far_two_stacks_are_apart() -> None:
     assert "| AMD | not built in | not built in |" in page
 
 
+def test_all_stacks_answer_alike() -> None:
+    first, *others = platforms.records()
+    assert [platforms.release(record) for record in (first, *others)] == ["0.5", "0.9", "0.11"]
+    for name, run in first["runs"].items():
+        for other in others:
+            found = platforms.difference(run["answers"], other["runs"][name]["answers"])
+            assert max(found.values()) < platforms.TOLERANCE, (name, other["stack"], found)
+
+
+def test_the_page_is_that_of_the_records() -> None:
+    written = platforms.PAGE.read_text(encoding="utf-8")
+    assert written == platforms.page(platforms.records()), "make platforms"
+
+
 def test_other_states_are_no_difference_but_an_error() -> None:
     state = {"pressure_kPa": 10.0, "angle_deg": 90.0}
     assert platforms.difference([state], [state | {"pressure_kPa": 10.001}]) == pytest.approx(
