@@ -328,7 +328,7 @@ DIFFERENCES = """
 ## Differences
 
 The greatest of all quantities above, relative to the greatest value of the quantity and to the
-first stack.
+first stack; 0 where all ten digits of `history.csv` are the same.
 """
 SPEED = """
 ## Speed
@@ -336,7 +336,9 @@ SPEED = """
 Processor time of the whole process without pictures and report, s, in parentheses that of the
 factorisations, then the time by the clock, which grows with what else the machine does: the least
 of two each, after one run that compiles the kernels. Two ranks are counted together, also while one
-waits for the other, and the factorisations of one.
+waits for the other, and the factorisations of one. Other programs share caches and cores, which
+lengthens processor time by up to half: stacks are compared by their iterations, and by times only
+where the machine was idle for all.
 """
 ORDERING = """
 ## Orderings
