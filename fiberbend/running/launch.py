@@ -84,6 +84,7 @@ def start_mpi() -> None:
 
     settle_folders()
     settle_kernel()
+    world.keep_hangup()
     if ranks.foreign_launcher():
         raise MachineError(
             "launched by the mpirun of Open MPI; this Python has MPICH: take its own, "
