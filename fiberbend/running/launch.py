@@ -227,6 +227,7 @@ def let_rank_0_speak(code: int) -> None:
         return
     time.sleep(_PATIENCE)
     print(f"rank {rank()}: {_group.error}", file=sys.stderr, flush=True)
+    ranks.end_all(code)
 
 
 def say(text: str, stream: TextIO | None = None) -> None:
