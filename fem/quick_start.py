@@ -77,7 +77,7 @@ class _Forgetful(functools.singledispatchmethod):  # type: ignore[type-arg]
 
     def __init__(self, function: Any) -> None:
         super().__init__(function)
-        self._method_cache = None
+        vars(self)["_method_cache"] = None
 
 
 @contextlib.contextmanager
@@ -87,7 +87,7 @@ def without_method_caches() -> Iterator[None]:
     Python 3.13.0 and 3.13.1 keep each of them for ever, and ufl's have whole forms in them.
     """
     usual = functools.singledispatchmethod
-    functools.singledispatchmethod = _Forgetful  # type: ignore[misc]
+    functools.singledispatchmethod = _Forgetful  # type: ignore[assignment, misc]
     try:
         yield
     finally:
