@@ -62,8 +62,7 @@ def session(number: int) -> list[int]:
         with contextlib.suppress(OSError):
             state, *numbers = (entry / "stat").read_text().rpartition(")")[2].split()
             if state != "Z" and (
-                int(numbers[2]) == number
-                or led_by in (entry / "environ").read_bytes().split(b"\0")
+                int(numbers[2]) == number or led_by in (entry / "environ").read_bytes().split(b"\0")
             ):
                 found.append(int(entry.name))
     return found
