@@ -1,7 +1,8 @@
-"""Whether a rank computes with the others, said before fem is loaded; how one rank ends all."""
+"""What MPI is told before it starts; whether a rank computes with the others, how it ends all."""
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from typing import Any
@@ -26,6 +27,15 @@ def part() -> None:
 def parted() -> bool:
     """Whether it does."""
     return _World.alone
+
+
+def keep_hangup() -> None:
+    """Leave SIGHUP to this process; before MPI is loaded.
+
+    UCX, which carries the messages of some MPIs, would take it to print more of its own: a run
+    whose terminal has gone would go on.
+    """
+    os.environ.setdefault("UCX_DEBUG_SIGNO", "0")
 
 
 def be_heard() -> None:

@@ -84,6 +84,7 @@ def start_mpi() -> None:
 
     settle_folders()
     settle_kernel()
+    world.keep_hangup()
     if ranks.foreign_launcher():
         raise MachineError(
             "launched by the mpirun of Open MPI; this Python has MPICH: take its own, "
@@ -226,6 +227,7 @@ def let_rank_0_speak(code: int) -> None:
         return
     time.sleep(_PATIENCE)
     print(f"rank {rank()}: {_group.error}", file=sys.stderr, flush=True)
+    ranks.end_all(code)
 
 
 def say(text: str, stream: TextIO | None = None) -> None:

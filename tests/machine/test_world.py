@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
 from machine import world
@@ -34,3 +36,12 @@ def test_a_signal_meanwhile_ends_all_too(monkeypatch: pytest.MonkeyPatch) -> Non
     with pytest.raises(KeyboardInterrupt):
         world.end_all(comm, 130)
     assert comm.codes == [130]
+
+
+def test_a_hangup_is_left_to_the_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("UCX_DEBUG_SIGNO", "SIGUSR2")
+    world.keep_hangup()
+    assert os.environ["UCX_DEBUG_SIGNO"] == "SIGUSR2"
+    monkeypatch.delenv("UCX_DEBUG_SIGNO")
+    world.keep_hangup()
+    assert os.environ["UCX_DEBUG_SIGNO"] == "0"

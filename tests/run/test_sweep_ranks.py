@@ -16,7 +16,7 @@ import yaml
 
 import fiberbend
 from bench.ranks import MPIRUN
-from bench.survive import session
+from bench.survive import led, session
 from fiberbend.process.ranks import foreign_launcher
 from fiberbend.results.reading import read_history
 from tests.conftest import ROOT, MpiRun, killed_by, launcher
@@ -77,7 +77,7 @@ class Cube:
         command = [launcher(), "-n", ranks] if ranks else []
         command = [*command, sys.executable, "-m", "fiberbend", "sweep", str(self.file)]
         return subprocess.Popen(
-            [*command, "--out", str(self.folder / out), *arguments],
+            led([*command, "--out", str(self.folder / out), *arguments]),
             env=os.environ | MPIRUN | {"PYTHONPATH": str(ROOT)},
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
