@@ -29,7 +29,8 @@ def start_petsc() -> None:
         MachineError: the folders that MPI and dolfinx need cannot be used.
     """
     folders.settle()
-    from mpi4py import MPI
+    with world.starting():
+        from mpi4py import MPI
 
     if MPI.COMM_WORLD.size > 1 and sys.excepthook is sys.__excepthook__:
         sys.excepthook = _end_all
