@@ -24,14 +24,15 @@ RUN .venv/bin/pip install -q --no-cache-dir --disable-pip-version-check \
         --no-deps --no-build-isolation ./source
 
 # The first user of a machine often has this number: files in /data are then theirs. Kernels are
-# compiled when a case is run, and kept in .cache: a volume there outlives the container.
+# compiled when a case is run, and kept in /var/cache/fiberbend: a volume there outlives the container.
 RUN useradd --uid 1000 --create-home fiberbend \
     && install -d -o fiberbend -g fiberbend -m 755 /data \
-    && install -d -o fiberbend -g fiberbend -m 700 /home/fiberbend/.cache
+    && install -d -o fiberbend -g fiberbend -m 700 /var/cache/fiberbend
 
 # mpirun: more ranks than cores, also as root. Where a container forbids one rank to read the memory
 # of another, Open MPI 5 goes another way by itself.
 ENV PATH=/opt/fiberbend/.venv/bin:/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
+    XDG_CACHE_HOME=/var/cache/fiberbend \
     OMPI_ALLOW_RUN_AS_ROOT=1 \
     OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
     PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe

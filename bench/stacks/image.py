@@ -175,6 +175,11 @@ class Image:
         """Where a path of the image is on this machine."""
         return self.root / path.lstrip("/")
 
+    def home(self) -> str:
+        """Of the user, as the image's own list of users has it."""
+        users = self.inside("/etc/passwd").read_text(encoding="utf-8").splitlines()
+        return next(line.split(":")[5] for line in users if line.startswith(f"{self.user}:"))
+
     def call(self, words: Sequence[str], more: dict[str, str], *, network: bool = True) -> None:
         """Run a command in the image, as its user and in its folder.
 
@@ -186,8 +191,7 @@ class Image:
         Raises:
             subprocess.CalledProcessError: it failed.
         """
-        home = "/root" if self.user == "root" else f"/home/{self.user}"
-        variables = {"HOME": home, **self.variables, **more}
+        variables = {"HOME": self.home(), **self.variables, **more}
         own = ["unshare", "--mount", "--propagation", "private", *([] if network else ["--net"])]
         first = "" if network else shlex.join([sys.executable, "-c", LOOPBACK])
         who = f"--userspec={self.user}:{self.user}"
