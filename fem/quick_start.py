@@ -30,8 +30,8 @@ def start_petsc() -> None:
         MachineError: the folders that MPI and dolfinx need cannot be used.
     """
     folders.settle()
-    world.keep_hangup()
-    from mpi4py import MPI
+    with world.starting():
+        from mpi4py import MPI
 
     if MPI.COMM_WORLD.size > 1 and sys.excepthook is sys.__excepthook__:
         sys.excepthook = _end_all

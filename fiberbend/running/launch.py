@@ -84,7 +84,6 @@ def start_mpi() -> None:
 
     settle_folders()
     settle_kernel()
-    world.keep_hangup()
     if ranks.foreign_launcher():
         raise MachineError(
             "launched by the mpirun of Open MPI; this Python has MPICH: take its own, "
@@ -95,7 +94,7 @@ def start_mpi() -> None:
     os.environ.update({name: _ALONE[name] for name in new})
     stray = {_STRAY: os.environ.pop(_STRAY)} if alone and _STRAY in os.environ else {}
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), world.starting():
             # of another launcher, of which the error below speaks
             warnings.filterwarnings("ignore", "suspicious MPI", RuntimeWarning)
             from mpi4py import MPI
