@@ -7,9 +7,10 @@ import math
 from fiberbend.calibration.digest import CELL, LAYERS, SECTION, TOLERANCE
 from fiberbend.calibration.reach import Reach, height
 from fiberbend.case.case import Case, Mesh, Output, Solver
-from fiberbend.effects.effect import Effect, Turns
+from fiberbend.effects.effect import Effect
 from fiberbend.effects.pressure import inflate
 from fiberbend.effects.straight import straight_of
+from fiberbend.effects.wound.turns import Turns
 
 PARTS = (0.125, 0.25, 0.5, 0.75, 1.0)
 """Of the greatest curvature: states that are bent."""
@@ -72,7 +73,7 @@ def _length(case: Case, reach: Reach) -> float:
 
     It enters nothing: pressures and moments of uniform bending depend on the curvature alone.
     """
-    return max(2 * math.pi * height(case) / reach.strain, turns_of(case).pitch)
+    return max(2 * math.pi * height(case) / reach.strain, turns_of(case).spacing)
 
 
 def _small(
@@ -86,8 +87,8 @@ def _small(
 ) -> Case:
     cell = model == "cell"
     kept = (effect.in_cell() if cell else effect.beside() for effect in case.effects)
-    wound = tuple(e for e in kept if e is not None and e.turns() is not None)
-    axial = turns_of(case).pitch / (2 * LAYERS)
+    wound = tuple(e for e in kept if e is not None and e.winds())
+    axial = turns_of(case).spacing / (2 * LAYERS)
     mesh = {"section": CELL, "axial": axial} if cell else {"section": SECTION}
     most = None if turn is None else abs(turn)
     solver = {"tolerance": TOLERANCE, "max_turn": most, "first_step": first}

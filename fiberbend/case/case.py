@@ -21,8 +21,9 @@ from pydantic_core import PydanticCustomError
 
 from fiberbend.case.coefficients import coefficient_fields
 from fiberbend.case.names import MODELS
-from fiberbend.effects.effect import Effect, Inflation, Turns, keep_straight
+from fiberbend.effects.effect import Effect, Inflation, keep_straight
 from fiberbend.effects.table import EffectEntry, unwrap
+from fiberbend.effects.wound.turns import Turns
 from fiberbend.schema.quantities import (
     Accuracy,
     Angle,
@@ -320,8 +321,10 @@ class Case(Spec):
     @property
     def turns(self) -> Turns | None:
         """The thread around the body, or None where there is none."""
-        found = (effect.turns() for effect in self.effects)
-        return next((turns for turns in found if turns is not None), None)
+        from fiberbend.case import convert
+
+        winding = next((effect for effect in self.effects if effect.winds()), None)
+        return None if winding is None else winding.turns(convert.dimensions(self.actuator))
 
     @property
     def straight(self) -> bool:

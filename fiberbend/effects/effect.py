@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from fem.effects.effect import Effect as Term
     from fem.march.records import Ramp, Rules
     from fem.solver.newton import Settings
+    from fiberbend.effects.wound.turns import Turns
     from fiberbend.states.obstacles import Shape
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
@@ -62,29 +63,6 @@ class Inflation:
 
 
 @dataclasses.dataclass(frozen=True)
-class Turns:
-    """Thread wound around the body.
-
-    Attributes:
-        pitch: length along the axis of one turn, mm.
-        discrete: every turn by itself, not spread over its surface.
-        twists: the pattern has a hand, so that the body may twist.
-        stiffness: axial stiffness EA of the thread, N.
-        modulus: Young's modulus of the thread, MPa.
-        curves: lines that stand for the thread: helices, times the lines of a ribbon.
-        bulges: spread over its surface, with rubber that bulges between the turns.
-    """
-
-    pitch: float
-    discrete: bool
-    twists: bool
-    stiffness: float
-    modulus: float
-    curves: int
-    bulges: bool = False
-
-
-@dataclasses.dataclass(frozen=True)
 class Draft:
     """What is valid of a case that is being checked.
 
@@ -107,11 +85,13 @@ class Site:
         actuator: dimensions.
         materials: of each of its parts.
         straight: an effect keeps the actuator from bending.
+        origin: z on the actuator where the mesh of a slice that repeats begins, mm.
     """
 
     actuator: Actuator
     materials: Mapping[str, Material]
     straight: bool
+    origin: float = 0.0
 
 
 @dataclasses.dataclass(frozen=True)
@@ -235,9 +215,17 @@ class Effect(Spec):
         """How it loads the chamber; None where it does not."""
         return None
 
-    def turns(self) -> Turns | None:
+    def winds(self) -> bool:
+        """Whether it winds thread around the body."""
+        return False
+
+    def turns(self, actuator: Actuator) -> Turns | None:
         """The thread that it winds around the body; None where it winds none."""
         return None
+
+    def runs(self, actuator: Actuator) -> list[str]:
+        """How its thread runs, a line for each family of it; may be empty."""
+        return []
 
     def fixes_circumference(self) -> bool:
         """Whether it fixes the circumference of the section, as the closed form assumes."""

@@ -9,8 +9,10 @@ import numpy as np
 
 from geometry.actuator import Actuator
 from geometry.mesh.data import Floats
+from geometry.winding.families import Family, helix
 from geometry.winding.outline import position, tangent
 from geometry.winding.patterns import PATTERNS
+from geometry.winding.ribbons import Ribbons
 
 
 @dataclasses.dataclass(frozen=True)
@@ -56,6 +58,15 @@ class Winding:
         """Whether the planes of symmetry of the actuator are its own."""
         return PATTERNS[self.pattern].mirrored
 
+    def ribbons(self, actuator: Actuator) -> Ribbons:
+        """A family for every helix."""
+        perimeter = actuator.winding_perimeter
+        families: list[Family] = []
+        for one in PATTERNS[self.pattern].helices:
+            family = helix(perimeter, self.pitch, one.hand, phase=one.start)
+            families.append(dataclasses.replace(family, width=self.width))
+        return Ribbons(tuple(families), self.lines)
+
     @property
     def lines_per_fiber(self) -> int:
         """Number of lines of each ribbon; 1 when it has no width."""
@@ -81,10 +92,6 @@ class Winding:
     def turn_length(self, actuator: Actuator) -> float:
         """Length of one turn in mm, √(S² + pitch²)."""
         return math.hypot(actuator.winding_perimeter, self.pitch)
-
-    def curve_length(self, actuator: Actuator) -> float:
-        """Length of each curve in mm over the chamber's length, L/pitch √(S² + pitch²)."""
-        return actuator.length / self.pitch * self.turn_length(actuator)
 
     def density(self, actuator: Actuator) -> float:
         """Fiber length per area and helix in 1/mm, √(S² + pitch²) / (S pitch)."""
