@@ -39,7 +39,7 @@ def screw(z: Floats, spin: Floats, stretch: float) -> tuple[Floats, Floats]:
 
     Args:
         z: stations z, (n,), mm.
-        spin: ω in the frame itself, (3,), rad/mm; (k, 0, τ) bends toward −y and twists.
+        spin: ω in the frame itself, (3,), rad/mm; (k_x, k_y, τ) bends toward −y and x, and twists.
         stretch: λ, mm of axis a mm of z.
 
     Returns:
@@ -58,7 +58,12 @@ def screw(z: Floats, spin: Floats, stretch: float) -> tuple[Floats, Floats]:
     return rotation, stretch * place[..., 2]
 
 
-def centre_line(spin: Floats, stretch: complex, centre: Floats) -> tuple[Floats, Floats, Floats]:
+def centre_line(
+    spin: Floats,
+    stretch: complex,
+    centre: Floats,
+    across: tuple[Floats, Floats] | None = None,
+) -> tuple[Floats, Floats, Floats]:
     """The line of a point that stays at its place in a screwing frame, and how it bends and twists.
 
     The frame of `screw` carries the point c along at g = λ e3 + ω × c a mm of z. Its line has the
@@ -69,12 +74,16 @@ def centre_line(spin: Floats, stretch: complex, centre: Floats) -> tuple[Floats,
 
     On them ω = (ω·d1) d1 + (ω·d2) d2 + (ω·t) t: the first two turn the tangent, t' = ω × t, the
     last one turns the axes about it. A change of the frame, to another point and other axes, moves
-    none of them. Analytic in all arguments, so that complex steps differentiate it.
+    none of them, apart from a turn about e3; where no symmetry keeps e1 and e2, d1 and d2 are
+    those of `section_axes`, which do not hang on the frame. Where half a turn about y or a mirror
+    plane keeps them, both are the same. Analytic in all arguments, so that complex steps
+    differentiate it.
 
     Args:
         spin: ω, (3,), rad/mm.
         stretch: λ of the frame's own origin; like the others real, or complex to differentiate.
         centre: c in the frame, (3,), mm.
+        across: what has become of the section's axes, a_x and a_y; None: symmetry keeps them.
 
     Returns:
         |g|; ω on (d1, d2, t), (3,), rad/mm of z; the axes as columns d1, d2, t, (3, 3).
@@ -82,6 +91,9 @@ def centre_line(spin: Floats, stretch: complex, centre: Floats) -> tuple[Floats,
     carried = _product(spin, centre) + stretch * np.array([0.0, 0.0, 1.0])
     length = np.sqrt(np.sum(carried * carried))
     t = carried / length
+    if across is not None:
+        axes = section_axes(*across, t)
+        return length, axes.T @ spin, axes
     axes = np.eye(3, dtype=t.dtype)
     axes[:, :2] -= np.outer(t + np.array([0.0, 0.0, 1.0]), t[:2]) / (1 + t[2])
     axes[:, 2] = t
@@ -145,7 +157,13 @@ class CentreLine:
 
     @classmethod
     def of(
-        cls, spin: Floats, carried: float, centre: Floats, a_x: Floats, a_y: Floats
+        cls,
+        spin: Floats,
+        carried: float,
+        centre: Floats,
+        a_x: Floats,
+        a_y: Floats,
+        turned: bool = False,
     ) -> CentreLine:
         """By frame and section, see `centre_line` and `section_axes`.
 
@@ -155,8 +173,10 @@ class CentreLine:
             centre: c, (3,), mm.
             a_x: image in the frame of the section's axis x, (3,).
             a_y: of its axis y.
+            turned: no symmetry keeps these axes: a section may turn in its frame about e3.
         """
-        stretch, rates, axes = centre_line(spin, carried, centre)
+        across = (a_x, a_y) if turned else None
+        stretch, rates, axes = centre_line(spin, carried, centre, across)
         section = section_axes(a_x, a_y, _product(a_x, a_y))
         return cls(spin, carried, centre, float(stretch), rates, axes, section)
 

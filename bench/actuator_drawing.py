@@ -22,6 +22,7 @@ RADIUS, WALL, FLOOR, SHEATH, CAP, LENGTH, PITCH = 8.0, 2.4, 2.4, 1.4, 12.0, 84.0
 """mm; thin parts are drawn thicker than in the shipped cases, the actuator shorter."""
 OUTER = RADIUS + WALL
 TOP = FLOOR + OUTER
+LOAD = "#b45f06"
 RUBBER, STIFF, SOFT, AIR, THREAD = "#9cc3e6", "#6d6d6d", "#f6dcb0", "#ffffff", "#b03a2e"
 INK = "#222222"
 NAMES = {"fontsize": 10, "color": INK}
@@ -50,6 +51,23 @@ def _axes(ax: Any, origin: Any, names: str, size: float) -> None:
         ax.text(
             *place, name, color="#0b5394", fontsize=11, ha="center", va="center", style="italic"
         )
+
+
+def _load(ax: Any, point: Any, way: Any, name: str, at: Any) -> None:
+    """A force with its name, an arrow from a point."""
+    arrow = {"arrowstyle": "-|>", "color": LOAD, "lw": 1.8, "shrinkA": 0, "shrinkB": 0}
+    end = (point[0] + way[0], point[1] + way[1])
+    ax.annotate("", xy=end, xytext=point, arrowprops=arrow)
+    ax.text(end[0] + at[0], end[1] + at[1], name, **NAMES | {"color": LOAD})
+
+
+def _moment(ax: Any, point: Any, size: float, begin: float, end: float) -> None:
+    """A moment about x: a bent arrow around a point, from one angle to another in degrees."""
+    turn = np.radians(np.linspace(begin, end, 60))
+    x, y = point[0] + size * np.cos(turn), point[1] + size * np.sin(turn)
+    ax.plot(x[:-4], y[:-4], color=LOAD, lw=1.6)
+    arrow = {"arrowstyle": "-|>", "color": LOAD, "lw": 1.6, "shrinkA": 0, "shrinkB": 0}
+    ax.annotate("", xy=(x[-1], y[-1]), xytext=(x[-8], y[-8]), arrowprops=arrow)
 
 
 def section(ax: Any) -> None:
@@ -176,11 +194,16 @@ def bent(ax: Any) -> None:
     tip = _bent(np.array(LENGTH + CAP), middle, radius)
     ax.plot(*tip, "o", color="#0b5394", ms=6)
     _leader(ax, tip, "tip", (tip[0] - 14, tip[1] - 1), ha="right")
+    _load(ax, tip, (0.0, -13.0), "force along −y", (-2.0, -4.0))
+    _moment(ax, tip, 9.0, 75, -60)
+    ax.text(tip[0] + 9.5, tip[1] + 5.5, "moment\nabout +x", **NAMES | {"color": LOAD})
+    ax.plot(0, 0, "o", color="#0b5394", ms=4)
+    _leader(ax, (0, 0), "point of the clamp's\nmoments", (-14, -12), ha="right", va="top")
     _axes(ax, (0, 0), "zy", 9.0)
-    ax.text(-6, -19, "P > 0 bends\ntoward −y", va="top", ha="right", **NAMES)
+    ax.text(-6, -26, "P > 0 bends\ntoward −y", va="top", ha="right", **NAMES)
     ax.set_title("side view under pressure", fontsize=10, color=INK)
     ax.set_xlim(-32, 74)
-    ax.set_ylim(-75, 28)
+    ax.set_ylim(-88, 28)
 
 
 def draw(path: Path = PICTURE) -> None:

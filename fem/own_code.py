@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from fem.effects.effect import Discrete
+from fem.effects.effect import Discrete, Natural
 from fem.kinematics.kinematics import Kinematics
 from fem.ranks import total
 
@@ -20,10 +20,46 @@ class OwnCode:
     Attributes:
         body: kinematics with the unknowns.
         discrete: the potentials, by key.
+        force_scale: scale of the forces in the last residual, N.
+        added: global unknowns that they bring, by name.
     """
 
     body: Kinematics
     discrete: dict[str, Discrete]
+    force_scale: float
+    added: dict[str, Natural]
+
+    def take_in(self) -> None:
+        """Put the unknowns that they bring beside those of the kinematics, at rest."""
+        self.added = {k: v for item in self.discrete.values() for k, v in item.natural.items()}
+        for name, item in self.added.items():
+            self.body.scalar(name)
+            self.body.scalars[name].value = item.rest
+
+    def size_of(self, name: str) -> float:
+        """A change of a natural scalar that strains like a stretch of one; ∞: none does."""
+        return np.inf if name in self.added else self.body.size_of(name)
+
+    def equation_scale(self, name: str) -> float:
+        """What ∂Π/∂q of a natural scalar q is measured by.
+
+        A force is as fine as those on the fields are: the lever is the size of what is modelled
+        over the change of q that strains it by one.
+        """
+        item = self.added.get(name)
+        if item is None:
+            return self.force_scale * (self.body.span / self.body.size_of(name))
+        return item.lever * (self.force_scale if item.force else 1.0)
+
+    @property
+    def multipliers(self) -> int:
+        """Negative eigenvalues of the Hessian that are equations, and no instability."""
+        return sum(item.multiplier for item in self.added.values())
+
+    @property
+    def conservative(self) -> bool:
+        """Whether all loads have a potential, whose Hessian tells stability."""
+        return all(item.conservative for item in self.discrete.values())
 
     def predict(
         self, correction: Floats | None, scalars: Mapping[str, float] | None = None

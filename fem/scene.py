@@ -88,6 +88,7 @@ class Scene(OwnCode):
         fixed: dict[str, float] = {}
         for effect in ordered:
             fixed |= effect.fixed_scalars()
+        self.take_in()
         self.hold(fixed)
         self._compile(potentials)
         self._constrain(constraints)
@@ -117,6 +118,8 @@ class Scene(OwnCode):
         lowered = ufl.algorithms.apply_algebra_lowering.apply_algebra_lowering(whole)
         for i, name in enumerate(body.scalars):
             conjugate = differentiate(lowered, body.scalar(name))
+            if conjugate is None:
+                continue  # only potentials with own code have it
             forms[f"conjugate {name}"] = conjugate
             forms[f"load {name}"] = ufl.derivative(conjugate, body.w, test)
             for other in list(body.scalars)[i:] if body.natural else ():
@@ -181,10 +184,15 @@ class Scene(OwnCode):
         ).astype(np.int32)
 
     def hold(self, scalars: Mapping[str, float]) -> None:
-        """Hold these natural scalars at given values, and no others: no kernel hangs on that."""
+        """Hold these natural scalars at given values, and no others: no kernel hangs on that.
+
+        One that symmetry keeps at zero may be held there.
+        """
         for name, value in scalars.items():
-            self.set_scalar(name, value)
-        self.natural = tuple(name for name in self.body.natural if name not in scalars)
+            if name in self.body.natural or not self.body.natural or value:
+                self.set_scalar(name, value)
+        kept = tuple(name for name in self.body.natural if name not in scalars)
+        self.natural = (*kept, *self.added)
 
     def exchange(self, potentials: Mapping[str, Discrete]) -> None:
         """Take other potentials with own code of the same effects; a state is to be set then."""
@@ -257,7 +265,7 @@ class Scene(OwnCode):
             mine = 0.0
             if f"energy {key}" in self._forms:
                 mine += compat.assemble_scalar(self._forms[f"energy {key}"])
-            elif key not in self.discrete:
+            elif key not in self.discrete or self.effects[key].shares:
                 continue
             if key in self.discrete:
                 mine += self.discrete[key].energy()
@@ -266,7 +274,8 @@ class Scene(OwnCode):
 
     def conjugate(self, name: str) -> float:
         """Work-conjugate −∂Π/∂q of a scalar q: the chamber volume in mm³ for the pressure."""
-        mine = -compat.assemble_scalar(self._forms[f"conjugate {name}"])
+        form = self._forms.get(f"conjugate {name}")
+        mine = 0.0 if form is None else -compat.assemble_scalar(form)
         mine += sum(discrete.conjugate(name) for discrete in self.discrete.values())
         return float(total(self.domain.comm, mine))
 
@@ -280,7 +289,9 @@ class Scene(OwnCode):
                 mine += compat.assemble_scalar(self._forms[key])
                 break
         value = float(total(self.domain.comm, mine))
-        self._second[first, second] = self._second[second, first] = value
+        self._second[first, second] = value
+        if self.conservative:
+            self._second[second, first] = value
         return value
 
     def _sum(self, form: Any, add: Iterable[Callable[[Floats], None]]) -> tuple[Floats, float]:
@@ -336,7 +347,7 @@ class Scene(OwnCode):
         """∂R/∂q of a scalar, (owned,); zero on constrained dofs unless these are wanted."""
         if name not in self._loads:
             fills = [functools.partial(item.add_load, name) for item in self.discrete.values()]
-            self._loads[name], _ = self._sum(self._forms[f"load {name}"], fills)
+            self._loads[name], _ = self._sum(self._forms.get(f"load {name}"), fills)
         vector = self._loads[name]
         return vector.copy() if constrained else np.where(self.free[: len(vector)], vector, 0.0)
 

@@ -37,6 +37,9 @@ CROWN_STRETCH = "crown_stretch"
 TWIST = "twist_deg"
 MOMENT = "blocked_moment_Nmm"
 AXIAL_FORCE = "axial_force_N"
+MOMENT_X = "moment_x_Nmm"
+MOMENT_Y = "moment_y_Nmm"
+TORQUE = "torque_Nmm"
 WORK = "work_mJ"
 STORED = "stored_mJ"
 MODES = "unstable_modes"
@@ -171,8 +174,12 @@ COLUMNS = (
     ),
     Column(MODES, "", "unstable modes with every load kept at its value", ELEMENTS),
     Column(ROOF_FORCE, "N", "force of the roof on the body", BODY),
-    Column("clamp_force_y_N", "N", "force of the clamp on the body along y", BODY),
-    Column("clamp_moment_x_Nmm", "N mm", "its moment about x", BODY),
+    Column("clamp_force_x_N", "N", "force of the clamp on the body along x", BODY),
+    Column("clamp_force_y_N", "N", "the same along y", BODY),
+    Column("clamp_force_z_N", "N", "the same along z", BODY),
+    Column("clamp_moment_x_Nmm", "N mm", "its moment about x, through x = y = z = 0", BODY),
+    Column("clamp_moment_y_Nmm", "N mm", "its moment about y, likewise", BODY),
+    Column("clamp_moment_z_Nmm", "N mm", "its moment about z, likewise", BODY),
     Column("contact_{obstacle}_y_N", "N", "force of an obstacle on the body along y", BODY),
     Column("contact_{obstacle}_z_N", "N", "the same along z", BODY),
     Column("contact_{obstacle}_moment_x_Nmm", "N mm", "its moment about x", BODY),
@@ -181,7 +188,10 @@ COLUMNS = (
     Column(BALANCE_FORCE, "", "what is left of all forces, over their scale", BODY),
     Column(BALANCE_MOMENT, "", "what is left of all moments, over theirs", BODY),
     Column(MOMENT, "N mm", "moment about the centroid, kept straight", UNIFORM),
-    Column(AXIAL_FORCE, "N", "axial force, kept in length", UNIFORM),
+    Column(AXIAL_FORCE, "N", "axial force with which it pushes; tension is negative", ELEMENTS),
+    Column(MOMENT_X, "N mm", "moment about the centroid with which it bends toward −y", ELEMENTS),
+    Column(MOMENT_Y, "N mm", "the same about its own y, toward x", ELEMENTS),
+    Column(TORQUE, "N mm", "torque with which it twists from x to y", ELEMENTS),
     Column(
         "section_kPa",
         "kPa",

@@ -31,10 +31,32 @@ class Constraint:
     value: float = 0.0
 
 
+@dataclasses.dataclass(frozen=True)
+class Natural:
+    """A global unknown that an effect brings: at an equilibrium the potential is stationary in it.
+
+    Attributes:
+        rest: its value at rest.
+        lever: scale of its equation −∂Π/∂q = 0, mm or 1; of a force, what it is to be multiplied
+            with by the scale of forces.
+        force: its equation is one of forces or moments, not of places.
+        multiplier: it forces an equation, which costs one negative eigenvalue of the Hessian.
+    """
+
+    rest: float
+    lever: float
+    force: bool
+    multiplier: bool
+
+
 class Discrete(Protocol):
     """A potential with its own energy, vector and matrix instead of a UFL density.
 
     Attributes:
+        natural: global unknowns that it brings, by name.
+        conservative: it has a potential. Of one that has none `conjugate` and `second_derivative`
+            give the equations of its unknowns all the same, which are not symmetric.
+        pair_units: units of force and place of each of `pairs`.
         index: global number of every piece that this rank holds, (n,); what it remembers of a
             step is one value a piece.
         block_dofs: local dofs of the fields that each piece couples, (n, k), always the same; those
@@ -42,6 +64,9 @@ class Discrete(Protocol):
         mixed: `add_lag` has all that a step with an old tangent lacks, so that such steps converge.
     """
 
+    natural: Mapping[str, Natural]
+    conservative: bool
+    pair_units: Mapping[str, tuple[str, str]]
     index: npt.NDArray[np.int64]
     block_dofs: npt.NDArray[np.int32]
     mixed: bool
@@ -95,6 +120,9 @@ class Discrete(Protocol):
     def second_derivative(self, first: str, second: str) -> float:
         """This rank's ∂²Π/∂q∂r of two global scalars."""
 
+    def pairs(self) -> dict[str, tuple[float, float]]:
+        """Forces and the places on which they do work, by name: where Π tells no work."""
+
     def state(self) -> dict[str, Floats]:
         """What a converged step must remember, this rank's part."""
 
@@ -108,10 +136,12 @@ class Effect:
     Attributes:
         fields: names of the fields it needs.
         outside: its forces act from outside, as a support's do; they have a resultant.
+        shares: global scalars that it brings whose work its `Discrete.pairs` do.
         units: by global scalar that it brings, the units of its value and of its work-conjugate.
     """
 
     fields: ClassVar[tuple[str, ...]] = ("u",)
+    shares: ClassVar[tuple[str, ...]] = ()
     outside: ClassVar[bool] = False
     units: ClassVar[Mapping[str, tuple[str, str]]] = {}
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
 
+from fem.effects.effect import Natural
 from fem.effects.mean_stretch import MeanStretch, Second
 from fem.kinematics.kinematics import Kinematics
 from fem.ranks import total
@@ -39,6 +41,16 @@ class FiberPotential:
         stiffness: axial stiffness EA of a whole fiber, N; of several that of every segment, (m,).
         tension_only: slack fibers carry nothing.
     """
+
+    natural: Mapping[str, Natural] = {}
+    conservative: bool = True
+    pair_units: Mapping[str, tuple[str, str]] = {}
+    thread: ClassVar[bool] = True
+    """Its pieces are those of a winding, whose forces are told."""
+
+    def pairs(self) -> dict[str, tuple[float, float]]:
+        """None: it has a potential."""
+        return {}
 
     def __init__(
         self,

@@ -79,7 +79,7 @@ class TwofoldAxis(Effect):
 
 
 class StraightAxis(Effect):
-    """Uniform bending with the curvature fixed at zero, and the stretch at one if wanted.
+    """Uniform bending with both curvatures fixed at zero, and the stretch at one if wanted.
 
     Args:
         stretch: fix the stretch too.
@@ -89,8 +89,10 @@ class StraightAxis(Effect):
         self.stretch = stretch
 
     def fixed_scalars(self) -> dict[str, float]:
-        """k = 0, and λ0 = 1."""
-        return {"curvature": 0.0} | ({"stretch": 1.0} if self.stretch else {})
+        """k_x = k_y = 0, and λ0 = 1."""
+        return {"curvature": 0.0, "side_curvature": 0.0} | (
+            {"stretch": 1.0} if self.stretch else {}
+        )
 
 
 class BlockedTip(Effect):

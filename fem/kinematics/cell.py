@@ -16,28 +16,37 @@ class Cell(Uniform):
     """A slice that repeats along the axis, with every fiber in it; x' depends on z too.
 
     Half a section is a slice between mirror planes. A whole section is a full pitch that repeats:
-    x' at its end is tied to x' at its start. Half a turn about the y axis through a point where a
-    fiber crosses x = 0 maps a helix onto itself, so that u = w = 0 there is no constraint, but
-    takes away what rigid motion is left.
+    x' at its end is tied to x' at its start. Half a turn about
+    the y axis through a point where a fiber crosses x = 0 maps a helix onto itself, so that
+    u = w = 0 there is no constraint, but takes away what rigid motion is left. Where k_y is an
+    unknown a turn about z is no more than another frame, and u = w = 0 chooses one.
 
     Args:
         domain: mesh of a slice from z = 0, with the points "pin" and "crown".
         fields: names of the fields that the effects ask for.
         length: L, mm.
-        twisted: τ is an unknown.
+        twisted: no mirror plane z = 0: τ is an unknown.
+        sideways: k_y is one; of a whole section alone.
+
+    Raises:
+        ValueError: tied ends on several ranks.
     """
 
     def __init__(
-        self, domain: Domain, fields: Iterable[str], length: float, twisted: bool = False
+        self,
+        domain: Domain,
+        fields: Iterable[str],
+        length: float,
+        twisted: bool = False,
+        sideways: bool = False,
     ) -> None:
-        extent = float(np.ptp(domain.data.nodes[:, 2]))
-        super().__init__(domain, fields, length, twisted, 3, extent)
         data = domain.data
-        if not data.half:
+        extent = float(np.ptp(data.nodes[:, 2]))
+        tied = not data.half
+        super().__init__(domain, fields, length, twisted, sideways, 3, extent, drifts=tied)
+        if tied:
             if domain.comm.size > 1:
                 raise ValueError("a slice with tied ends is solved on one rank")
-            pin = data.points["pin"]
-            self.pins += ((pin, 0), (pin, 2), (data.points["crown"], 0))
             start, end = (data.facet_nodes(name) for name in ("section_root", "section_tip"))
             pairs = np.unique(np.column_stack([end.ravel(), start.ravel()]), axis=0)
             self.ties = (self.node_dofs[pairs[:, 0]].ravel(), self.node_dofs[pairs[:, 1]].ravel())

@@ -43,14 +43,14 @@ class SectionFit:
         return found[0], found[1], found[2]
 
     def row(self, slopes: Floats) -> Floats:
-        """Σ slopes_i ∂c_i/∂w on the owned dofs, (owned,).
+        """Σ slopes_ki ∂(c, a_x, a_y)_ki/∂w on the owned dofs, (owned,).
 
         Args:
-            slopes: of something in c, (3,).
+            slopes: of something in c, a_x and a_y, (3, 3).
         """
         row = np.zeros(self._body.owned)
-        by_c = slopes[: self._body.components] * self._kept[0]
-        row[self._dofs] = np.outer(self._rows[0], by_c)
+        by_fit = slopes[:, : self._body.components] * self._kept
+        row[self._dofs] = self._rows.T @ by_fit
         follow, lead = self._body.ties
         np.add.at(row, lead, row[follow])
         row[follow] = 0.0

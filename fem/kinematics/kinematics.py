@@ -42,7 +42,7 @@ class Carry:
 
     Attributes:
         stretch: λ0.
-        spin: (k, 0, τ), 1/mm.
+        spin: (k_x, k_y, τ), 1/mm.
         rates: by scalar, its derivative as a pair (of the vector λ0 e_z, of the spin).
     """
 
@@ -172,6 +172,10 @@ class Kinematics:
 
     def carry(self) -> Carry | None:
         """How the axis carries positions along z at the present state; None in a 3-D body."""
+        return None
+
+    def turned(self) -> float | None:
+        """All that the centre-line turns, rad, where the bending angle is a part of it alone."""
         return None
 
     def dx(self) -> Any:

@@ -18,13 +18,22 @@ class Section(Uniform):
         domain: mesh of quadrilaterals with the point "pin".
         fields: names of the fields that the effects ask for.
         length: L, mm.
-        twisted: τ and w(X, Y) join the unknowns.
+        twisted: no mirror plane z = 0: τ and w(X, Y) join the unknowns.
+        sideways: k_y joins them; a whole section alone.
     """
 
     def __init__(
-        self, domain: Domain, fields: Iterable[str], length: float, twisted: bool = False
+        self,
+        domain: Domain,
+        fields: Iterable[str],
+        length: float,
+        twisted: bool = False,
+        sideways: bool = False,
     ) -> None:
-        super().__init__(domain, fields, length, twisted, 3 if twisted else 2, extent=1.0)
+        components = 3 if twisted else 2
+        # half a turn about y leaves no shift along z
+        drifts = twisted and not domain.data.half
+        super().__init__(domain, fields, length, twisted, sideways, components, 1.0, drifts)
 
     def _relative(self) -> tuple[Any, Any]:
         zero = ufl.constantvalue.Zero()

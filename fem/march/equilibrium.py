@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fem.march.predictor import Predictor
-from fem.march.records import MODES, State, measure
+from fem.march.records import MODES, TURN, State, measure
 from fem.ranks import total
 from fem.scene import Scene
 from fem.solver.bordered import SideCondition
@@ -60,8 +60,8 @@ class Equilibrium:
 
     @property
     def tells_stability(self) -> bool:
-        """Whether the solver counts negative pivots, and with them unstable modes."""
-        return self.newton.factor.counts
+        """Whether negative pivots tell unstable modes: solver and loads must let them."""
+        return self.newton.factor.counts and self.scene.conservative
 
     def capture(self) -> State:
         """The present state of the scene."""
@@ -73,6 +73,9 @@ class Equilibrium:
                 measures[measure("conjugate", name)] = scene.conjugate(name)
         if self._control is not None:
             measures["control"] = self._control.value()
+        turned = scene.body.turned()
+        if turned is not None:
+            measures[TURN] = turned
         return State(
             w=scene.w.copy(),
             scalars=scalars,
@@ -124,7 +127,7 @@ class Equilibrium:
         top = float(np.max(np.abs(nodal), initial=0.0))
         largest = max(scene.domain.comm.allgather(top)) / body.span
         for name, value in natural.items():
-            largest = max(largest, abs(value) / body.size_of(name))
+            largest = max(largest, abs(value) / scene.size_of(name))
         step = sign * TINY / max(largest, 1e-300)
         scene.set_scalar(scalar, base.scalars[scalar] + step)
         for name, value in natural.items():
@@ -261,4 +264,5 @@ class Equilibrium:
         return start
 
     def _modes(self) -> int:
-        return self.newton.negative_pivots(self.scene.natural) - self._volumetric
+        pivots = self.newton.negative_pivots(self.scene.natural)
+        return pivots - self._volumetric - self.scene.multipliers

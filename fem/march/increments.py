@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from fem.march.equilibrium import STILL
 from fem.march.predictor import distinct, lagrange
-from fem.march.records import Ramp, Rules, State, measure
+from fem.march.records import TURN, Ramp, Rules, State, measure
 from fem.solver.newton import Outcome
 
 
@@ -20,12 +20,17 @@ def guess(states: Sequence[State], key: str, target: float, name: str) -> float:
 
 
 def turn_limit(states: Sequence[State], drive: str, rules: Rules) -> float:
-    """Increment that changes the control quantity by `turn`, from the last two states."""
+    """Increment that turns the body by `turn`, from the last two states."""
     if "control" not in states[-1].measures or len(states) < min(rules.memory, 3):
         return np.inf
     a, b = (state.measures for state in states[-2:])
-    turned = abs(b["control"] - a["control"])
+    turned = abs(_turned(b) - _turned(a))
     return float(abs(b[drive] - a[drive]) * rules.turn / max(turned, 1e-12))
+
+
+def _turned(measures: Mapping[str, float]) -> float:
+    """The control quantity, or where it is a part of the turn all of that, rad."""
+    return measures.get(TURN, measures.get("control", 0.0))
 
 
 def next_size(size: float, outcome: Outcome, largest: float, rules: Rules) -> float:
@@ -47,7 +52,7 @@ def first_size(
 ) -> float:
     """First increment of a ramp, as it is given or by the linear response.
 
-    It changes the control quantity by `first_turn`, a twentieth of the load where nothing turns,
+    It turns the body by `first_turn`, a twentieth of the load where nothing turns,
     and changes the conjugate by no more than `swell`, unless a guide knows the way.
 
     Args:
@@ -62,7 +67,7 @@ def first_size(
         return abs(ramp.first)
     now = base.measures
     change = {name: abs(value - now[name]) for name, value in seed.measures.items()}
-    driven, turned = change[ramp.key], change.get("control", 0.0)
+    driven, turned = change[ramp.key], _turned(change)
     volume = measure("conjugate", ramp.scalar)
     if driven < 1e-300:
         return span / 20

@@ -267,11 +267,10 @@ class March:
         """
         position, state, scalar = self.position, self.states[-1], ramp.scalar
         position.lost = new.measures[way.key]
-        gap = abs(position.lost - state.measures[way.key])
-        least = gap <= LEAST_GAP * way.span
+        least = (gap := abs(position.lost - state.measures[way.key])) <= LEAST_GAP * way.span
         keys = (way.key, measure("value", scalar))
         sharp = least or all(near(k, self.rest, state.measures[k], new.measures[k]) for k in keys)
-        if sharp and way.kind == "value":
+        if sharp and way.kind == "value" and ramp.conjugated:
             self.equilibrium.restore(state)
             self._follow_path(ramp)
             return True
@@ -291,7 +290,8 @@ class March:
             self.equilibrium.restore(state)
             return self._give_up(ramp, dataclasses.replace(outcome, reason=LOST), "")
         # another branch may be flat: its load hardly grows, or falls
-        position.path_following = ramp.drive == "value" or bool(position.toward)
+        follows = ramp.drive == "value" and ramp.conjugated
+        position.path_following = follows or bool(position.toward)
         return self._enter_all(ramp, found)
 
     def _round(self, ramp: Ramp, way: Way) -> bool:

@@ -17,6 +17,8 @@ Floats = npt.NDArray[np.float64]
 DRIVES = ("value", "conjugate", "control")
 """What a ramp may drive."""
 MODES = "modes"
+TURN = "turn"
+"""Measure of all that a body turns, where its bending angle is a part of that."""
 """Name of the measure that counts unstable modes."""
 
 
@@ -57,6 +59,8 @@ class Ramp:
         at: values of the control quantity to be hit exactly wherever they are crossed.
         until: value of the control quantity at which the run ends where it is crossed, up or down;
             None: at the target.
+        conjugated: its work-conjugate tells and leads where the load has a greatest value; that
+            of a given deformation, or of a load without a potential, does not.
     """
 
     scalar: str
@@ -67,6 +71,7 @@ class Ramp:
     stops: tuple[float, ...] = ()
     at: tuple[float, ...] = ()
     until: float | None = None
+    conjugated: bool = True
 
     def __post_init__(self) -> None:
         if self.drive not in DRIVES:

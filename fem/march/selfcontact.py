@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from analytic.path import CentreLine
 from fem.kinematics.kinematics import Kinematics
-from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST, Uniform
+from fem.kinematics.uniform import STRETCH, Uniform
 from fem.march.frames import Frames, Shape
 from fem.march.records import State
 
@@ -185,7 +185,7 @@ class UniformRod:
             for name in self._body.natural
         }
         w = (1 - share) * old.w + share * new.w
-        spin = np.array([scalars[CURVATURE], 0.0, scalars.get(TWIST, 0.0)])
+        spin = self._body.spin(scalars)
         along = np.clip(self._z, 0.0, self._body.length)
         fit = self._body.fit
         line = CentreLine.of(spin, scalars[STRETCH], *fit.read(w))

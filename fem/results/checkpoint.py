@@ -147,7 +147,7 @@ class Archive:
     def fiber_force(self) -> Floats | None:
         """Present force of every fiber segment, N, on rank 0; None without fibers; collective."""
         for discrete in self._scene.discrete.values():
-            if isinstance(discrete, FiberPotential):
+            if isinstance(discrete, FiberPotential) and discrete.thread:
                 return _gather(self._comm, discrete.index, discrete.force)
         return None
 

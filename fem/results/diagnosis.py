@@ -187,7 +187,7 @@ class Diagnosis:
         """Fibers that carry nothing."""
         comm = self._scene.domain.comm
         for item in self._scene.discrete.values():
-            if isinstance(item, FiberPotential) and item.tension_only:
+            if isinstance(item, FiberPotential) and item.thread and item.tension_only:
                 lengths = np.array([item.length[item.slack].sum(), item.length.sum()])
                 slack, whole = total(comm, lengths)
                 if slack > SLACK * whole:

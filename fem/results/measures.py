@@ -76,7 +76,8 @@ class Balance:
     Attributes:
         supports: what each support, and each effect that acts from outside, does to the body; a
             mirror plane is internal and not among them.
-        force: what is left of all forces, relative to the greatest support force.
+        force: what is left of all forces, relative to the greatest support force, or to the
+            greatest moment over the body's extent.
         moment: what is left of all moments about the origin, likewise.
     """
 
@@ -106,6 +107,8 @@ def balance(scene: Scene, mirror: str = "symmetry") -> Balance:
         total += resultant(scene, load, None)
     forces = [float(np.linalg.norm(s.force)) for s in supports.values()]
     moments = [float(np.linalg.norm(s.moment)) for s in supports.values()]
+    # a moment alone is held without a force
+    forces.append(max(moments, default=0.0) / scene.body.span)
     return Balance(
         supports,
         float(np.linalg.norm(total.force)) / max([*forces, 1e-30]),
@@ -118,7 +121,7 @@ def fiber_forces(scene: Scene) -> tuple[float, float] | None:
     ranges = [
         discrete.force_range()
         for discrete in scene.discrete.values()
-        if isinstance(discrete, FiberPotential)
+        if isinstance(discrete, FiberPotential) and discrete.thread
     ]
     if not ranges:
         return None

@@ -56,10 +56,9 @@ class GivenConjugate:
 
 
 class Stationary:
-    """∂Π/∂q · l/f = 0: the potential is stationary in a natural scalar.
+    """∂Π/∂q / s = 0: the potential is stationary in a natural scalar.
 
-    The lever l is the size of what is modelled over the change of q that strains it by one, f the
-    scale of the forces, so that the condition is as fine as those on the forces.
+    The scale s makes the condition as fine as those on the forces.
 
     Args:
         scene: the scene.
@@ -68,11 +67,10 @@ class Stationary:
 
     def __init__(self, scene: Scene, name: str) -> None:
         self._scene, self._name = scene, name
-        self._lever = scene.body.span / scene.body.size_of(name)
 
     @property
     def _scale(self) -> float:
-        return self._scene.force_scale * self._lever
+        return self._scene.equation_scale(self._name)
 
     def value(self) -> float:
         """What is left of the equation, scaled."""

@@ -379,8 +379,8 @@ def _unknown(case: Case, model: MeshedModel, entries: Sequence[Known]) -> Iterat
     if all(known.section != case.actuator.section for known in entries):
         yield f"nothing is known of the section {case.actuator.section}"
     for effect in case.effects:
-        if effect.alone():
-            yield f"{effect.alone()}: what that does to the error is not known"
+        if effect.unmeasured():
+            yield f"{effect.unmeasured()}: what that does to the error is not known"
     if case.turns is None:
         yield "nothing is known of actuators without a winding"
     elif case.turns.pitch is None:

@@ -100,7 +100,7 @@ def answer(case: Case, rows: Sequence[col.Row], run: Mapping[str, Any]) -> Answe
         *_tip(case, rows),
         *_turns(rows),
         *_contacts(case, rows),
-        *_critical(run),
+        *_critical(case, run),
         *_strain(run),
         *_errors(case, model, run),
         *_calibrated(run),
@@ -300,10 +300,12 @@ def _contacts(case: Case, rows: Sequence[col.Row]) -> Iterator[Entry]:
             yield Entry(f"force of the {touch.obstacle}", quantity(touch.force, "N"), "at the end")
 
 
-def _critical(run: Mapping[str, Any]) -> Iterator[Entry]:
+def _critical(case: Case, run: Mapping[str, Any]) -> Iterator[Entry]:
     """Limit points, and where stability is lost; or that nobody has looked for it."""
     if run.get("stability_checked") is False:
-        yield Entry("stability", "not checked", "solver.linear: iterative counts no unstable modes")
+        iterative = case.solver.linear == "iterative"
+        why = "solver.linear: iterative" if iterative else "a load without a potential"
+        yield Entry("stability", "not checked", f"{why}: no unstable modes counted")
     for point in run.get("critical_points") or ():
         before, beyond = point["unstable_modes_before"], point["unstable_modes_beyond"]
         if beyond <= before:

@@ -9,7 +9,6 @@ from fiberbend.calibration.calibrate import known, waits
 from fiberbend.calibration.record import words
 from fiberbend.case.case import Case
 from fiberbend.models.choice import meshed
-from fiberbend.models.uniform import twists
 
 _STEPS = (5, 2)
 """Load steps of a cell, bent and kept straight."""
@@ -44,5 +43,5 @@ def seconds(case: Case) -> float:
     """Seconds to calibrate a case whose winding waits for its numbers, kernels compiled."""
     cell = cases.bent_cell(case, reach.first(case))
     model = meshed(cell)
-    steps = _STEPS[0] if twists(case) else sum(_STEPS)
+    steps = _STEPS[0] if case.turns is not None and case.turns.twists else sum(_STEPS)
     return _FIT_S + steps * model.step_seconds(cell, model.size(cell))

@@ -17,7 +17,6 @@ from fiberbend.calibration.record import Calibration
 from fiberbend.calibration.solving import Reading, Small
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.models.uniform import twists
 from materials.bulging import Bulging
 
 Floats = npt.NDArray[np.float64]
@@ -84,7 +83,7 @@ def cell_states(case: Case, reach: Reach) -> CellStates:
     if not bent or bent[0].pressure <= 0:
         raise CalibrationError(f"no pressure bends the cell of this section far enough: {reason}")
     straight: tuple[Reading, ...] = ()
-    if not twists(case):
+    if case.turns is not None and not case.turns.twists:
         small = Small(cases.straight_cell(case, reach, max(r.pressure for r in bent)), small)
         states, report = small.march()
         straight = tuple(small.read(state) for state in states)

@@ -9,7 +9,7 @@ import dataclasses
 from typing import TYPE_CHECKING
 
 from fiberbend.case import case
-from fiberbend.effects.effect import Requests, Site
+from fiberbend.effects.effect import Requests, Site, mirror_breakers
 
 if TYPE_CHECKING:
     from fiberbend.states.obstacles import Shape
@@ -60,6 +60,8 @@ def site(given: case.Case) -> Site:
         actuator=dimensions(given.actuator),
         materials={part: material(spec) for part, spec in specs.items()},
         straight=given.straight,
+        mirrored=not any(mirror_breakers(given.effects)),
+        weight=next((w for e in given.effects if (w := e.weight()) is not None), None),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fiberbend.case.case import Case, Output, Solver
+from fiberbend.case.symmetry import Symmetry
 from fiberbend.effects.effect import Effect
 from fiberbend.schema.problems import CaseError, Problem
 
@@ -43,4 +44,7 @@ def as_section(case: Case, load: Effect) -> Case:
 
 def section_guides(case: Case) -> bool:
     """Whether a section bends as the body of a case does, between its ends."""
-    return case.inflation is not None and all(effect.follows_section() for effect in case.effects)
+    if case.inflation is None or not all(effect.follows_section() for effect in case.effects):
+        return False
+    beside = (effect.beside() for effect in case.effects)
+    return Symmetry.of([effect for effect in beside if effect is not None]).plane

@@ -8,8 +8,10 @@ from fiberbend.states.bend import in_frame
 from fiberbend.states.recovery import SplitNodes
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 from fiberbend.states.stack import root_section
+from geometry.actuator import Actuator
 from geometry.mesh.data import Floats, Ints, facet_positions
 from geometry.mesh.reference import shape_functions
+from geometry.winding.strip import Window, covered
 
 _MIRROR = np.array([-1.0, 1.0])
 
@@ -92,6 +94,20 @@ class Crosscut:
     def winding(self, state: Snapshot | None) -> Floats:
         """The line on which the winding lies, as polylines, (k, level + 1, 2), mm."""
         lines: Floats = self._along @ self.nodes(state)[self.mesh.facet_nodes("winding")]
+        return np.concatenate([lines, lines * _MIRROR]) if self.mesh.half else lines
+
+    def fabric(self, state: Snapshot | None, actuator: Actuator, window: Window) -> Floats:
+        """The part of that line within a window, as polylines, (k, level + 1, 2), mm.
+
+        Args:
+            state: the state; None: undeformed.
+            actuator: dimensions.
+            window: on its outline.
+        """
+        level = self._along.shape[0] - 1
+        cells, points = covered(self.mesh, actuator, window, level)
+        values = shape_functions("quadrilateral", points)[0]
+        lines = values @ self.nodes(state)[self.mesh.cells[cells]]
         return np.concatenate([lines, lines * _MIRROR]) if self.mesh.half else lines
 
     def bulge(self, state: Snapshot) -> float | None:

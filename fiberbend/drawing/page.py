@@ -26,8 +26,9 @@ COLORS = {
     "sheath": "#dcdcd4",
     "fiber": "#1a1a1a",
     "winding": "#566573",
+    "fabric": "#2e7d4f",
 }
-"""Colour of each region and of the fibers."""
+"""Colour of each region, of the fibers and of fabric."""
 
 SMEARED = "winding spread over its surface"
 """Also of a calibrated one: there are no single turns to draw."""

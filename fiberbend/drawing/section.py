@@ -41,6 +41,7 @@ _SMALL = 11.5
 _MARGIN = 0.06
 _LINE = "#303030"
 _WINDING: dict[str, Any] = {"color": COLORS["winding"], "linewidth": 2.4}
+_FABRIC: dict[str, Any] = {"color": COLORS["fabric"], "linewidth": 5.0}
 _AT_REST: dict[str, Any] = {"color": "#777777", "linewidth": 0.9, "linestyle": (0, (4, 3))}
 
 
@@ -213,6 +214,8 @@ class Sections:
             _draw_lines(axes, rest, **_AT_REST)
             if self._smeared:
                 _draw_lines(axes, cut.winding(state) + up, **_WINDING)
+            for lines in self._fabric(state):
+                _draw_lines(axes, lines + up, **_FABRIC)
             self._mark_bulge(axes, state, up)
         handles: list[Any] = [
             Patch(facecolor=color, edgecolor="0.4", label=NAMES.get(name, name))
@@ -220,6 +223,8 @@ class Sections:
         ]
         if self._smeared:
             handles.append(Line2D([], [], label=SMEARED, **_WINDING))
+        if self._scenery.strips:
+            handles.append(Line2D([], [], label="fabric", **_FABRIC))
         page.legend([*handles, Line2D([], [], label="at rest", **_AT_REST)])
         page.scale()
         page.save(target)
@@ -276,6 +281,13 @@ class Sections:
         mesh.set_array(values)
         # the limits are set: finding them again takes longer than drawing
         axes.add_collection(mesh, autolim=False)
+
+    def _fabric(self, state: Snapshot) -> list[Floats]:
+        """Polylines of each strip of fabric."""
+        actuator, strips = self._scenery.actuator, self._scenery.strips
+        if actuator is None:
+            return []
+        return [self._cut.fabric(state, actuator, window) for window in strips]
 
     def _shift(self, state: Snapshot) -> Floats:
         if self._cut.bulge(state) is None:

@@ -2,132 +2,77 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+from fiberbend.effects.records import (
+    ARC as ARC,
+)
+from fiberbend.effects.records import (
+    CHAMBER as CHAMBER,
+)
+from fiberbend.effects.records import (
+    ENDS as ENDS,
+)
+from fiberbend.effects.records import (
+    HELD as HELD,
+)
+from fiberbend.effects.records import (
+    HOOPS as HOOPS,
+)
+from fiberbend.effects.records import (
+    SIDE as SIDE,
+)
+from fiberbend.effects.records import (
+    SPACE as SPACE,
+)
+from fiberbend.effects.records import (
+    STRIPS as STRIPS,
+)
+from fiberbend.effects.records import (
+    THREAD as THREAD,
+)
+from fiberbend.effects.records import (
+    TURNS as TURNS,
+)
+from fiberbend.effects.records import (
+    TWIST as TWIST,
+)
+from fiberbend.effects.records import (
+    VOLUME as VOLUME,
+)
+from fiberbend.effects.records import (
+    WOUND as WOUND,
+)
+from fiberbend.effects.records import (
+    Built as Built,
+)
+from fiberbend.effects.records import (
+    Draft as Draft,
+)
+from fiberbend.effects.records import (
+    Inflation as Inflation,
+)
+from fiberbend.effects.records import (
+    Requests as Requests,
+)
+from fiberbend.effects.records import (
+    Site as Site,
+)
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Spec
 
 if TYPE_CHECKING:
-    from fem.effects.effect import Effect as Term
-    from fem.march.records import Ramp, Rules
+    from fem.march.records import Rules
     from fem.solver.newton import Settings
     from fiberbend.effects.wound.turns import Turns
     from fiberbend.states.obstacles import Shape
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
     from geometry.sections.size import MeshSize, Strips
-    from geometry.winding.segments import EmbeddedFibers
+    from geometry.winding.strip import Window
     from materials.bulging import Bulging
-    from materials.material import Material
-
-CHAMBER = "chamber"
-"""A model has the chamber that a pressure inflates."""
-WOUND = "wound"
-"""A model has the thread around the body, in turns, spread, or as a fixed circumference."""
-ARC = "arc"
-"""A model bends uniformly all along, so that it can be kept straight all along."""
-SPACE = "space"
-"""A model is a whole body in space, with everything that can act on one."""
-ENDS = "ends"
-"""A model gives the force of a support of the tip."""
-STRIPS = "strips"
-"""Roof and post are surfaces of the model, sheath and cap under them yield."""
-VOLUME = "volume"
-"""A model can be driven by the volume of its chamber."""
-TWIST = "twist"
-"""A model can twist."""
-THREAD = "thread"
-"""A winding has its pitch and its thread stretches."""
-TURNS = "turns"
-"""Every turn of a winding lies where it is wound."""
-HOOPS = "hoops"
-"""A circumference can be fixed."""
-
-
-@dataclasses.dataclass(frozen=True)
-class Inflation:
-    """How the chamber is loaded: one of the three is given.
-
-    Attributes:
-        to: pressure at the end, MPa.
-        volume: chamber volume at the end, mm³.
-        angle: bending angle at the end, rad.
-    """
-
-    to: float | None = None
-    volume: float | None = None
-    angle: float | None = None
-
-
-@dataclasses.dataclass(frozen=True)
-class Draft:
-    """What is valid of a case that is being checked.
-
-    Attributes:
-        actuator: its dimensions, where they go together, else None.
-        length: of the chamber, mm, where it is valid, else None.
-        effects: by their paths.
-    """
-
-    actuator: Actuator | None
-    length: float | None
-    effects: Mapping[str, Effect]
-
-
-@dataclasses.dataclass(frozen=True)
-class Site:
-    """The actuator of a case as its effects see it.
-
-    Attributes:
-        actuator: dimensions.
-        materials: of each of its parts.
-        straight: an effect keeps the actuator from bending.
-        origin: z on the actuator where the mesh of a slice that repeats begins, mm.
-    """
-
-    actuator: Actuator
-    materials: Mapping[str, Material]
-    straight: bool
-    origin: float = 0.0
-
-
-@dataclasses.dataclass(frozen=True)
-class Requests:
-    """What a case asks of the path of a load.
-
-    Attributes:
-        first: first step, MPa, or None.
-        largest: greatest step, MPa, or None.
-        at_pressures: pressures to be hit, MPa.
-        at_angles: bending angles to be hit under any load, rad.
-        stop_at_angle: where the run ends early, rad, or None.
-    """
-
-    first: float | None
-    largest: float | None
-    at_pressures: tuple[float, ...]
-    at_angles: tuple[float, ...]
-    stop_at_angle: float | None
-
-
-@dataclasses.dataclass(frozen=True)
-class Built:
-    """An effect as the finite-element code takes it.
-
-    Attributes:
-        terms: summands of the potential, constraints.
-        ramps: loads of the whole actuator, in order.
-        fibers: thread on the mesh, if the effect has any.
-        smeared: that thread is spread over its surface.
-    """
-
-    terms: tuple[Term, ...]
-    ramps: tuple[Ramp, ...] = ()
-    fibers: EmbeddedFibers | None = None
-    smeared: bool = False
 
 
 class Effect(Spec):
@@ -142,6 +87,8 @@ class Effect(Spec):
     """The key under which a case lists it."""
     load: ClassVar[bool] = False
     """True where the march has something to ramp."""
+    several: ClassVar[bool] = False
+    """True where a case may list it more than once."""
     needs_density: ClassVar[bool] = False
     """True where it needs the density of every material."""
 
@@ -158,6 +105,21 @@ class Effect(Spec):
     def mirror_breaker(self) -> str:
         """Why x = 0 is no mirror plane of it; empty where it is one."""
         return f"{self.name} is not known to be mirror-symmetric"
+
+    def end_breaker(self) -> str:
+        """Why z = 0, and with it others along the axis, is no mirror plane of it; empty: it is.
+
+        Without that plane a body that bends uniformly may twist, and its sections may warp.
+        """
+        return f"{self.name} is not known to be alike forward and backward"
+
+    def turn_breaker(self) -> str:
+        """Why half a turn about y does not map it onto itself; empty where it does.
+
+        Where neither that turn nor the mirror planes do, a body that bends uniformly may bend to
+        the side.
+        """
+        return f"{self.name} is not known to be its own image by half a turn about y"
 
     def bends(self) -> bool:
         """Whether it may bend an actuator that is alike above and below."""
@@ -215,6 +177,10 @@ class Effect(Spec):
         """How it loads the chamber; None where it does not."""
         return None
 
+    def weight(self) -> tuple[float, float, float] | None:
+        """Acceleration by which it makes everything heavy, mm/s²; None where it does not."""
+        return None
+
     def winds(self) -> bool:
         """Whether it winds thread around the body."""
         return False
@@ -243,6 +209,10 @@ class Effect(Spec):
         """Strips of the surface that a mesh must show for it."""
         return None
 
+    def fixes_angle(self) -> bool:
+        """Whether it holds the bending angle, so that no load can reach one."""
+        return "curvature" in self.fixed_scalars()
+
     def fixed_scalars(self) -> tuple[str, ...]:
         """Global unknowns of uniform bending that it fixes."""
         return ()
@@ -265,6 +235,10 @@ class Effect(Spec):
         Obstacles are named as in `obstacle_shapes`; those whose force is not known are left out.
         """
         return {}
+
+    def windows(self, actuator: Actuator) -> list[Window]:
+        """Parts of the outline that it covers with fabric, as pictures show them."""
+        return []
 
     def curves(self, actuator: Actuator) -> list[Floats]:
         """Polylines in space, (n, 3), mm, that are to be seen in the mesh file."""
@@ -301,6 +275,14 @@ class Effect(Spec):
     def alone(self) -> str:
         """What acts on the run and on no model beside it, in words; empty where nothing does."""
         return f"{self.name} acts"
+
+    def unmeasured(self) -> str:
+        """What of it the measured errors of meshes do not hold for, in words; empty: they hold."""
+        return self.alone()
+
+    def no_closed_form(self) -> str:
+        """Why no closed form is drawn beside a case with it; empty where one is."""
+        return ""
 
     # --- increment control ---------------------------------------------------------------------
 

@@ -44,6 +44,12 @@ class GravityEffect(Effect):
         """None: the model's own errors were measured with it."""
         yield from ()
 
+    def weight(self) -> tuple[float, float, float]:
+        """Along its direction."""
+        sign = 1.0 if self.direction[0] == "+" else -1.0
+        x, y, z = (self.acceleration * sign * (axis == self.direction[1]) for axis in "xyz")
+        return x, y, z
+
     def alone(self) -> str:
         """No section has weight."""
         return "gravity acts"
@@ -57,11 +63,9 @@ class GravityEffect(Effect):
         from fem.effects.gravity import Gravity
         from fem.march.records import Ramp
 
-        sign = 1.0 if self.direction[0] == "+" else -1.0
         density = {
             region: material.mass_density
             for region, material in site.materials.items()
             if region in mesh.regions and material.mass_density is not None
         }
-        x, y, z = (self.acceleration * sign * (axis == self.direction[1]) for axis in "xyz")
-        return Built((Gravity(density, (x, y, z)),), (Ramp(Gravity.scalar, 1.0, first=1.0),))
+        return Built((Gravity(density, self.weight()),), (Ramp(Gravity.scalar, 1.0, first=1.0),))

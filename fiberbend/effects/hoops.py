@@ -23,6 +23,14 @@ class HoopsEffect(Effect):
         """None: hoops are symmetric."""
         return ""
 
+    def end_breaker(self) -> str:
+        """None: hoops are symmetric."""
+        return ""
+
+    def turn_breaker(self) -> str:
+        """None: hoops are symmetric."""
+        return ""
+
     def bends(self) -> bool:
         """They hold above as below."""
         return False

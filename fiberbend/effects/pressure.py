@@ -46,6 +46,14 @@ class PressureEffect(Effect):
         """None: it acts on both sides alike."""
         return ""
 
+    def end_breaker(self) -> str:
+        """None: it acts alike all along."""
+        return ""
+
+    def turn_breaker(self) -> str:
+        """None: it acts alike all along."""
+        return ""
+
     def bends(self) -> bool:
         """It acts above as below."""
         return False

@@ -28,6 +28,14 @@ class StraightEffect(Effect):
         """None: straight is symmetric."""
         return ""
 
+    def end_breaker(self) -> str:
+        """None: straight is symmetric."""
+        return ""
+
+    def turn_breaker(self) -> str:
+        """None: straight is symmetric."""
+        return ""
+
     def bends(self) -> bool:
         """It keeps it from bending."""
         return False
@@ -43,8 +51,9 @@ class StraightEffect(Effect):
         return True
 
     def fixed_scalars(self) -> tuple[str, ...]:
-        """Curvature, and stretch where that is fixed."""
-        return ("curvature",) if self.stretch == "free" else ("curvature", "stretch")
+        """Both curvatures, and stretch where that is fixed."""
+        bends = ("curvature", "side_curvature")
+        return bends if self.stretch == "free" else (*bends, "stretch")
 
     def uncertainties(self, straight: bool) -> Iterator[str]:
         """None: the model's own errors were measured with it."""

@@ -11,9 +11,13 @@ from fiberbend.effects.blocked_tip import BlockedTipEffect
 from fiberbend.effects.contact import ContactEffect
 from fiberbend.effects.effect import Effect
 from fiberbend.effects.gravity import GravityEffect
+from fiberbend.effects.hold import HoldEffect
 from fiberbend.effects.hoops import HoopsEffect
 from fiberbend.effects.pressure import PressureEffect
 from fiberbend.effects.straight import StraightEffect
+from fiberbend.effects.strip import StripEffect
+from fiberbend.effects.tip.load import TipLoadEffect
+from fiberbend.effects.tip.mass import TipMassEffect
 from fiberbend.effects.winding import WindingEffect
 from fiberbend.schema.quantities import Spec
 
@@ -27,9 +31,13 @@ EFFECTS: dict[str, type[Effect]] = {
         BlockedTipEffect,
         ContactEffect,
         StraightEffect,
+        StripEffect,
+        HoldEffect,
+        TipLoadEffect,
+        TipMassEffect,
     )
 }
-"""Each at most once in a case."""
+"""Each at most once in a case, but for those of which there may be several."""
 
 
 class _OneEffect(Spec):

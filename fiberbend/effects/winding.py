@@ -20,10 +20,10 @@ from fiberbend.effects.effect import (
 )
 from fiberbend.effects.wound.by_families import ByFamilies
 from fiberbend.effects.wound.by_pattern import ByPattern
-from fiberbend.effects.wound.family import Around, FamilySpec, fiber_problems
+from fiberbend.effects.wound.family import Around, FamilySpec, bend, fiber_problems
 from fiberbend.effects.wound.room import rounded
 from fiberbend.effects.wound.thread import BulgingSpec, FiberSpec
-from fiberbend.effects.wound.threads import Threads
+from fiberbend.effects.wound.threads import Threads, stiffness_of
 from fiberbend.effects.wound.turns import Turns
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Length, LengthOrZero, Quantity
@@ -33,9 +33,8 @@ if TYPE_CHECKING:
     PatternName = str
     from fem.effects.effect import Effect as Term
     from geometry.actuator import Actuator
-    from geometry.mesh.data import Floats, Ints, MeshData
+    from geometry.mesh.data import Floats, MeshData
     from geometry.winding.helix import Winding
-    from geometry.winding.ribbons import Ribbons
     from geometry.winding.segments import EmbeddedFibers
     from materials.bulging import Bulging
 else:
@@ -164,9 +163,21 @@ class WindingEffect(Effect):
         """A pattern with a hand, families that are not balanced; nothing is known of wrong ones."""
         return "" if any(self._wrong("")) else self._breaker
 
+    def end_breaker(self) -> str:
+        """Mirror planes across the axis change the hand too, and leave threads along it."""
+        return self._threads.end_breaker(self._spread)
+
+    def turn_breaker(self) -> str:
+        """Half a turn keeps the hand, and moves starts where turns lie by themselves."""
+        return self._threads.turn_breaker(self._spread)
+
+    @property
+    def _spread(self) -> bool:
+        return self.representation not in (DISCRETE, None)
+
     def bends(self) -> bool:
-        """Half a turn about the axis maps every pattern onto itself, half a pitch on."""
-        return False
+        """Where its threads are not alike above and below."""
+        return bend(self.families or (), self.around)
 
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
         """Ribbon and thread, and whether there is room for them."""
@@ -292,10 +303,6 @@ class WindingEffect(Effect):
         """The axis of every fiber."""
         return self._threads.curves(actuator, self.width, self._lines(self.width))
 
-    def not_beside(self) -> str:
-        """Threads that bend it sideways."""
-        return self._threads.sideways()
-
     def follows_section(self) -> bool:
         """A body that twists leaves the plane of its section."""
         return not self._breaker
@@ -365,7 +372,7 @@ class WindingEffect(Effect):
         flat = mesh.nodes.shape[1] == 2
         if self.representation in (DISCRETE, None):
             segments, which = embed_families(mesh, actuator, laid)
-            stiffness = _stiffness(threads, laid, which)
+            stiffness = stiffness_of(threads, laid, which)
             return Built((Winding(segments, stiffness, slack),), (), segments, flat)
         placed, spread = laid.chosen(places=True), laid.chosen(places=False)
         if self.representation == CALIBRATED:
@@ -378,22 +385,12 @@ class WindingEffect(Effect):
         shown: list[EmbeddedFibers] = []
         if spread is not None:
             over = smear(mesh, actuator, spread)
-            stiffness = _stiffness(threads, spread, over.curve)
+            stiffness = stiffness_of(threads, spread, over.curve)
             terms.append(SmearedWinding(over, stiffness, slack))
             shown.append(over)
         if placed is not None:
             segments, which = embed_families(mesh, actuator, placed)
-            stiffness = _stiffness(threads, placed, which)
+            stiffness = stiffness_of(threads, placed, which)
             terms.append(Winding(segments, stiffness, slack))
             shown.append(segments)
         return Built(tuple(terms), (), shown[0], spread is not None or flat)
-
-
-def _stiffness(threads: Threads, laid: Ribbons, which: Ints) -> float | Floats:
-    """EA in N of the thread of every segment, or of all where there is one."""
-    import numpy as np
-
-    each = [fiber.stiffness for fiber in threads.fibers]
-    if len(each) == 1:
-        return each[0]
-    return np.array([each[family.thread] for family in laid.families])[which]

@@ -30,7 +30,7 @@ class Analytic(ModelKind):
 
     def limits(self, case: Case) -> Iterator[Objection]:
         """No uniform bend, no fields, no closed form."""
-        yield from not_uniform(case)
+        yield from not_uniform(case, case.turns is not None and case.turns.twists)
         if case.output.fields and "fields" in case.output.model_fields_set:
             yield "output.fields", "closed forms have no fields"
         # loads numpy: asked last

@@ -15,6 +15,7 @@ from fiberbend.columns import BODY, MIDDLE
 from fiberbend.effects.effect import (
     CHAMBER,
     ENDS,
+    SIDE,
     SPACE,
     STRIPS,
     THREAD,
@@ -57,7 +58,7 @@ class Body(MeshedModel):
     """Everything that can act on an actuator acts on it here."""
 
     name = "body"
-    offers = frozenset({CHAMBER, WOUND, SPACE, ENDS, STRIPS, VOLUME, TWIST, THREAD, TURNS})
+    offers = frozenset({CHAMBER, WOUND, SPACE, ENDS, STRIPS, VOLUME, TWIST, SIDE, THREAD, TURNS})
     fills = MeshedModel.fills | {MIDDLE, BODY}
     shared = True
     resumes = True

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.effect import ARC, CHAMBER, THREAD, TURNS, TWIST, VOLUME, WOUND
+from fiberbend.case.symmetry import Symmetry
+from fiberbend.effects.effect import ARC, CHAMBER, HELD, SIDE, THREAD, TURNS, TWIST, VOLUME, WOUND
 from fiberbend.models.mesh_error import cell_section_error, section_error
 from fiberbend.models.model import Objection, ProblemSize, Rung, completed_mesh, count, pieces
-from fiberbend.models.uniform import UniformModel, twists
+from fiberbend.models.uniform import UniformModel
 from fiberbend.schema.units import show
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ class Cell(UniformModel):
     """Half a pitch between mirror planes, or a whole pitch with tied ends."""
 
     name = "cell"
-    offers = frozenset({CHAMBER, WOUND, ARC, VOLUME, TWIST, THREAD, TURNS})
+    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, SIDE, THREAD, TURNS})
     layers_a_pitch = 8.0
     turn = math.radians(45)
     first_turn = math.radians(10)
@@ -52,8 +53,11 @@ class Cell(UniformModel):
         return case.model_copy(update={"mesh": completed_mesh(case.mesh, axial=axial)})
 
     def limits(self, case: Case) -> Iterator[Objection]:
-        """No uniform bend, and no slice that the chamber has no room for."""
+        """No uniform bend, half a slice without mirror planes, and one that has no room."""
         yield from super().limits(case)
+        symmetry = Symmetry.of(case.effects)
+        if case.mesh.symmetry == "half" and symmetry.along:
+            yield "mesh.symmetry", f"its ends are no mirror planes: {'; '.join(symmetry.along)}"
         turns, length = case.turns, case.actuator.length
         if turns is None or not turns.discrete:
             return
@@ -69,6 +73,13 @@ class Cell(UniformModel):
                     f"the slice that repeats is {show(extent, 'length')} long, longer than the "
                     f"chamber, {show(length, 'length')} (as: smeared, or model body)",
                 )
+
+    def half(self, case: Case) -> tuple[bool, str]:
+        """Half a section between mirror planes, where it has both; else a whole period."""
+        if case.mesh.symmetry != "auto":
+            return super().half(case)
+        symmetry = Symmetry.of(case.effects)
+        return symmetry.plane, symmetry.words()
 
     def origin(self, case: Case) -> float:
         """Where half a turn about a line along y maps the threads onto themselves."""
@@ -107,15 +118,21 @@ class Cell(UniformModel):
         """Three components of the displacement."""
         from fem.kinematics.cell import Cell as Bending
 
-        return functools.partial(Bending, length=case.actuator.length, twisted=twists(case))
+        symmetry = Symmetry.of(case.effects)
+        return functools.partial(
+            Bending,
+            length=case.actuator.length,
+            twisted=symmetry.twists,
+            sideways=symmetry.sideways,
+        )
 
     def supports(self, case: Case, mesh: MeshData) -> list[Term]:
         """Three mirror planes; a whole pitch has none."""
-        from fem.effects.supports import Symmetry
+        from fem.effects.supports import Symmetry as Mirror
 
         if not mesh.half:
             return []
-        return [Symmetry(halves=True), Symmetry("section_root", 2), Symmetry("section_tip", 2)]
+        return [Mirror(halves=True), Mirror("section_root", 2), Mirror("section_tip", 2)]
 
     def resolved_bulging(self, case: Case) -> float:
         """All of it, where every turn lies by itself."""

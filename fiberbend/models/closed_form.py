@@ -23,6 +23,9 @@ def no_analytic(case: Case) -> str | None:
     section = case.actuator.section
     if section != SHAPE:
         return f"the closed form of bending is for a {SHAPE}, not for a {section}"
+    for effect in case.effects:
+        if reason := effect.no_closed_form():
+            return reason
     if not any(effect.fixes_circumference() for effect in case.effects):
         return "no winding fixes the circumference, as the closed form assumes"
     stiffness = _stiffness(case)

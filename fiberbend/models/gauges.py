@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from analytic.path import CentreLine as UniformLine
-from fem.kinematics.uniform import CURVATURE, STRETCH, Uniform
+from fem.effects.sums.hold import BEND, LENGTHENED, SIDE_BEND, TWISTED
+from fem.kinematics.uniform import CURVATURE, SIDE, STRETCH, Uniform
 from fem.march.records import State
 from fem.results.centre_line import CentreLine
 from fem.results.measures import (
@@ -20,8 +21,18 @@ from fem.results.touch import probes
 from fem.scene import Scene
 from fiberbend import columns as col
 from geometry.actuator import Actuator
+from geometry.mesh.centroid import winding_weights
 
 Floats = npt.NDArray[np.float64]
+
+PRESSURE = "pressure"
+_HELD = {
+    LENGTHENED: col.AXIAL_FORCE,
+    BEND: col.MOMENT_X,
+    SIDE_BEND: col.MOMENT_Y,
+    TWISTED: col.TORQUE,
+}
+"""Forces that hold a uniform bend, and their columns."""
 
 
 class BodyGauge:
@@ -36,6 +47,10 @@ class BodyGauge:
         self._scene, self._line = scene, line
         self._tip = Tip(scene.body)
         self._guided = "post" in scene.supports
+        # a pressurised closed chamber has no resultant
+        self._loads = [name for name in scene.body.scalars if name not in (PRESSURE, *scene.added)]
+        centre = winding_weights(scene.domain.data)[1] if self._loads else np.zeros(2)
+        self._root: Floats = np.r_[centre, 0.0]
         self._probes = probes(scene)
 
     def tip(self, state: State) -> tuple[float, float, float]:
@@ -59,7 +74,7 @@ class BodyGauge:
 
     def last_columns(self, state: State) -> dict[str, float]:
         """Forces of supports and obstacles on the body, and what it touches."""
-        if not self._guided and not self._probes:
+        if not (self._guided or self._probes or self._loads):
             return {}
         found = balance(self._scene)
         supports = found.supports
@@ -69,10 +84,20 @@ class BodyGauge:
             by = supports.get(name if probe is None else probe.key)
             if by is not None:
                 row[f"{column}_force_N"] = sign * float(by.force[1])
-        row["clamp_force_y_N"] = float(supports["clamp"].force[1])
-        row["clamp_moment_x_Nmm"] = float(supports["clamp"].moment[0])
+        clamp = supports["clamp"]
+        for number, axis in enumerate("xyz"):
+            row[f"clamp_force_{axis}_N"] = float(clamp.force[number])
+            row[f"clamp_moment_{axis}_Nmm"] = float(clamp.moment[number])
+        if self._loads:
+            # what the body does to what pulls at it, as if that were at the section z = 0
+            moment = clamp.moment - np.cross(self._root, clamp.force)
+            names = (col.MOMENT_X, col.MOMENT_Y, col.TORQUE)
+            row[col.AXIAL_FORCE] = float(clamp.force[2])
+            row |= dict(zip(names, moment.tolist(), strict=True))
         row |= self._contacts(supports)
-        if self._guided or any(row[col.contact(name, "area_mm2")] for name in self._probes):
+        loaded = any(state.scalars[name] for name in self._loads)
+        touched = any(row[col.contact(name, "area_mm2")] for name in self._probes)
+        if self._guided or loaded or touched:
             row |= {col.BALANCE_FORCE: found.force, col.BALANCE_MOMENT: found.moment}
         return row
 
@@ -120,10 +145,10 @@ class UniformGauge:
         return float(x), height + float(y), float(z)
 
     def columns(self, state: State) -> dict[str, float]:
-        """Side angle and twist where it twists, and stretches of three lines."""
+        """Side angle and twist where it may leave its plane, and stretches of three lines."""
         line, length = self._line(state), self._actuator.length
         row = {}
-        if self._body.twisted:
+        if self._body.twisted or self._body.sideways:
             row = _turns(length * line.rates)
         floor, crown = (
             float(np.linalg.norm(line.advance(self._place(state, node))))
@@ -149,23 +174,30 @@ class UniformGauge:
         return place
 
     def last_columns(self, state: State) -> dict[str, float]:
-        """Moment and force that keep the body straight, and the tip force that the moment makes.
+        """Forces and moments of what holds it; kept straight, with the tip force of the moment.
 
-        A force N along the axis and a moment M about the line y = 0, conjugate to stretch and
-        curvature, are a force N through the centroid and a moment M − N c_y about it.
+        A force N along the axis and moments M_x, M_y about the lines y = 0 and x = 0, conjugate to
+        stretch and curvatures, are a force N through the centroid and moments M_x − N c_y and
+        M_y + N c_x about it.
         """
+        if any(name in state.scalars for name in _HELD):
+            # what it does to what holds it
+            return {column: 0.0 - state.scalars.get(name, 0.0) for name, column in _HELD.items()}
         if not self._straight:
             return {}
-        moment = self._per_length * state.measures[f"conjugate {CURVATURE}"]
-        if not self._held:
-            return {col.TIP_FORCE: moment / self._actuator.cap, col.MOMENT: moment}
-        force = self._per_length * state.measures[f"conjugate {STRETCH}"]
-        moment -= force * float(self._line(state).centre[1])
-        return {
-            col.TIP_FORCE: moment / self._actuator.cap,
-            col.MOMENT: moment,
-            col.AXIAL_FORCE: force,
-        }
+        moment, side = (
+            self._per_length * state.measures.get(f"conjugate {name}", 0.0)
+            for name in (CURVATURE, SIDE)
+        )
+        row = {}
+        if self._held:
+            force = row[col.AXIAL_FORCE] = self._per_length * state.measures[f"conjugate {STRETCH}"]
+            x, y, _ = self._line(state).centre
+            moment, side = moment - force * float(y), side + force * float(x)
+        if self._body.sideways:
+            row[col.MOMENT_Y] = side
+        row |= {col.MOMENT: moment, col.MOMENT_X: moment}
+        return {col.TIP_FORCE: moment / self._actuator.cap} | row
 
 
 def _turns(turns: Floats) -> dict[str, float]:

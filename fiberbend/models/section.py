@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.effect import ARC, CHAMBER, THREAD, TWIST, VOLUME, WOUND
+from fiberbend.case.symmetry import Symmetry, twists
+from fiberbend.effects.effect import ARC, CHAMBER, HELD, SIDE, THREAD, TWIST, VOLUME, WOUND
 from fiberbend.models.mesh_error import section_error
-from fiberbend.models.model import Objection, ProblemSize, Rung, completed_mesh, count
-from fiberbend.models.uniform import UniformModel, twists
+from fiberbend.models.model import ProblemSize, Rung, completed_mesh, count
+from fiberbend.models.uniform import UniformModel
 
 if TYPE_CHECKING:
     from fem.effects.effect import Effect as Term
@@ -34,7 +35,7 @@ class Section(UniformModel):
     """Nothing depends on z in the frame that turns with the section."""
 
     name = "section"
-    offers = frozenset({CHAMBER, WOUND, ARC, VOLUME, TWIST, THREAD})
+    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, SIDE, THREAD})
     turn = math.radians(10)
     first_turn = math.radians(10)
     memory = 5
@@ -48,17 +49,9 @@ class Section(UniformModel):
         return case.model_copy(update={"mesh": completed_mesh(case.mesh, section=2)})
 
     def half(self, case: Case) -> tuple[bool, str]:
-        """Always: half a turn about y maps a section onto itself whose winding has a hand."""
-        return True, "the section is its own image, by mirror or by half a turn about y"
-
-    def limits(self, case: Case) -> Iterator[Objection]:
-        """No uniform bend, and no effect that breaks the symmetry otherwise than a hand does."""
-        yield from super().limits(case)
-        for index, effect in enumerate(case.effects):
-            reason = effect.mirror_breaker()
-            known = self.offers.issuperset(effect.needs())
-            if known and reason and not effect.winds():
-                yield f"effects.{index}.{effect.name}", f"half a section is solved, and {reason}"
+        """Where it has both mirror planes, or half a turn about y maps the section onto itself."""
+        symmetry = Symmetry.of(case.effects)
+        return symmetry.halved, symmetry.words()
 
     def unused(self, case: Case) -> dict[str, set[str]]:
         """What concerns the axis and the other half."""
@@ -76,16 +69,25 @@ class Section(UniformModel):
         return section_quadrilaterals(convert.dimensions(case.actuator), size)
 
     def kinematics(self, case: Case) -> KinematicsFactory:
-        """Two components of the displacement, three where the winding twists."""
+        """Two components of the displacement, three where it may twist."""
         from fem.kinematics.section import Section as Bending
 
-        return functools.partial(Bending, length=case.actuator.length, twisted=twists(case))
+        symmetry = Symmetry.of(case.effects)
+        return functools.partial(
+            Bending,
+            length=case.actuator.length,
+            twisted=symmetry.twists,
+            sideways=symmetry.sideways,
+        )
 
     def supports(self, case: Case, mesh: MeshData) -> list[Term]:
-        """A mirror plane, or the axis of half a turn."""
-        from fem.effects.supports import Symmetry, TwofoldAxis
+        """A mirror plane, or the axis of half a turn; a whole section has neither."""
+        from fem.effects.supports import Symmetry as Mirror
+        from fem.effects.supports import TwofoldAxis
 
-        return [TwofoldAxis() if twists(case) else Symmetry(halves=True)]
+        if not mesh.half:
+            return []
+        return [TwofoldAxis() if twists(case) else Mirror(halves=True)]
 
     def size(self, case: Case) -> ProblemSize:
         """Of its mesh."""

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.case.symmetry import Symmetry
 from fiberbend.columns import UNIFORM
+from fiberbend.effects.effect import SPACE
 from fiberbend.models.model import (
     ENDS_BEND,
     MeshedModel,
@@ -27,14 +29,8 @@ _HELD_HELIX = (
 )
 
 
-_SKEW = (
-    "no half turn about a line through top and bottom maps its threads onto themselves, so that it "
-    "bends sideways: expected other phases, or as: smeared, or model body"
-)
-
-
 class UniformModel(MeshedModel):
-    """Curvature and stretch, and twist where the winding has a hand, are global unknowns."""
+    """Curvature and stretch are global unknowns, and by symmetry side curvature and twist."""
 
     fills = MeshedModel.fills | {UNIFORM}
     gives_blocked_force = True
@@ -44,14 +40,7 @@ class UniformModel(MeshedModel):
     def limits(self, case: Case) -> Iterator[Objection]:
         """No uniform bend."""
         yield from super().limits(case)
-        yield from not_uniform(case)
-        turns = case.turns
-        if turns is None or turns.origin is not None:
-            return
-        for index, effect in enumerate(case.effects):
-            if effect.winds():
-                sideways = effect.not_beside() or _SKEW
-                yield f"effects.{index}.{effect.name}", sideways
+        yield from not_uniform(case, Symmetry.of(case.effects).twists)
 
     def observables(self, case: Case, scene: Scene) -> Observables:
         """Angle, stretch and twist are scalars."""
@@ -71,7 +60,7 @@ class UniformModel(MeshedModel):
     def scalars(self, case: Case) -> tuple[str, ...]:
         """Global unknowns: those of uniform bending that no effect fixes, and a pressure found."""
         fixed = {name for effect in case.effects for name in effect.fixed_scalars()}
-        names = ["curvature", "stretch", *(["twist"] if twists(case) else [])]
+        names = Symmetry.of(case.effects).scalars()
         return (*(name for name in names if name not in fixed), *found_pressure(case))
 
     def force_named(self) -> str:
@@ -104,21 +93,20 @@ class UniformModel(MeshedModel):
         yield f"ends: left out; {ENDS_BEND}"
 
 
-def not_uniform(case: Case) -> Iterator[Objection]:
-    """Why a case does not bend uniformly, beside its effects."""
-    if case.inflation is None:
-        yield "effects", "nothing bends it uniformly but a pressure"
-    elif case.straight and case.inflation.angle is not None:
+def not_uniform(case: Case, twists: bool) -> Iterator[Objection]:
+    """Why a case does not bend uniformly, beside its effects.
+
+    Args:
+        case: the case.
+        twists: something may twist the body.
+    """
+    if not any(effect.load and SPACE not in effect.needs() for effect in case.effects):
+        yield "effects", "nothing bends it uniformly but a pressure or effect hold"
+    elif case.straight and case.inflation is not None and case.inflation.angle is not None:
         yield "effects", "kept straight, it reaches no angle: expected a pressure by its value"
-    if twists(case):
+    if twists:
         for index, effect in enumerate(case.effects):
             if effect.keeps_straight():
                 yield f"effects.{index}.{effect.name}", _HELD_HELIX
     if case.mesh.element == "tetrahedron":
         yield "mesh.element", "tetrahedra are for a body"
-
-
-def twists(case: Case) -> bool:
-    """Whether a winding may twist the body."""
-    turns = case.turns
-    return turns is not None and turns.twists

@@ -11,10 +11,10 @@ from fiberbend.accuracy.words import expected_lines
 from fiberbend.calibration.expected import expected
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.case.symmetry import twists
 from fiberbend.models.choice import MODELS, choose_model, objection
 from fiberbend.models.model import MeshedModel, ModelKind
 from fiberbend.models.resolution import winding_remark
-from fiberbend.models.uniform import twists
 from fiberbend.notebook import blocks
 from fiberbend.plan.doubts import doubts, errors
 from fiberbend.plan.memory import shortage
@@ -188,5 +188,7 @@ def unused(case: Case, model: ModelKind) -> Iterator[str]:
     if not output.fields:
         names = {"field_steps", "field_halves"} & output.model_fields_set
         yield from (f"output.{name}" for name in sorted(names))
-    elif output.field_halves == "both" and (twists(case) or not model.half(case)[0]):
-        yield "output.field_halves"
+    elif output.field_halves == "both":
+        warps = not model.ends and twists(case)
+        if warps or not model.half(case)[0]:
+            yield "output.field_halves"

@@ -119,7 +119,7 @@ def _dimensions(parts: ValidParts) -> Iterator[Problem]:
 def _effects(parts: ValidParts) -> Iterator[Problem]:
     first: dict[str, int] = {}
     for index, effect in parts.effects.items():
-        if effect.name in first:
+        if effect.name in first and not effect.several:
             yield Problem(
                 f"effects.{index}.{effect.name}",
                 f"a second {effect.name}, expected one (the first is effects.{first[effect.name]})",
@@ -376,7 +376,7 @@ def _kept_straight(parts: ValidParts) -> Iterator[Problem]:
         load = effect.inflation()
         if holds and load is not None and load.angle is not None:
             yield Problem(f"{path}.angle", _NO_ANGLE.format(holds))
-    fixes = next((path for path, e in effects.items() if "curvature" in e.fixed_scalars()), "")
+    fixes = next((path for path, e in effects.items() if e.fixes_angle()), "")
     if fixes and parts.output is not None:
         if parts.output.stop_at_angle is not None:
             yield Problem("output.stop_at_angle", _NO_ANGLE.format(fixes))

@@ -133,7 +133,7 @@ def report(
         curves=curves,
         side=side,
         path_in_space=_pictures(path, _PATHS, words) if known and _leaves_plane(known) else [],
-        sections=_sections(path, states, words),
+        sections=_sections(path, case, states, words),
         body=[each for each in _limited(path, _BODY, links, words) if each.inside or not loose],
         dimensions=list(case_tables.dimensions(case)),
         materials=list(case_tables.materials(case)),
@@ -247,7 +247,9 @@ def _curves(
     return pictures
 
 
-def _sections(path: Path, states: States | None, words: Mapping[str, str]) -> list[Picture]:
+def _sections(
+    path: Path, case: Case, states: States | None, words: Mapping[str, str]
+) -> list[Picture]:
     """Pictures of a section or cell in its own plane; where there are none, its shape now."""
     there = _pictures(path, _SECTIONS, words)
     if there or states is None or not states.model_mesh.uniform:
@@ -260,7 +262,7 @@ def _sections(path: Path, states: States | None, words: Mapping[str, str]) -> li
     others = ("section_str*.*",)
     with own_style(), _drawn(others) as (pictures, write):
         if shots:
-            draw_sections(states.model_mesh, shots, write)
+            draw_sections(states.model_mesh, shots, write, scenery=scenery(case))
     return pictures
 
 

@@ -39,4 +39,5 @@ def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
         thickness = getattr(actuator, region, None)
         if thickness is not None:
             lengths[region] = thickness
-    return Scenery(convert.obstacle_shapes(case), forces, tips, lengths)
+    strips = tuple(window for effect in case.effects for window in effect.windows(actuator))
+    return Scenery(convert.obstacle_shapes(case), forces, tips, lengths, actuator, strips)

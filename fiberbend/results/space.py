@@ -7,8 +7,8 @@ import functools
 import numpy as np
 
 from fiberbend.case.case import Case
+from fiberbend.case.symmetry import twists
 from fiberbend.models.section import picture_layers
-from fiberbend.models.uniform import twists
 from fiberbend.states.halves import Halves
 from fiberbend.states.recovery import NodalFields, SplitNodes, recover, split_nodes
 from fiberbend.states.snapshot import ModelMesh, Snapshot

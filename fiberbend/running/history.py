@@ -49,7 +49,7 @@ class Recorder:
         self._gauge = gauge
         self._factor = scene.body.symmetry_factor
         self._energies = col.energy_columns(scene.keys)
-        self._loads = _load_columns(scene)
+        self._loads, self._shares = _load_columns(scene)
         self._volume = VolumeProbe.of(scene)
         self.rows = rows if rows is not None else [self._row(0, rest, None)]
 
@@ -95,15 +95,22 @@ class Recorder:
         if forces is not None:
             row[col.FIBER_MIN], row[col.FIBER_MAX] = forces
         energies = scene.energies()
-        loads = {name: state.measures[f"conjugate {name}"] for name in self._loads}
+        pairs = {k: v for item in scene.discrete.values() for k, v in item.pairs().items()}
+        loads = {
+            name: state.measures[f"conjugate {name}"] for name in self._loads if name not in pairs
+        }
         stored = sum(energies.values()) + sum(state.scalars[n] * v for n, v in loads.items())
         row[col.WORK] = 0.0
         row[col.STORED] = self._factor * stored
         for key, energy in energies.items():
             row[self._energies[key]] = self._factor * energy
         for name, load in self._loads.items():
-            row[load.value] = load.shown * state.scalars[name]
-            row[load.conjugate] = self._factor * loads[name]
+            if name in pairs:
+                row[load.value], row[load.conjugate] = pairs[name]
+            else:
+                row[load.value] = load.shown * state.scalars[name]
+                row[load.conjugate] = self._factor * loads[name]
+        row |= {column: state.scalars[name] for name, column in self._shares.items()}
         if outcome is not None:
             if MODES in state.measures:
                 row[col.MODES] = int(state.measures[MODES])
@@ -137,22 +144,29 @@ class _Load:
     shown: float = 1.0
 
 
-def _load_columns(scene: Scene) -> dict[str, _Load]:
-    """The columns of the loads of a scene, by name.
+def _load_columns(scene: Scene) -> tuple[dict[str, _Load], dict[str, str]]:
+    """The columns of the loads of a scene by name, and those of shares of what comes in pairs.
+
+    The work of a load without a potential is that of its pairs, not of the share that acts.
 
     Raises:
         KeyError: an effect does not say the units of a load that it brings.
     """
     units = {name: pair for effect in scene.effects.values() for name, pair in effect.units.items()}
     loads: dict[str, _Load] = {}
+    shares: dict[str, str] = {}
+    for effect in scene.effects.values():
+        shares |= {name: col.load_columns(name, "", "")[0] for name in effect.shares}
+    for item in scene.discrete.values():
+        loads |= {name: _Load(*col.load_columns(name, *u)) for name, u in item.pair_units.items()}
     for name in scene.body.scalars:
         if name == "pressure":
             loads[name] = _Load(col.PRESSURE, col.VOLUME, 1e3)
-        elif name not in scene.body.natural:
+        elif name not in (*scene.body.natural, *scene.added, *shares):
             if name not in units:
                 raise KeyError(f"load {name!r} without a unit, expected one in `Effect.units`")
             loads[name] = _Load(*col.load_columns(name, *units[name]))
-    return loads
+    return loads, shares
 
 
 def work_of(values: Floats, conjugates: Floats) -> tuple[Floats, Floats]:

@@ -118,8 +118,10 @@ def draw_bent(
 
 def _caption(state: Snapshot, space: Space, beside: Scenery) -> str:
     caption = beside.caption(state)
-    if state.twist == 0:
+    if state.twist == 0 and state.side_curvature == 0:
         return caption
-    rate = Bend.of(state, space.own.mesh).line.rates[2]
-    twist = np.rad2deg(rate * space.model_mesh.mesh.nodes[-1, 2])
-    return f"{caption},  twist {twist:.0f}°".replace("-", "−")
+    rates = Bend.of(state, space.own.mesh).rates
+    _, side, twist = np.rad2deg(rates * space.model_mesh.mesh.nodes[-1, 2]) + 0.0
+    turned = f"{caption},  side {side:.0f}°" if state.side_curvature else caption
+    turned = f"{turned},  twist {twist:.0f}°" if state.twist else turned
+    return turned.replace("-", "−")

@@ -138,5 +138,13 @@ PenaltyStiffness = Annotated[float, Quantity("penalty stiffness")]
 """MPa/mm, above zero."""
 Acceleration = Annotated[float, Quantity("acceleration")]
 """mm/s², above zero."""
+SignedForce = Annotated[float, Quantity("force", "any")]
+"""N, of either sign."""
+SignedMoment = Annotated[float, Quantity("moment", "any")]
+"""N mm, of either sign."""
+Mass = Annotated[float, Quantity("mass")]
+"""t, above zero."""
+AngleOrZero = Annotated[float, Quantity("angle", "any")]
+"""rad, zero allowed."""
 Accuracy = Annotated[float, Quantity("accuracy")]
 """Percent, above zero."""

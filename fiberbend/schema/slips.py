@@ -76,6 +76,9 @@ LIMITS = {
     "density": Limits(2.5e-12, 3e-8, ("2.5 kg/m^3", "30 g/cm^3"), (1e-10, 1e-8)),
     "acceleration": Limits(1e-3, 5e6, ("1 um/s^2", "5000 m/s^2"), (1e2, 1e5)),
     "volume": Limits(1e-18, 1e18, ("1 nm^3", "1 km^3"), (1.0, 1e7)),
+    "force": Limits(1e-15, 1e9, ("1 fN", "1 GN"), (1e-4, 1e3)),
+    "moment": Limits(1e-18, 1e12, ("1e-18 N*mm", "1 GN*m"), (1e-3, 1e5)),
+    "mass": Limits(1e-18, 1e3, ("1 pg", "1000 t"), (1e-8, 1e-2)),
     # below, thread and rubber themselves are no better known; above, it asks for nothing
     "accuracy": Limits(0.1, 20.0, ("0.1 %", "20 %"), (0.5, 20.0), (100.0,)),
     # thirty turns: 360 rad were degrees

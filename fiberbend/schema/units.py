@@ -93,6 +93,10 @@ KINDS = {
         {"MPa/mm": "1", "kPa/mm": "1e-3", "N/mm^3": "1"},
     ),
     "force": Kind("a force", "N", "N", "0.1 N", {"N": "1", "mN": "1e-3", "kN": "1e3"}),
+    "moment": Kind(
+        "a moment", "N*mm", "N*mm", "5 N*mm", {"N*mm": "1", "mN*m": "1", "N*m": "1e3", "N mm": "1"}
+    ),
+    "mass": Kind("a mass", "t", "g", "20 g", {"g": "1e-6", "kg": "1e-3", "mg": "1e-9"}),
     "accuracy": Kind("an accuracy", "percent", "%", "1 %", {"%": "1", "percent": "1"}),
     "time": Kind("a time", "s", "ms", "5 ms", {"s": "1", "ms": "1e-3"}),
     "frequency": Kind("a frequency", "Hz", "Hz", "100 Hz", {"Hz": "1", "kHz": "1e3"}),

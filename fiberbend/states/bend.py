@@ -20,18 +20,19 @@ class Bend:
     """A body that bends and twists uniformly from a clamped root.
 
     In the frame of the station Z the frame's origin advances along z at the rate λ0, and the frame
-    turns at the rate ω = (k, 0, τ). The clamp holds the first section across z, with its centroid
+    turns at the rate ω = (k_x, k_y, τ). The clamp holds the first section across z, its centroid
     where it is at rest. Under twist and bend a section is not across the line of the centroids:
     the line leaves the clamp as far from z as the body is sheared.
 
     Attributes:
-        curvature: k, 1/mm; positive turns z toward −y.
+        curvature: k_x, 1/mm; positive turns z toward −y.
         stretch: λ0 of the frame's origin.
         twist: τ, rad/mm.
         centre: the section's centroid in the turning frame, mm.
         height: y of the centroid at rest, mm.
         a_x: what has become of the section's axis x, in the turning frame.
         a_y: of its axis y.
+        side_curvature: k_y, 1/mm; positive turns z toward x.
     """
 
     curvature: float
@@ -41,6 +42,7 @@ class Bend:
     height: float = 0.0
     a_x: tuple[float, float, float] = (1.0, 0.0, 0.0)
     a_y: tuple[float, float, float] = (0.0, 1.0, 0.0)
+    side_curvature: float = 0.0
 
     @classmethod
     def of(cls, state: Snapshot, mesh: MeshData) -> Bend:
@@ -49,14 +51,22 @@ class Bend:
         fit = rows @ in_frame(mesh.nodes, state.displacement) * kept
         centre, a_x, a_y = ((float(x), float(y), float(z)) for x, y, z in fit)
         how = (state.curvature, state.stretch, state.twist)
-        return cls(*how, centre, float(rest[1]), a_x, a_y)
+        return cls(*how, centre, float(rest[1]), a_x, a_y, state.side_curvature)
 
     @functools.cached_property
     def line(self) -> CentreLine:
         """The line of the centroids."""
-        spin = np.array([self.curvature, 0.0, self.twist])
-        section = (np.array(vector) for vector in (self.centre, self.a_x, self.a_y))
-        return CentreLine.of(spin, self.stretch, *section)
+        spin = np.array([self.curvature, self.side_curvature, self.twist])
+        centre, a_x, a_y = (np.array(vector) for vector in (self.centre, self.a_x, self.a_y))
+        return CentreLine.of(spin, self.stretch, centre, a_x, a_y)
+
+    @property
+    def rates(self) -> Floats:
+        """Turn of the centre-line about the section's own x and y, and twist, (3,), rad/mm."""
+        centre, a_x, a_y = (np.array(vector) for vector in (self.centre, self.a_x, self.a_y))
+        turned = self.side_curvature != 0
+        line = CentreLine.of(self.line.spin, self.stretch, centre, a_x, a_y, turned)
+        return line.rates
 
     @property
     def is_rest(self) -> bool:

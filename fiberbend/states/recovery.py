@@ -146,7 +146,7 @@ def deformation_gradients(mesh: MeshData, state: Snapshot, points: Floats) -> Fl
     slope = slopes(state.displacement[mesh.cells]) @ to_reference
     f = np.tile(np.eye(3), (len(mesh.cells), len(points), 1, 1))
     f[..., : slope.shape[2], : slope.shape[3]] += slope
-    bend = Bend(state.curvature, state.stretch, state.twist)
+    bend = Bend(state.curvature, state.stretch, state.twist, side_curvature=state.side_curvature)
     if not bend.is_rest:
         position = values @ in_frame(mesh.nodes, state.displacement)[mesh.cells]
         f[..., 2] += bend.line.advance(position) - [0.0, 0.0, 1.0]

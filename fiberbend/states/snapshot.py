@@ -72,6 +72,7 @@ class Snapshot:
             components in the frame that turns with the section.
         stretch: λ0 of the axis there.
         twist: τ there, rad/mm.
+        side_curvature: of the section's own y there, 1/mm.
         remark: what every picture of it has to say, such as that the body passes through itself;
             empty where there is nothing.
 
@@ -89,6 +90,7 @@ class Snapshot:
     curvature: float = 0.0
     stretch: float = 1.0
     twist: float = 0.0
+    side_curvature: float = 0.0
     remark: str = ""
 
     def __post_init__(self) -> None:

@@ -58,6 +58,12 @@ class Pattern:
         return helices == across == along
 
     @property
+    def turned(self) -> bool:
+        """Whether half a turn about y maps it onto itself: that keeps hands, and reverses z."""
+        helices = sorted(_modulo(h.hand, h.start) for h in self.helices)
+        return helices == sorted(_modulo(h.hand, -h.start) for h in self.helices)
+
+    @property
     def gap(self) -> float:
         """Least distance along the axis of neighbouring turns of one hand, in parts of the pitch.
 

@@ -85,6 +85,16 @@ def mirrored(families: Iterable[Family], smeared: bool = False) -> bool:
     return _alike(families, smeared, lambda hand: -hand, lambda f: f.offset, lambda s: -s)
 
 
+def reversible(families: Iterable[Family], smeared: bool = False) -> bool:
+    """Whether z = 0 is a mirror plane of them: it changes hands, and leaves axial threads.
+
+    Args:
+        families: all of them.
+        smeared: spread over the surface: of what goes around only the directions count.
+    """
+    return _alike(families, smeared, lambda hand: -hand, lambda f: -f.offset, lambda s: s)
+
+
 def twofold(families: Sequence[Family], smeared: bool = False) -> float | None:
     """z of a line x = 0 along y half a turn about which maps all onto themselves, mm, or None.
 

@@ -94,15 +94,20 @@ class Lopsided(TipLoad):
         return {}
 
 
-def test_half_a_section_refuses_what_may_not_be_symmetric() -> None:
-    base = case("section")
+@pytest.mark.parametrize("name", ["section", "cell"])
+def test_what_may_not_be_symmetric_has_every_unknown(name: str) -> None:
+    base = case(name)
     made = base.model_copy(update={"effects": (*base.effects[:2], Lopsided())})
-    (problem,) = problems(made)
-    assert problem == (
-        "effects.2.lopsided",
-        "model section does not support it: half a section is solved, and lopsided is not known "
-        "to be mirror-symmetric",
+    assert list(problems(made)) == []
+    model = MODELS[name].elements()
+    assert model is not None
+    half, why = model.half(made)
+    assert not half
+    assert why == (
+        "none: it bends about x and y and twists, its section warps (lopsided is not known to be "
+        "mirror-symmetric; lopsided is not known to be alike forward and backward)"
     )
+    assert model.size(made).scalars == ("curvature", "stretch", "side_curvature", "twist")
 
 
 def test_control_has_no_effect_that_it_does_not_know() -> None:

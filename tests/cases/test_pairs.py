@@ -25,6 +25,9 @@ SETTINGS: dict[str, dict[str, Any]] = {
     "blocked-tip": {},
     "contact": {"plane": {"point": ["0 mm", "-0.1 mm", "0 mm"], "normal": [0, 1, 0]}},
     "straight": {},
+    "hold": {"stretch": 1.05},
+    "tip-load": {"force": ["0 N", "-20 mN", "0 N"]},
+    "tip-mass": {"mass": "2 g"},
 }
 """One of each: a new effect is paired with all others once it has a line here."""
 PAIRS = list(itertools.combinations(SETTINGS, 2))

@@ -116,46 +116,46 @@ def test_an_effect(tmp_path: Path) -> None:
     house = House(tmp_path, "An effect")
     touched = house.touched()
     assert list(touched) == [
-        "fem/effects/tip_load.py",
+        "fem/effects/pull.py",
+        "fiberbend/effects/pull.py",
         "fiberbend/effects/table.py",
-        "fiberbend/effects/tip_load.py",
     ]
     assert touched["fiberbend/effects/table.py"] == 2
     assert house.lint() == ""
     case = house.case(TUBE)
 
     def pulled(force: str, direction: str) -> dict[str, Any]:
-        return case | {"effects": [{"tip-load": {"force": force, "direction": direction}}]}
+        return case | {"effects": [{"pull": {"force": force, "direction": direction}}]}
 
     found = house.use(
         {"said": case, "light": pulled("1 mN", "-y"), "along": pulled("100 mN", "+z")},
         """
-text = told("said.yaml", "effects.0.tip-load.force=1 mm")
+text = told("said.yaml", "effects.0.pull.force=1 mm")
 assert 'expected a force with its unit such as "0.1 N"' in text
 for model in ("analytic", "section", "cell"):
     text = told("said.yaml", f"model={model}")
-    assert f"effects.0.tip-load: model {model} does not support it: only a body in space" in text
-assert "a tip load along x pulls to one side" in told(
-    "said.yaml", "effects.0.tip-load.direction=+x", "mesh.symmetry=half"
+    assert f"effects.0.pull: model {model} does not support it: only a body in space" in text
+assert "a string along x pulls to one side" in told(
+    "said.yaml", "effects.0.pull.direction=+x", "mesh.symmetry=half"
 )
 """,
     )
-    assert "tip-load" in found["schema"]
+    assert "pull" in found["schema"]
     said, light, along = found["said"], found["light"], found["along"]
     assert said["model"] == "body"
-    assert said["resolved"]["effects"] == [{"tip-load": {"force": "0.05 N", "direction": "-y"}}]
-    assert "section does not support effects.0.tip-load: only a body in space" in said["plan"]
+    assert said["resolved"]["effects"] == [{"pull": {"force": "0.05 N", "direction": "-y"}}]
+    assert "section does not support effects.0.pull: only a body in space" in said["plan"]
     # toward −y, and the tip turns there; the work-conjugate is the way of the tip
     for answer in (said, light):
         assert end(answer, "angle_deg") > 0
         way = answer["rows"][0]["tip_y_mm"] - answer["rows"][-1]["tip_y_mm"]
-        assert end(answer, "conjugate_tip_load_mm") == pytest.approx(way, rel=1e-3)
+        assert end(answer, "conjugate_pull_mm") == pytest.approx(way, rel=1e-3)
         assert end(answer, "unstable_modes") == 0
     # the limit of small forces, and how a large one, which keeps its direction, falls behind it
     bent, stretched = compliance(64.0, 8.0, 3.0, 5.0, 0.3)
-    assert end(light, "conjugate_tip_load_mm") == pytest.approx(1e-3 * bent, rel=0.02)
+    assert end(light, "conjugate_pull_mm") == pytest.approx(1e-3 * bent, rel=0.02)
     assert end(light, "stored_mJ") == pytest.approx(1e-6 * bent / 2, rel=0.02)
-    ratio = end(said, "conjugate_tip_load_mm") / end(light, "conjugate_tip_load_mm") / 50
+    ratio = end(said, "conjugate_pull_mm") / end(light, "conjugate_pull_mm") / 50
     assert 0.9 < ratio < 0.96
     # along the axis: by EA, no bend
     assert end(along, "tip_z_mm") - along["rows"][0]["tip_z_mm"] == pytest.approx(

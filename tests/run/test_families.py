@@ -219,11 +219,6 @@ def test_what_a_model_cannot_have_is_refused() -> None:
 
     odd = [*helices(70, 6), family(angle_from_axis="90 deg", spacing="3 mm")]
     assert 'families.2 with a spacing of "' in refusal(odd, "cell")
-    aside = [family(angle_from_axis="0 deg", at=["30 deg"])]
-    for model in ("section", "cell"):
-        assert "sideways" in refusal([*helices(70, 6), *aside], model, "smeared")
-    skew = [one | {"phase": f"{n * 70} deg"} for n, one in enumerate(helices(70, 2))]
-    assert "other phases" in refusal(skew, "cell")
     assert "80° or more" in refusal(helices(70, 6), "analytic", "smeared")
     assert "only cell and body have turns" in refusal(helices(70, 6), "section")
     fixing = small(model="analytic", output=NO_FILES)

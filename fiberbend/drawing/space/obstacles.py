@@ -16,7 +16,9 @@ from fiberbend.drawing.space.panel import Panel
 from fiberbend.states.labels import short_number
 from fiberbend.states.obstacles import Shape
 from fiberbend.states.snapshot import Snapshot
+from geometry.actuator import Actuator
 from geometry.mesh.data import Floats
+from geometry.winding.strip import Window
 
 COLOR = "#d9d9d9"
 _THICK = 0.012
@@ -53,12 +55,16 @@ class Scenery:
         lengths: dimensions in mm that a picture at rest states: "chamber", "whole", "height" and
             "width", and the thickness of each region; what is missing is measured on the mesh or
             left out.
+        actuator: on whose outline the strips lie; None without any.
+        strips: of fabric, as parts of the outline.
     """
 
     shapes: Mapping[str, Shape] = dataclasses.field(default_factory=dict)
     forces: Mapping[int, Mapping[str, Force]] = dataclasses.field(default_factory=dict)
     tip_forces: Mapping[int, float] = dataclasses.field(default_factory=dict)
     lengths: Mapping[str, float] = dataclasses.field(default_factory=dict)
+    actuator: Actuator | None = None
+    strips: tuple[Window, ...] = ()
 
     def caption(self, state: Snapshot) -> str:
         """Pressure and angle of a state; where the body is kept straight its force comes first."""

@@ -14,7 +14,14 @@ from fiberbend.effects.wound.turns import Turns
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.units import show
 from geometry.winding.families import Family
-from geometry.winding.symmetry import FEW, common_period, mirrored, nearest_periods, twofold
+from geometry.winding.symmetry import (
+    FEW,
+    common_period,
+    mirrored,
+    nearest_periods,
+    reversible,
+    twofold,
+)
 
 if TYPE_CHECKING:
     from geometry.actuator import Actuator
@@ -70,10 +77,18 @@ class ByFamilies(Threads):
         alike = all(mirrored(self._laid(perimeter), spread) for perimeter in _ANY)
         return "" if alike else "the families of the winding are not their own mirror image"
 
-    def sideways(self) -> str:
-        """Threads along the axis on one side."""
-        turned = all(twofold(self._laid(perimeter), True) is not None for perimeter in _ANY)
-        return "" if turned else "threads along the axis lie on one side, which bends it sideways"
+    def end_breaker(self, spread: bool) -> str:
+        """Families that are not those of the other hand too."""
+        if not self.breaker(spread) and not self.turn_breaker(spread):
+            return ""
+        alike = all(reversible(self._laid(perimeter), spread) for perimeter in _ANY)
+        return "" if alike else "the families of the winding are not alike forward and backward"
+
+    def turn_breaker(self, spread: bool) -> str:
+        """Threads along the axis on one side, or turns that start anywhere."""
+        if all(twofold(self._laid(perimeter), spread) is not None for perimeter in _ANY):
+            return ""
+        return "no half turn about a line along y maps the families of the winding onto themselves"
 
     def assumed(self) -> Iterator[str]:
         """Rigid, without angles and twist."""

@@ -54,9 +54,16 @@ class ByPattern(Threads):
         pattern = self._pattern
         return "" if pattern.mirrored else f"{pattern.meaning} is not its own mirror image"
 
-    def sideways(self) -> str:
-        """Half a turn about y maps the directions of any helix onto themselves."""
-        return ""
+    def end_breaker(self, spread: bool) -> str:
+        """A pattern with a hand: both mirror planes change it."""
+        return self.breaker(spread)
+
+    def turn_breaker(self, spread: bool) -> str:
+        """Half a turn about y keeps the hand, and moves the starts of turns."""
+        pattern = self._pattern
+        if spread or pattern.turned:
+            return ""
+        return f"half a turn about y does not map {pattern.meaning} onto itself"
 
     def assumed(self) -> Iterator[str]:
         """Rigid, without pitch and twist."""

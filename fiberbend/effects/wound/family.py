@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
@@ -160,6 +160,18 @@ class FamilySpec(Spec):
             f"{degrees:.4g}° from the axis, pitch {pitch:.4g} mm, {starts}, threads "
             f"{family.spacing:.4g} mm apart, {self.hand}{where}"
         )
+
+
+def bend(families: Iterable[FamilySpec], around: Around | None) -> bool:
+    """Whether families may bend an actuator that is alike above and below.
+
+    Around all of it half a turn about the axis maps threads onto themselves, half a pitch on.
+
+    Args:
+        families: as the case has them, valid or not; none of a pattern.
+        around: where those lie that do not say.
+    """
+    return any("wall" in (each.around or around or "") or each.angle == 0 for each in families)
 
 
 def fiber_problems(

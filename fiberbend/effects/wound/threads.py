@@ -10,7 +10,7 @@ from fiberbend.schema.problems import Problem
 
 if TYPE_CHECKING:
     from geometry.actuator import Actuator
-    from geometry.mesh.data import Floats
+    from geometry.mesh.data import Floats, Ints
     from geometry.winding.ribbons import Ribbons
     from materials.fiber import Fiber
 
@@ -36,8 +36,11 @@ class Threads(Protocol):
             spread: they are smeared, so that directions count alone.
         """
 
-    def sideways(self) -> str:
-        """Why no half of a section stands for all of it with them; empty where one does."""
+    def end_breaker(self, spread: bool) -> str:
+        """Why no plane across the axis is a mirror plane of them; empty where one is."""
+
+    def turn_breaker(self, spread: bool) -> str:
+        """Why half a turn about a line along y does not map them onto themselves; else empty."""
 
     def assumed(self) -> Iterator[str]:
         """What the closed form assumes of them, one sentence each."""
@@ -72,3 +75,13 @@ class Threads(Protocol):
 
     def words(self, perimeter: float) -> list[str]:
         """How they run, a line for each family, as a plan shows it; may be empty."""
+
+
+def stiffness_of(threads: Threads, laid: Ribbons, which: Ints) -> float | Floats:
+    """EA in N of the thread of every segment, or of all where there is one."""
+    import numpy as np
+
+    each = [fiber.stiffness for fiber in threads.fibers]
+    if len(each) == 1:
+        return each[0]
+    return np.array([each[family.thread] for family in laid.families])[which]

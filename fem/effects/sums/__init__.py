@@ -1,0 +1,1 @@
+"""Part of fiberbend. Potentials that see a few sums of the fields."""

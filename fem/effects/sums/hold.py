@@ -1,0 +1,210 @@
+"""Uniform bending with stretch, bend or twist of the centre-line held at given values."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from analytic.path import centre_line
+from fem.effects.effect import Discrete, Effect, Natural
+from fem.effects.sums.functionals import Functionals, Linked
+from fem.kinematics.kinematics import Kinematics
+from fem.kinematics.uniform import AXES, STRETCH, Uniform
+from geometry.mesh.centroid import section_fit
+
+Floats = npt.NDArray[np.float64]
+
+HOLD = "hold"
+LENGTHENED, BEND, SIDE_BEND, TWISTED = (f"{HOLD} {n}" for n in ("stretch", "bend", "side", "twist"))
+"""Names of what can be held, and of the forces that hold it."""
+_RATES = {BEND: 0, SIDE_BEND: 1, TWISTED: 2}
+_PUSH = 1e-30
+_DIFFERENCE = 1e-5
+"""Part of their size by which variables are moved for second derivatives; the error, 1e-10, makes
+the tangent no worse."""
+
+
+class Hold(Effect):
+    """Π = −f·(c − b) + Σ μ_i (Ḡ_i − G_i(q, b)), G of the centroids' line: its length, its turns.
+
+    c is the centroid of all inside the winding, with the images of its axes where the body bends to
+    the side and the section may turn in its frame; q are the scalars of uniform bending, Ḡ grows
+    from its value at rest with the share h. Each μ_i is the work-conjugate of what it holds: the
+    axial force in N, the moments about d1 and d2 and the torque about the line in N mm. What is not
+    held is free, and its force zero. Where a force or moment could not be in balance along a line
+    that bends or twists, the rest is borne along it by f, which is spread over the section by the
+    weights of the centroid: as a guide without friction does.
+
+    Args:
+        targets: by name, the stretch, or the angle over the whole length in rad.
+    """
+
+    shares: ClassVar = (HOLD,)
+
+    def __init__(self, targets: Mapping[str, float]) -> None:
+        self.targets = dict(targets)
+
+    def discrete(self, body: Kinematics) -> Discrete:
+        """The potential of the forces that hold it."""
+        assert isinstance(body, Uniform), "only uniform bending is held"
+        return _Held(body, self.targets)
+
+
+@dataclasses.dataclass(frozen=True)
+class _Derivatives:
+    """G of what is held, (n,), with its derivatives in the variables, (n, v) and (n, v, v)."""
+
+    value: Floats
+    first: Floats
+    second: Floats
+
+
+class _Held(Linked):
+    """The potential of `Hold` on what is modelled, a part of the whole."""
+
+    def __init__(self, body: Uniform, targets: Mapping[str, float]) -> None:
+        rows, kept, rest = section_fit(body.domain.data)
+        # centroid, and images of the axes where no symmetry keeps them
+        self._start: Floats = np.array([[*rest, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+        sums, components = range(3 if body.sideways else 1), range(body.components)
+        self._places = [(k, i) for k in sums for i in components if kept[k, i]]
+        start = np.array([self._start[place] for place in self._places])
+        functionals = Functionals.of_nodes(body, rows, self._places, start)
+        self._uniform, self._part = body, 1 / body.symmetry_factor
+        # a turn that its symmetry keeps from it is held already
+        turns = {name for name, axis in _RATES.items() if axis in self._axes(body)}
+        self.names = [name for name in targets if name in turns or name == LENGTHENED]
+        away = [name for name in targets if name not in self.names and targets[name]]
+        if away:
+            raise ValueError(f"{', '.join(away)}: the kinematics has no such turn")
+        length = body.length
+        self._from = np.array([length * (name == LENGTHENED) for name in self.names])
+        ends = [targets[n] * (length if n == LENGTHENED else 1.0) for n in self.names]
+        self._way = np.array(ends) - self._from
+        levers = {n: self._part * (length if n == LENGTHENED else 1.0) for n in self.names}
+        more = {name: Natural(0.0, lever, False, True) for name, lever in levers.items()}
+        number = np.array([k for k, _ in self._places])
+        lengths = np.where(number == 0, body.span, 1.0)
+        moments = np.where(number > 0, body.span, 1.0)
+        super().__init__(body, functionals, "hold section", lengths, moments, more)
+        self._variables = [*body.natural, *self.at]
+        height = 1 / body.size_of(body.natural[0])
+        kinds = {STRETCH: 1.0} | dict.fromkeys(AXES, 1 / height)
+        kinds |= {n: 1.0 if k else height for n, k in zip(self.at, number, strict=True)}
+        self._steps = np.array([_DIFFERENCE * kinds[name] for name in self._variables])
+        self._known: tuple[tuple[float, ...], _Derivatives] | None = None
+        body.scalar(HOLD)
+        self.pair_units = {n: ("N", "mm") if n == LENGTHENED else ("Nmm", "rad") for n in targets}
+        self._targets = dict(targets)
+
+    @staticmethod
+    def _axes(body: Uniform) -> set[int]:
+        """Axes about which its sections turn."""
+        return {AXES[name] for name in body.natural if name in AXES}
+
+    # --- the line -------------------------------------------------------------------------------
+
+    def _line(self, values: Any) -> Any:
+        """G of all variables, (n,); analytic."""
+        spin, section = np.zeros(3, dtype=values.dtype), self._start.astype(values.dtype)
+        stretch = values[self._variables.index(STRETCH)]
+        for name, value in zip(self._variables, values, strict=True):
+            if name in AXES:
+                spin[AXES[name]] = value
+        for name, place in zip(self.at, self._places, strict=True):
+            section[place] = values[self._variables.index(name)]
+        across = (section[1], section[2]) if self._uniform.sideways else None
+        length, rates, _ = centre_line(spin, stretch, section[0], across)
+        return self._uniform.length * np.array(
+            [length if name == LENGTHENED else rates[_RATES[name]] for name in self.names]
+        )
+
+    def _gradient(self, values: Floats) -> Floats:
+        """∂G/∂(variables), (n, v), by complex steps."""
+        columns = []
+        for number in range(len(values)):
+            moved = values.astype(complex)
+            moved[number] += 1j * _PUSH
+            columns.append(self._line(moved).imag / _PUSH)
+        return np.array(columns).T
+
+    @property
+    def _now(self) -> _Derivatives:
+        values = self.own(self._variables)
+        key = tuple(values.tolist())
+        if self._known is None or self._known[0] != key:
+            second = np.zeros((len(self.names), len(values), len(values)))
+            for number, step in enumerate(self._steps):
+                ahead, behind = values.copy(), values.copy()
+                ahead[number] += step
+                behind[number] -= step
+                change = self._gradient(ahead) - self._gradient(behind)
+                second[:, :, number] = change / (2 * step)
+            second = (second + second.transpose(0, 2, 1)) / 2
+            found = _Derivatives(self._line(values), self._gradient(values), second)
+            self._known = key, found
+        return self._known[1]
+
+    def _goals(self) -> Floats:
+        """Ḡ at the present share."""
+        goals: Floats = self._from + self.scalar(HOLD) * self._way
+        return goals
+
+    # --- what a scene asks ----------------------------------------------------------------------
+
+    def value(self) -> float:
+        """Nothing where the equations hold."""
+        return 0.0
+
+    def pairs(self) -> dict[str, tuple[float, float]]:
+        """What holds it and what is held; what symmetry keeps costs nothing."""
+        held = zip(self.own(self.names).tolist(), self._goals().tolist(), strict=True)
+        return dict.fromkeys(self._targets, (0.0, 0.0)) | dict(zip(self.names, held, strict=True))
+
+    def law(self) -> Floats:
+        """Σ μ_i ∂G_i/∂b."""
+        slopes = self._now.first[:, len(self._uniform.natural) :]
+        found: Floats = self._part * (self.own(self.names) @ slopes)
+        return found
+
+    def law_rate(self, name: str) -> Floats:
+        """By places and scalars, and by μ."""
+        first = len(self._uniform.natural)
+        if name in self.names:
+            return self._part * self._now.first[self.names.index(name), first:]
+        if name in self._variables:
+            column = self._now.second[:, first:, self._variables.index(name)]
+            found: Floats = self._part * (self.own(self.names) @ column)
+            return found
+        return np.zeros(len(self.at))
+
+    def others(self, name: str) -> float:
+        """Of μ G − Ḡ; of a scalar Σ μ_i ∂G_i/∂q; none of the share, whose work is in pairs."""
+        if name in self.names:
+            number = self.names.index(name)
+            return self._part * float(self._now.value[number] - self._goals()[number])
+        if name in self._uniform.natural:
+            column = self._now.first[:, self._variables.index(name)]
+            return self._part * float(self.own(self.names) @ column)
+        return 0.0
+
+    def others_rate(self, first: str, second: str) -> float:
+        """∂²U of scalars, μ, places and the share."""
+        if second in self.names:
+            first, second = second, first
+        if first in self.names:
+            number = self.names.index(first)
+            if second == HOLD:
+                return self._part * float(self._way[number])
+            if second in self._variables:
+                slope = self._now.first[number, self._variables.index(second)]
+                return -self._part * float(slope)
+            return 0.0
+        if first in self._variables and second in self._variables:
+            i, j = self._variables.index(first), self._variables.index(second)
+            return -self._part * float(self.own(self.names) @ self._now.second[:, i, j])
+        return 0.0

@@ -1,0 +1,129 @@
+"""What effects and models tell each other: words for what a model offers, and small records."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fem.effects.effect import Effect as Term
+    from fem.march.records import Ramp
+    from fiberbend.effects.effect import Effect
+    from geometry.actuator import Actuator
+    from geometry.winding.segments import EmbeddedFibers
+    from materials.material import Material
+
+CHAMBER = "chamber"
+"""A model has the chamber that a pressure inflates."""
+WOUND = "wound"
+"""A model has the thread around the body, in turns, spread, or as a fixed circumference."""
+ARC = "arc"
+"""A model bends uniformly all along, so that it can be kept straight all along."""
+HELD = "held"
+"""A model has the centre-line of a uniform bend, whose stretch and turns can be held."""
+SPACE = "space"
+"""A model is a whole body in space, with everything that can act on one."""
+ENDS = "ends"
+"""A model gives the force of a support of the tip."""
+STRIPS = "strips"
+"""Roof and post are surfaces of the model, sheath and cap under them yield."""
+VOLUME = "volume"
+"""A model can be driven by the volume of its chamber."""
+TWIST = "twist"
+"""A model can twist."""
+SIDE = "side"
+"""A model can bend to the side."""
+THREAD = "thread"
+"""A winding has its pitch and its thread stretches."""
+TURNS = "turns"
+"""Every turn of a winding lies where it is wound."""
+HOOPS = "hoops"
+"""A circumference can be fixed."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Inflation:
+    """How the chamber is loaded: one of the three is given.
+
+    Attributes:
+        to: pressure at the end, MPa.
+        volume: chamber volume at the end, mm³.
+        angle: bending angle at the end, rad.
+    """
+
+    to: float | None = None
+    volume: float | None = None
+    angle: float | None = None
+
+
+@dataclasses.dataclass(frozen=True)
+class Draft:
+    """What is valid of a case that is being checked.
+
+    Attributes:
+        actuator: its dimensions, where they go together, else None.
+        length: of the chamber, mm, where it is valid, else None.
+        effects: by their paths.
+    """
+
+    actuator: Actuator | None
+    length: float | None
+    effects: Mapping[str, Effect]
+
+
+@dataclasses.dataclass(frozen=True)
+class Site:
+    """The actuator of a case as its effects see it.
+
+    Attributes:
+        actuator: dimensions.
+        materials: of each of its parts.
+        straight: an effect keeps the actuator from bending.
+        mirrored: no effect breaks its mirror plane x = 0.
+        weight: acceleration by which it is heavy, x, y and z, mm/s²; None: without weight.
+        origin: z on the actuator where the mesh of a slice that repeats begins, mm.
+    """
+
+    actuator: Actuator
+    materials: Mapping[str, Material]
+    straight: bool
+    mirrored: bool = True
+    weight: tuple[float, float, float] | None = None
+    origin: float = 0.0
+
+
+@dataclasses.dataclass(frozen=True)
+class Requests:
+    """What a case asks of the path of a load.
+
+    Attributes:
+        first: first step, MPa, or None.
+        largest: greatest step, MPa, or None.
+        at_pressures: pressures to be hit, MPa.
+        at_angles: bending angles to be hit under any load, rad.
+        stop_at_angle: where the run ends early, rad, or None.
+    """
+
+    first: float | None
+    largest: float | None
+    at_pressures: tuple[float, ...]
+    at_angles: tuple[float, ...]
+    stop_at_angle: float | None
+
+
+@dataclasses.dataclass(frozen=True)
+class Built:
+    """An effect as the finite-element code takes it.
+
+    Attributes:
+        terms: summands of the potential, constraints.
+        ramps: loads of the whole actuator, in order.
+        fibers: thread on the mesh, if the effect has any.
+        smeared: that thread is spread over its surface.
+    """
+
+    terms: tuple[Term, ...]
+    ramps: tuple[Ramp, ...] = ()
+    fibers: EmbeddedFibers | None = None
+    smeared: bool = False

@@ -1,0 +1,205 @@
+"""A strip of inextensible fabric along the body, anywhere on the outline."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import Field, model_serializer, model_validator
+
+from fiberbend.effects.effect import SIDE, THREAD, Built, Draft, Effect, Requests, Site
+from fiberbend.schema.problems import Problem
+from fiberbend.schema.quantities import Angle as AngleOtherThanZero
+from fiberbend.schema.quantities import Coordinate, Length, Modulus, Spec
+from fiberbend.schema.units import show
+
+if TYPE_CHECKING:
+    from geometry.actuator import Actuator
+    from geometry.mesh.data import MeshData
+    from geometry.winding.strip import Window
+
+PLACES = {"top": 0.0, "right": math.pi / 2, "bottom": math.pi, "left": 3 * math.pi / 2}
+"""Names of places by the angle from the top toward +x, rad."""
+_ROUNDING = 1e-9
+
+
+class PlaceSpec(Spec):
+    """A place on the outline of wall and floor: by a name, an angle, or an arc length."""
+
+    name: Literal["top", "right", "bottom", "left"] | None = None
+    """Written alone, `at: bottom`; right is toward +x."""
+    angle: AngleOtherThanZero | None = None
+    """From the top toward +x, about the point half-way up on x = 0."""
+    arc: Coordinate | None = None
+    """Arc length of the outline from the top toward +x."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_name(cls, data: Any) -> Any:
+        return {"name": data} if isinstance(data, str) else data
+
+    @model_serializer(mode="wrap")
+    def _to_name(self, write: Any) -> Any:
+        return self.name if self.name is not None else write(self)
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict[str, Any]:
+        """A name alone is allowed too."""
+        names = {"enum": list(PLACES), "type": "string"}
+        return {"anyOf": [names, handler.resolve_ref_schema(handler(schema))]}
+
+    def problems(self, path: str) -> Iterator[Problem]:
+        """One of the three."""
+        given = [key for key in ("name", "angle", "arc") if getattr(self, key) is not None]
+        if len(given) != 1:
+            names = ", ".join(PLACES)
+            yield Problem(path, f"{len(given)} places, expected one: {names}, an angle or an arc")
+
+    @property
+    def turned(self) -> float | None:
+        """Angle from the top toward +x, rad, from 0 to 2π; None where the arc length is given."""
+        if self.name is not None:
+            return PLACES[self.name]
+        return None if self.angle is None else self.angle % (2 * math.pi)
+
+    def along(self, actuator: Actuator) -> float:
+        """Arc length from the top toward +x, mm, from 0 to the perimeter."""
+        from geometry.winding.strip import arc_at
+
+        if self.arc is not None:
+            return self.arc % actuator.winding_perimeter
+        turned = self.turned
+        assert turned is not None, "a place has a name, an angle or an arc"
+        return arc_at(actuator, turned)
+
+    def __str__(self) -> str:
+        if self.name is not None:
+            return self.name
+        if self.angle is not None:
+            return show(self.angle, "angle")
+        return show(self.arc or 0.0, "length")
+
+
+class StripEffect(Effect):
+    """Inextensible fabric on wall and floor, under the sheath, along the body between the caps."""
+
+    name = "strip"
+    several = True
+
+    at: PlaceSpec
+    """Its middle: top, right (+x), bottom, left, an angle or an arc length."""
+    width: Length
+    """Along the outline."""
+    thickness: Length
+    """Of the fabric; with the modulus it gives the stiffness of warp and of weft."""
+    modulus: Modulus
+    """Young's modulus of warp and weft; there is none against shear and bending."""
+    tension_only: bool = Field(default=False)
+    """The fabric goes slack instead of carrying compression."""
+
+    def needs(self) -> dict[str, str]:
+        """Threads that stretch; away from x = 0 also a bend to the side."""
+        needed = {THREAD: "no closed form has a strip of fabric"}
+        if self.mirror_breaker():
+            needed[SIDE] = "the closed form does not bend to the side"
+        return needed
+
+    def mirror_breaker(self) -> str:
+        """Any place but top and bottom, also of one that is opposite."""
+        turned = self.at.turned
+        middle = self.at.arc == 0 if turned is None else _multiple(turned, math.pi)
+        return "" if middle else f"a strip at {self.at} is not its own mirror image"
+
+    def end_breaker(self) -> str:
+        """None: it is alike all along."""
+        return ""
+
+    def turn_breaker(self) -> str:
+        """Half a turn about y moves it to the other side, as a mirror does."""
+        return self.mirror_breaker()
+
+    def bends(self) -> bool:
+        """Anywhere but in the middle of a side."""
+        turned = self.at.turned
+        return turned is None or not _multiple(turned - math.pi / 2, math.pi)
+
+    def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
+        """A place, a width that the outline has, and none over another strip."""
+        wrong = list(self.at.problems(f"{path}.at"))
+        yield from wrong
+        if wrong or draft.actuator is None:
+            return
+        perimeter = draft.actuator.winding_perimeter
+        if self.width > perimeter * (1 + _ROUNDING):
+            yield Problem(
+                f"{path}.width",
+                f'"{show(self.width, "length")}", expected no more than the outline is long, '
+                f'"{show(perimeter, "length")}"',
+            )
+            return
+        if self.at.arc is not None and not 0 <= self.at.arc <= perimeter:
+            yield Problem(
+                f"{path}.at.arc",
+                f'"{show(self.at.arc, "length")}", expected an arc length from zero to that of the '
+                f'outline, "{show(perimeter, "length")}"',
+            )
+        own = self.at.along(draft.actuator)
+        for other, effect in draft.effects.items():
+            if other == path:
+                return
+            if not isinstance(effect, StripEffect) or any(effect.at.problems("")):
+                continue
+            apart = abs(own - effect.at.along(draft.actuator))
+            apart = min(apart, perimeter - apart)
+            room = (self.width + effect.width) / 2
+            if apart < room * (1 - _ROUNDING):
+                yield Problem(
+                    path,
+                    f"lies over {other}, its middle {apart:.4g} mm from that one's, expected "
+                    f"{room:.4g} mm or more",
+                )
+
+    def follows_section(self) -> bool:
+        """A body that bends to the side leaves the plane of its section."""
+        return not self.mirror_breaker()
+
+    def beside(self) -> StripEffect:
+        """It is in the section too."""
+        return self
+
+    def alone(self) -> str:
+        """The section has it too."""
+        return ""
+
+    def unmeasured(self) -> str:
+        """Meshes were measured without any."""
+        return "a strip of fabric lies on it"
+
+    def no_closed_form(self) -> str:
+        """In closed forms the floor alone does not stretch."""
+        return "a strip of fabric, of which the closed form knows nothing"
+
+    def steps(self) -> int:
+        """It is no load."""
+        return 0
+
+    def windows(self, actuator: Actuator) -> list[Window]:
+        """Where it lies."""
+        from geometry.winding.strip import Window
+
+        return [Window(self.at.along(actuator), self.width)]
+
+    def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
+        """Warp and weft on the faces of the mesh."""
+        from fem.effects.fabric import Strip
+        from geometry.winding.strip import lay
+
+        (window,) = self.windows(site.actuator)
+        laid = lay(mesh, site.actuator, window)
+        return Built((Strip(str(self.at), laid, self.modulus * self.thickness, self.tension_only),))
+
+
+def _multiple(angle: float, step: float) -> bool:
+    """Whether an angle is a whole number of steps but for rounding."""
+    return abs(math.remainder(angle, step)) < _ROUNDING

@@ -1,0 +1,1 @@
+"""Part of fiberbend. Loads on the tip."""

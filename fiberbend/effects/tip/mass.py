@@ -1,0 +1,57 @@
+"""A mass that hangs at the tip."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from fiberbend.effects.effect import SPACE, Built, Draft, Effect, Requests, Site
+from fiberbend.schema.problems import Problem
+from fiberbend.schema.quantities import Mass
+
+if TYPE_CHECKING:
+    from geometry.mesh.data import MeshData
+
+
+class TipMassEffect(Effect):
+    """A mass at the centroid of the tip cap's outer face; gravity makes it heavy."""
+
+    name = "tip-mass"
+    load = True
+
+    mass: Mass
+    """Its weight acts along the direction of gravity and grows with it."""
+
+    def needs(self) -> dict[str, str]:
+        """A tip."""
+        return {SPACE: "only a whole body has a tip"}
+
+    def mirror_breaker(self) -> str:
+        """None of its own: gravity's direction is gravity's."""
+        return ""
+
+    def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
+        """Without gravity it does nothing."""
+        if all(effect.weight() is None for effect in draft.effects.values()):
+            text = "weighs nothing without effect gravity, expected that beside it"
+            yield Problem(path, f"{path} {text}")
+
+    def alone(self) -> str:
+        """No section has a tip."""
+        return "a mass hangs at the tip"
+
+    def uncertainties(self, straight: bool) -> Iterator[str]:
+        """None of its own."""
+        yield from ()
+
+    def steps(self) -> int:
+        """It is put on with gravity."""
+        return 0
+
+    def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
+        """Its weight, scaled as gravity is."""
+        from fem.effects.sums.tip_load import TipWeight
+
+        assert site.weight is not None, "checked when the case was read"
+        x, y, z = (self.mass * acceleration for acceleration in site.weight)
+        return Built((TipWeight((x, y, z)),))

@@ -1,0 +1,106 @@
+"""A strip of fabric on the outline: where it lies, and how much of it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from geometry.bodies.extrude import hexahedral_body, hexahedral_slice, section_quadrilaterals
+from geometry.mesh.data import MeshData
+from geometry.mesh.tets import to_tetrahedra
+from geometry.sections.circle import CircleActuator
+from geometry.sections.hemicircle import HemicircleActuator
+from geometry.sections.rectangle import RectangleActuator
+from geometry.sections.size import MeshSize
+from geometry.winding.outline import position
+from geometry.winding.segments import push
+from geometry.winding.strip import Window, arc_at, lay
+
+TUBE = CircleActuator(radius=8, length=24, wall=2, cap=5)
+HALF_DISK = HemicircleActuator(radius=8, length=24, wall=2, floor=2, sheath=1, cap=5)
+BOX = RectangleActuator(width=12, height=10, length=24, wall=2, floor=2, cap=5)
+
+
+def _mesh(
+    kind: str, actuator: CircleActuator | HemicircleActuator | RectangleActuator, half: bool = False
+) -> MeshData:
+    size = MeshSize(axial=8, section=1, half=half)
+    if kind == "section":
+        return section_quadrilaterals(actuator, size)
+    if kind == "cell":
+        return hexahedral_slice(actuator, size, 3.0, 2)
+    body = hexahedral_body(actuator, size)
+    return to_tetrahedra(body) if kind == "tetrahedra" else body
+
+
+LENGTH = {"section": 1.0, "cell": 3.0, "body": 24.0, "tetrahedra": 24.0}
+
+
+@pytest.mark.parametrize("middle", [0.0, 0.3, 0.5, 0.77])
+@pytest.mark.parametrize("width", [0.9, 4.0, 17.0])
+@pytest.mark.parametrize("kind", LENGTH)
+def test_its_area_is_that_of_the_window_whatever_the_mesh(
+    kind: str, middle: float, width: float
+) -> None:
+    # straight sides, so that the mesh has the very outline; windows end within facets
+    mesh = _mesh(kind, BOX)
+    laid = lay(mesh, BOX, Window(middle * BOX.winding_perimeter, width))
+    for thread in (0, 1):
+        area = laid.length[laid.curve == thread].sum()
+        assert area == pytest.approx(width * LENGTH[kind], rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", LENGTH)
+def test_half_a_mesh_has_half_of_a_strip_in_the_middle(kind: str) -> None:
+    for middle in (0.0, HALF_DISK.winding_perimeter / 2):
+        window = Window(middle, 5.0)
+        whole, half = (
+            lay(_mesh(kind, HALF_DISK, part), HALF_DISK, window).length.sum()
+            for part in (False, True)
+        )
+        assert half == pytest.approx(whole / 2, rel=1e-9)
+
+
+def test_on_an_arc_the_area_converges_with_the_mesh() -> None:
+    # the outline of the mesh is quadratic: its length is off by h⁴
+    window, errors = Window(7.3, 4.1), []
+    for number in (1, 2, 4):
+        mesh = section_quadrilaterals(TUBE, MeshSize(section=number, half=False))
+        area = lay(mesh, TUBE, window).length.sum() / 2
+        errors.append(abs(area / window.width - 1))
+    assert errors[0] < 1e-3
+    assert errors[-1] < 1e-5
+
+
+@pytest.mark.parametrize("kind", LENGTH)
+def test_warp_runs_along_the_axis_and_weft_around(kind: str) -> None:
+
+    mesh = _mesh(kind, BOX)
+    laid = lay(mesh, BOX, Window(5.0, 8.0))
+    moved = push(mesh, laid.cell, laid.points, laid.tangents)[:, 0]
+    size = np.hypot(np.linalg.norm(moved, axis=1), laid.axial[:, 0])
+    assert size == pytest.approx(laid.length, rel=1e-9)
+    rise = laid.axial[:, 0] if kind == "section" else moved[:, 2]
+    assert rise / size == pytest.approx(np.where(laid.curve == 0, 1.0, 0.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("actuator", [TUBE, HALF_DISK, BOX], ids=lambda a: a.section)
+def test_a_ray_meets_the_outline(actuator: CircleActuator) -> None:
+    perimeter = actuator.winding_perimeter
+    middle = (actuator.outline_top + actuator.outline_bottom) / 2
+    assert arc_at(actuator, 0.0) == 0.0
+    assert arc_at(actuator, math.pi) == pytest.approx(perimeter / 2)
+    for angle in (0.3, 1.2, math.pi / 2, 2.8):
+        s = arc_at(actuator, angle)
+        x, y = position(actuator, np.array([s]))[0]
+        assert math.atan2(x, y - middle) == pytest.approx(angle, abs=1e-9)
+        assert arc_at(actuator, -angle) == pytest.approx(perimeter - s)
+    if actuator is TUBE:
+        assert arc_at(TUBE, math.pi / 2) == pytest.approx(perimeter / 4)
+
+
+def test_a_window_may_lie_over_the_top() -> None:
+    assert Window(1.0, 4.0).intervals(10.0) == [(0.0, 3.0), (9.0, 10.0)]
+    assert Window(5.0, 4.0).intervals(10.0) == [(3.0, 7.0)]
