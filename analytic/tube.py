@@ -286,7 +286,8 @@ class Tube:
                 number += 1
             else:
                 tensions.append(family.stiffness * (self._fiber(family, x[:3])[0] - 1))
-        return TubeState(*(float(value) for value in x[:6]), tensions=tuple(tensions))
+        inner, stretch, twist, pressure, force, torque = (float(value) for value in x[:6])
+        return TubeState(inner, stretch, twist, pressure, force, torque, tuple(tensions))
 
     def _newton(self, start: TubeState, targets: Sequence[tuple[str, float]]) -> TubeState | None:
         """A state near another one; None where there is none."""
