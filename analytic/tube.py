@@ -2,7 +2,7 @@
 
 A thick tube of one isotropic, incompressible material, A ≤ R ≤ B, with families of fibers on its
 outer surface, its ends closed. A material and a membrane that are alike along the tube and around
-it leave the universal deformation (Rivlin 1949, doi 10.1098/rsta.1949.0009)
+it leave the universal deformation (Adkins and Rivlin 1955, Phil. Trans. R. Soc. A 248, 201)
 
     r² = a² + (R² − A²)/λ,   φ = Θ + ψ Z,   z = λ Z
 

@@ -1,4 +1,4 @@
-"""The section model beside the exact tube over a grid of angles, and the angle of a braid at rest."""
+"""The section model beside the exact tube over a grid of angles, and a braid's angle of rest."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ def grid() -> list[Row]:
             made.append(
                 Row(
                     SUBJECT,
-                    f"{NAMES[pattern]} of elastic fibers at {PRESSURE * 1e3:g} kPa: section against "
-                    f"the exact tube, {name}, worst ({degrees:g}°) of {len(ANGLES)} angles from "
-                    f"{ANGLES[0]:g} to {ANGLES[-1]:g}°",
+                    f"{NAMES[pattern]} of elastic fibers at {PRESSURE * 1e3:g} kPa: section "
+                    f"against the exact tube, {name}, worst ({degrees:g}°) of {len(ANGLES)} angles "
+                    f"from {ANGLES[0]:g} to {ANGLES[-1]:g}°",
                     f"{ours:.7f}",
                     f"{theirs:.7f}",
                     error,

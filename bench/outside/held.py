@@ -1,7 +1,7 @@
 """Tubes whose ends are held: axial force and torque against pressure, as measured at Michigan.
 
-The source's signs: F pushes on what holds the ends, and a family of an angle above zero turns them by
-M > 0. So it is left-handed here, and both are the opposite of what holds the ends, N and T.
+The source's signs: F pushes on what holds the ends, and a family of an angle above zero turns them
+by M > 0. So it is left-handed here, and both are the opposite of what holds the ends, N and T.
 """
 
 from __future__ import annotations
@@ -32,7 +32,9 @@ UNKNOWN = {
 }
 
 
-def slopes(degrees: float, stretch: float = 1.0, stiffness: float = math.inf) -> tuple[float, float]:
+def slopes(
+    degrees: float, stretch: float = 1.0, stiffness: float = math.inf
+) -> tuple[float, float]:
     """F/P in mm² and M/P in mm³ of the exact tube between two pressures.
 
     Args:

@@ -54,12 +54,13 @@ class Row:
 
 
 def percent(value: float, sign: bool = True) -> str:
-    """A part as percent, its digits by its size."""
-    size = abs(100 * value)
-    if size and size < 0.01:
-        return f"{100 * value:{'+' if sign else ''}.0e} %"
-    digits = 3 if size < 0.1 else 2 if size < 1 else 1
-    return f"{100 * value:{'+' if sign else ''}.{digits}f} %"
+    """A part as percent, its digits by its size; a small one as it is."""
+    plus, size = "+" if sign else "", abs(value)
+    if size < 1e-14:
+        return "0"
+    if size < 5e-4:
+        return f"{value:{plus}.0e}"
+    return f"{100 * value:{plus}.{2 if size < 0.01 else 1}f} %"
 
 
 def _line(row: Row) -> str:

@@ -93,6 +93,18 @@ def fitted() -> float:
     return float(minimize_scalar(gap, bounds=(0.3, 0.5), method="bounded").x)
 
 
+def leaning(mu: float, sample: Sample) -> tuple[float, float]:
+    """The lean in degrees with which the tube twists most like a sample, and its rms error then."""
+
+    def gap(degrees: float) -> float:
+        leant = dataclasses.replace(sample, degrees=degrees)
+        return float(np.mean((_twists(states(mu, leant)) - sample.twist) ** 2))
+
+    bounds = (sample.degrees - 15, sample.degrees + 15)
+    found = minimize_scalar(gap, bounds=bounds, method="bounded", options={"xatol": 0.01})
+    return float(found.x), math.sqrt(found.fun) / max(sample.twist)
+
+
 def rows() -> list[Row]:
     """Section beside theory, then theory beside measurement."""
     mu = fitted()
@@ -120,7 +132,10 @@ def rows() -> list[Row]:
         )
         measured = np.array(sample.twist)
         how = f"μ = {1e3 * mu:.1f} kPa fitted to it" if name == FITTED else "untuned"
-        loop = "" if sample.loop is None else f"; its own loop is {100 * sample.loop:.0f} % at 5 psi"
+        loop = "" if sample.loop is None else f"; its own loop: {100 * sample.loop:.0f} % at 5 psi"
+        if name != FITTED and sample.asked is None:
+            lean, rest = leaning(mu, sample)
+            loop += f"; a lean of {lean:.0f}° would fit to {100 * rest:.1f} %"
         made.append(
             Row(
                 SUBJECT,
