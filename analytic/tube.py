@@ -171,10 +171,6 @@ class Tube:
         """b in mm."""
         return math.sqrt(inner**2 + (self.outer**2 - self.inner**2) / stretch)
 
-    def fiber_stretch(self, family: Family, state: TubeState) -> float:
-        """λf of a family."""
-        return self._fiber(family, np.array([state.inner, state.stretch, state.twist]))[0]
-
     def solve(self, held: Held, start: TubeState | None = None) -> TubeState:
         """The state that is reached when what is held goes to its values in proportion.
 
