@@ -108,7 +108,8 @@ def _name_parts(schema: Mapping[str, Any]) -> None:
 
     def follow(properties: Mapping[str, Any], before: str) -> None:
         for key, value in properties.items():
-            inner = [value, *value.get("anyOf", ()), value.get("items", {})]
+            ways = [value, *value.get("anyOf", ())]
+            inner = [*ways, *(way.get("items", {}) for way in ways)]
             for reference in (each["$ref"] for each in inner if "$ref" in each):
                 name = reference.rsplit("/", 1)[-1]
                 if name in TITLES:

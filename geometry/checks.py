@@ -5,11 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from geometry.actuator import Actuator
-from geometry.mesh.data import Floats, MeshData
+from geometry.mesh.data import Floats, Ints, MeshData
 from geometry.mesh.errors import MeshError
-from geometry.mesh.reference import area_vectors, cell_rule, determinants
-from geometry.winding.embed import embed
-from geometry.winding.helix import Winding
+from geometry.mesh.reference import area_vectors, cell_rule, determinants, gauss, shape_functions
+from geometry.winding.embed import embed_families
+from geometry.winding.outline import arc_length
+from geometry.winding.ribbons import Wound
+from geometry.winding.segments import EmbeddedFibers
+from geometry.winding.symmetry import mirrored
+
+_JOINT = 1e-7
+"""Distance within which pieces of a thread touch, as a part of the mesh's greatest extent."""
 
 
 def region_volumes(mesh: MeshData) -> dict[str, float]:
@@ -61,8 +67,60 @@ def geometry_error(mesh: MeshData) -> float:
     return float(3 * (4 * rise / chord).max() ** 4 / 30 + 1e-9)
 
 
+def loose_ends(mesh: MeshData, fibers: EmbeddedFibers) -> tuple[Floats, Ints]:
+    """Where a thread begins or ends: at no corner and at no seam of the outline, if it closes.
+
+    Args:
+        mesh: hexahedra or tetrahedra.
+        fibers: pieces of threads, sorted by curve and along it.
+
+    Returns:
+        Points (n, 3) in mm, and the numbers (n,) of the pieces that end there.
+    """
+    first = gauss(fibers.points.shape[1])[0][0]
+    steps = np.array([0.0, 1.0])[:, None] - first
+    local = fibers.points[:, :1] + steps * fibers.tangents[:, :1]
+    values = shape_functions(mesh.cell_type, local)[0]
+    ends = values @ mesh.nodes[mesh.cells[fibers.cell]]
+    joint = _JOINT * np.ptp(mesh.nodes, axis=0).max()
+    loose = np.ones((len(ends), 2), dtype=bool)
+    for curve in np.unique(fibers.curve):
+        own = np.flatnonzero(fibers.curve == curve)
+        before = np.roll(own, 1)
+        # each piece goes on where the one before ended, of a hoop the first one after the last
+        gap = np.linalg.norm(ends[own, 0] - ends[before, 1], axis=1)
+        loose[own, 0] = loose[before, 1] = gap > joint
+    piece, side = np.nonzero(loose)
+    return ends[piece, side], piece
+
+
+def open_threads(mesh: MeshData, actuator: Actuator, winding: Wound) -> Floats:
+    """Points at which threads end though nothing ends them, (n, 3), mm.
+
+    What ends them are both ends of the chamber, the mirror plane of a half, and the end of what is
+    wound around.
+
+    Args:
+        mesh: hexahedra or tetrahedra of a body, half or full.
+        actuator: dimensions it was built from.
+        winding: the threads.
+    """
+    fibers, which = embed_families(mesh, actuator, winding)
+    points, piece = loose_ends(mesh, fibers)
+    reach = np.array([family.reach for family in winding.ribbons(actuator).families])
+    s = arc_length(actuator, points[:, :2], points[:, 0] < 0)
+    aside = np.minimum(s, actuator.winding_perimeter - s)
+    # arcs of order 2 lie off their circle
+    near = 1e-3 * actuator.winding_perimeter
+    ended = np.minimum(np.abs(points[:, 2]), np.abs(points[:, 2] - actuator.length)) < 1e-6
+    ended |= np.abs(aside - reach[which[piece]]) < near
+    if mesh.half:
+        ended |= np.abs(points[:, 0]) < 1e-6 * actuator.outline_half_width
+    return points[~ended]
+
+
 def check(
-    mesh: MeshData, actuator: Actuator, winding: Winding | None = None
+    mesh: MeshData, actuator: Actuator, winding: Wound | None = None
 ) -> dict[str, dict[str, float]]:
     """Compare the mesh of a whole body with the closed forms.
 
@@ -91,9 +149,9 @@ def check(
     area = part * actuator.winding_perimeter * actuator.length
     pairs["winding area"] = (surface_area(mesh, "winding"), area)
     if winding is not None:
-        fibers = embed(mesh, actuator, winding)
-        expected = len(winding.hands) * winding.curve_length(actuator)
-        if not mesh.half or winding.mirrored:
+        fibers, laid = embed_families(mesh, actuator, winding)[0], winding.ribbons(actuator)
+        expected = float(laid.lengths(actuator).sum())
+        if not mesh.half or mirrored(laid.families):
             pairs["winding length"] = (float(fibers.length @ fibers.share), part * expected)
 
     report = {
@@ -113,6 +171,9 @@ def check(
         wrong.append(f"the chamber is open: |∮ n dA| / ∮ dA = {gap:.2g}")
     if not least > 0:
         wrong.append(f"a Jacobian is not positive: {least:.2g} mm³")
+    if winding is not None:
+        for x, y, z in open_threads(mesh, actuator, winding)[:1]:
+            wrong.append(f"a thread does not go on at x = {x:.4g}, y = {y:.4g}, z = {z:.4g} mm")
     if wrong:
         raise MeshError("the mesh is not the actuator: " + "; ".join(wrong))
     return report

@@ -36,7 +36,7 @@ class FiberPotential:
     Args:
         body: the kinematics.
         segments: pieces of fiber; those of cells owned elsewhere are left out.
-        stiffness: axial stiffness EA of a whole fiber, N.
+        stiffness: axial stiffness EA of a whole fiber, N; of several that of every segment, (m,).
         tension_only: slack fibers carry nothing.
     """
 
@@ -44,7 +44,7 @@ class FiberPotential:
         self,
         body: Kinematics,
         segments: EmbeddedFibers,
-        stiffness: float,
+        stiffness: float | Floats,
         tension_only: bool = False,
     ) -> None:
         self._body = body
@@ -58,7 +58,7 @@ class FiberPotential:
         self.tension_only = tension_only
         self.mixed = not tension_only
         self.length = segments.length[self.index]
-        self.stiffness = stiffness * segments.share[self.index]
+        self.stiffness = (stiffness * segments.share)[self.index]
         self._along = MeanStretch(body, segments.lines(self.index))
         self._dofs = self._along.dofs
         self.block_dofs = self._dofs

@@ -8,6 +8,7 @@ from fem.effects.bulging_fibers import BulgingPotential
 from fem.effects.effect import Effect
 from fem.effects.embedded_fibers import FiberPotential
 from fem.kinematics.kinematics import Kinematics
+from geometry.mesh.data import Floats
 from geometry.winding.segments import EmbeddedFibers, SmearedFibers
 from materials.bulging import Bulging
 
@@ -17,7 +18,7 @@ class _Fibers(Effect):
 
     Args:
         segments: pieces of fiber on the mesh's winding surface.
-        stiffness: axial stiffness EA of a fiber, N.
+        stiffness: axial stiffness EA of a fiber, N; of several the one of every segment, (n,).
         tension_only: slack fibers carry nothing.
 
     Raises:
@@ -25,9 +26,9 @@ class _Fibers(Effect):
     """
 
     def __init__(
-        self, segments: EmbeddedFibers, stiffness: float, tension_only: bool = False
+        self, segments: EmbeddedFibers, stiffness: float | Floats, tension_only: bool = False
     ) -> None:
-        if not stiffness > 0:
+        if not np.all(np.asarray(stiffness) > 0):
             raise ValueError(f"fiber stiffness {stiffness} N, expected a positive value")
         self.segments = segments
         self.stiffness = stiffness
@@ -43,7 +44,7 @@ class Winding(_Fibers):
 
 
 class SmearedWinding(_Fibers):
-    """The same winding as a membrane: a fiber length √(S² + p²)/(S p) per area and helix."""
+    """The same winding as a membrane: a fiber length 1/spacing per area and family."""
 
 
 class CalibratedWinding(_Fibers):
@@ -70,6 +71,7 @@ class CalibratedWinding(_Fibers):
         tension_only: bool = False,
     ) -> None:
         super().__init__(segments, stiffness, tension_only)
+        self.whole = stiffness
         if not np.any(segments.curvature):
             raise ValueError(
                 "the winding is nowhere curved: a stiffness against bulges has no effect, expected "
@@ -79,6 +81,4 @@ class CalibratedWinding(_Fibers):
 
     def discrete(self, body: Kinematics) -> BulgingPotential:
         """The potential of fibers and bulge on this body."""
-        return BulgingPotential(
-            body, self.segments, self.stiffness, self.bulging, self.tension_only
-        )
+        return BulgingPotential(body, self.segments, self.whole, self.bulging, self.tension_only)

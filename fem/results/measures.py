@@ -115,7 +115,12 @@ def balance(scene: Scene, mirror: str = "symmetry") -> Balance:
 
 def fiber_forces(scene: Scene) -> tuple[float, float] | None:
     """Least and greatest axial force of a scene's fibers, N; None without fibers; collective."""
-    for discrete in scene.discrete.values():
-        if isinstance(discrete, FiberPotential):
-            return discrete.force_range()
-    return None
+    ranges = [
+        discrete.force_range()
+        for discrete in scene.discrete.values()
+        if isinstance(discrete, FiberPotential)
+    ]
+    if not ranges:
+        return None
+    lows, highs = zip(*ranges, strict=True)
+    return min(lows), max(highs)

@@ -161,7 +161,7 @@ def estimate(
         else:
             winding = state.winding + factor * lacking(case, here)
         if model.ends and case.turns is not None and case.turns.bulges:
-            winding += factor * 100 * BULGES_AT_ENDS * case.turns.pitch / case.actuator.length
+            winding += factor * 100 * BULGES_AT_ENDS * case.turns.spacing / case.actuator.length
         parts = {
             MESH: factor * mesh,
             WINDING: winding,
@@ -234,7 +234,7 @@ def mesh_error(case: Case, rung: Rung, state: float) -> float | None:
         return found + further * abs(
             at(table.body_curvatures, table.spread_body[min(known)], state)
         )
-    pitch = case.turns.pitch / radius(case) if case.turns is not None else 0.0
+    pitch = numbers(case).get(PITCH, 0.0)
     near = up_to([known for known in entries if known.turns], PITCH, pitch)
     values = [_of_turns(known, rung, table, state) for known in near]
     if not values or None in values:
@@ -320,7 +320,7 @@ def winding_error(case: Case, state: float) -> float:
     The run computes it: see `fiberbend.accuracy.computed`.
     """
     turns = case.turns
-    if turns is None or turns.discrete:
+    if turns is None or turns.discrete or turns.pitch is None:
         return 0.0
     if turns.bulges:
         return CALIBRATED + lacking(case, state)
@@ -385,6 +385,8 @@ def _unknown(case: Case, model: MeshedModel, entries: Sequence[Known]) -> Iterat
             yield f"{effect.alone()}: what that does to the error is not known"
     if case.turns is None:
         yield "nothing is known of actuators without a winding"
+    elif case.turns.pitch is None:
+        yield "nothing is known of windings by families"
     load = case.inflation
     if load is None:
         yield "nothing inflates it"
@@ -393,5 +395,7 @@ def _unknown(case: Case, model: MeshedModel, entries: Sequence[Known]) -> Iterat
         yield "nothing is known of a vacuum, and of bending the other way"
     if case.straight and model.ends:
         yield "strips of other widths move the force by up to 12 % (docs/evidence/blocked.md)"
-        if case.turns is not None and case.turns.pitch > BLOCKED_PITCH * radius(case) * (1 + _END):
+        if case.turns is not None and case.turns.spacing > BLOCKED_PITCH * radius(case) * (
+            1 + _END
+        ):
             yield f"no tip was blocked with a pitch beyond {BLOCKED_PITCH:.3g} radii"

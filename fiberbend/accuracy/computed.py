@@ -166,8 +166,8 @@ def _in_turns(section: Case) -> Case:
     turns = section.turns
     assert turns is not None
     model = next(kind for kind in MODELS.values() if TURNS in kind.offers)
-    wound = (effect.in_cell() if effect.turns() else effect for effect in section.effects)
-    axial = turns.pitch / 2 / FINE.layers
+    wound = (effect.in_cell() if effect.winds() else effect for effect in section.effects)
+    axial = turns.spacing / 2 / FINE.layers
     cell = section.model_copy(
         update={
             "model": model.name,

@@ -49,6 +49,6 @@ def numbers(case: Case) -> dict[str, float]:
     }
     turns = case.turns
     if turns is not None:
-        found[PITCH] = turns.pitch / r
-        found[SOFT] = turns.stiffness / (wall * turns.pitch * r)
+        found[PITCH] = turns.spacing / r
+        found[SOFT] = turns.stiffness / (wall * turns.spacing * r)
     return {name: float(f"{value:.6g}") for name, value in found.items() if math.isfinite(value)}

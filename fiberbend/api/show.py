@@ -97,5 +97,7 @@ def _winding(case: Case) -> str:
     kind = "every turn by itself" if turns.discrete else "spread over its surface"
     if turns.bulges:
         kind += ", bulging as in its cell"
+    if turns.pitch is None:
+        return f"threads by families, {kind}"
     count = case.actuator.length / turns.pitch
     return f"pitch {turns.pitch:g} mm, {count:.3g} turns, {kind}"

@@ -72,7 +72,7 @@ def _length(case: Case, reach: Reach) -> float:
 
     It enters nothing: pressures and moments of uniform bending depend on the curvature alone.
     """
-    return max(2 * math.pi * height(case) / reach.strain, turns_of(case).pitch)
+    return max(2 * math.pi * height(case) / reach.strain, turns_of(case).spacing)
 
 
 def _small(
@@ -86,8 +86,8 @@ def _small(
 ) -> Case:
     cell = model == "cell"
     kept = (effect.in_cell() if cell else effect.beside() for effect in case.effects)
-    wound = tuple(e for e in kept if e is not None and e.turns() is not None)
-    axial = turns_of(case).pitch / (2 * LAYERS)
+    wound = tuple(e for e in kept if e is not None and e.winds())
+    axial = turns_of(case).spacing / (2 * LAYERS)
     mesh = {"section": CELL, "axial": axial} if cell else {"section": SECTION}
     most = None if turn is None else abs(turn)
     solver = {"tolerance": TOLERANCE, "max_turn": most, "first_step": first}

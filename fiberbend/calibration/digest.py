@@ -51,7 +51,7 @@ def content(case: Case, reach: Reach) -> dict[str, Any]:
         "winding": [
             effect.model_dump(exclude={"representation", "bulging"})
             for effect in case.effects
-            if effect.turns() is not None
+            if effect.winds()
         ],
         "reach": dataclasses.asdict(reach),
         "straight": case.straight,

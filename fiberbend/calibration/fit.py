@@ -174,11 +174,11 @@ class _Sections:
     def __init__(self, case: Case, reach: Reach, cell: CellStates) -> None:
         turns = cases.turns_of(case)
         modulus = convert.site(case).materials["wall"].initial_shear_modulus
-        self._start = _START * modulus / turns.pitch
+        self._start = _START * modulus / turns.spacing
         self._kept = case.straight
         begin = self.bulging(np.array(_BEGIN))
         wound = self._wound(case, begin)
-        self._windings = [e for e in wound.effects if e.turns() is not None]
+        self._windings = [e for e in wound.effects if e.winds()]
         angles = tuple(r.angle for r in cell.bent)
         asked = [(cases.bent_section(wound, reach, angles), cell.bent)]
         if cell.straight:
@@ -198,7 +198,7 @@ class _Sections:
 
     @staticmethod
     def _wound(case: Case, bulging: Bulging) -> Case:
-        wound = (e if e.turns() is None else e.with_bulging(bulging) for e in case.effects)
+        wound = (e.with_bulging(bulging) if e.winds() else e for e in case.effects)
         return case.model_copy(update={"effects": tuple(wound)})
 
     def bulging(self, x: Floats) -> Bulging:

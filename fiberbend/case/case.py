@@ -320,8 +320,10 @@ class Case(Spec):
     @property
     def turns(self) -> Turns | None:
         """The thread around the body, or None where there is none."""
-        found = (effect.turns() for effect in self.effects)
-        return next((turns for turns in found if turns is not None), None)
+        from fiberbend.case import convert
+
+        winding = next((effect for effect in self.effects if effect.winds()), None)
+        return None if winding is None else winding.turns(convert.dimensions(self.actuator))
 
     @property
     def straight(self) -> bool:

@@ -115,7 +115,7 @@ def _ends(model: ModelKind, row: col.Row, other: OtherModel) -> list[Cause]:
 def _fibers(case: Case, part: float, row: col.Row) -> list[Cause]:
     """What a part of the bulging between the turns costs, which the other model has not."""
     turns = case.turns
-    if turns is None or part == 0:
+    if turns is None or turns.pitch is None or part == 0:
         return []
     percent = part * bulging(turns.pitch, row[col.ANGLE])
     text = (

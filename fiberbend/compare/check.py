@@ -233,7 +233,7 @@ def band(case: Case, model: ModelKind) -> float:
     other pitches in proportion to `bulging`.
     """
     turns = case.turns
-    if turns is None or beyond_section(case, model) == 0:
+    if turns is None or turns.pitch is None or beyond_section(case, model) == 0:
         return model.agreement
     scale = bulging(turns.pitch, 360.0) / bulging(BULGING_PITCH, 360.0)
     return round(max(model.agreement, _SMEARED + _BULGING * scale), 2)
@@ -241,7 +241,7 @@ def band(case: Case, model: ModelKind) -> float:
 
 def _limit(case: Case, model: ModelKind, other: OtherModel, blocked: bool) -> float | None:
     turns = case.turns
-    far = turns is not None and turns.pitch > FARTHEST_PITCH
+    far = turns is not None and (turns.pitch is None or turns.pitch > FARTHEST_PITCH)
     if far and (beyond_section(case, model) > 0 or other.name != "section"):
         return None
     if other.name == "section" and not (blocked and model.ends):
@@ -262,7 +262,7 @@ def _unresolved(
 ) -> list[str]:
     """Agreement with a smeared winding proves nothing where a discrete one is not resolved."""
     turns = case.turns
-    if turns is None or not turns.discrete or not model.ends:
+    if turns is None or turns.pitch is None or not turns.discrete or not model.ends:
         return []
     greatest = max(abs(row[col.ANGLE]) for row in rows)
     lost = (1 - model.resolved_bulging(case)) * bulging(turns.pitch, greatest)

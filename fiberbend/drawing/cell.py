@@ -257,18 +257,18 @@ def draw_cell(
     snapshots: Sequence[Snapshot],
     write: Write,
     actuator: Actuator,
-    stiffness: float,
+    stiffness: float | None,
     renderer: Renderer,
     scenery: Scenery | None = None,
 ) -> list[str]:
-    """Draw fiber_stretch.png and cell_bulge.png.
+    """Draw fiber_stretch.png, where one thread goes around, and cell_bulge.png.
 
     Args:
         model_mesh: of the cell, with fibers that form lines.
         snapshots: the states.
         write: writes a file, such as `RunFolder.write`.
         actuator: dimensions.
-        stiffness: axial stiffness EA of a fiber, N.
+        stiffness: axial stiffness EA of a fiber, N; None draws no fiber_stretch.png.
         renderer: draws.
         scenery: captions.
 
@@ -279,9 +279,13 @@ def draw_cell(
         ValueError: no state, or one without fiber forces.
         fiberbend.drawing.renderer.PictureError: nothing can be drawn on this machine.
     """
-    write(
-        "fiber_stretch.png",
-        lambda file: plot_tension(model_mesh, snapshots, file, actuator, stiffness, scenery),
-    )
+    names = []
+    if stiffness is not None:
+        thread = stiffness
+        write(
+            "fiber_stretch.png",
+            lambda file: plot_tension(model_mesh, snapshots, file, actuator, thread, scenery),
+        )
+        names.append("fiber_stretch.png")
     write("cell_bulge.png", Slices(model_mesh, snapshots, renderer, scenery).bulge)
-    return ["fiber_stretch.png", "cell_bulge.png"]
+    return [*names, "cell_bulge.png"]

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal, Self
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from fiberbend.effects.effect import (
     THREAD,
@@ -20,17 +19,23 @@ from fiberbend.effects.effect import (
     Site,
     Turns,
 )
-from fiberbend.effects.thread import BulgingSpec, FiberSpec
+from fiberbend.effects.wound.by_families import ByFamilies
+from fiberbend.effects.wound.by_pattern import ByPattern
+from fiberbend.effects.wound.family import Around, FamilySpec
+from fiberbend.effects.wound.thread import BulgingSpec, FiberSpec
+from fiberbend.effects.wound.threads import Threads
 from fiberbend.schema.problems import Problem
-from fiberbend.schema.quantities import Length, LengthOrZero
-from fiberbend.schema.units import show
-from geometry.winding.patterns import PATTERNS, least_pitch, turn_spacing
+from fiberbend.schema.quantities import Length, LengthOrZero, Quantity
+from geometry.winding.patterns import PATTERNS
 
 if TYPE_CHECKING:
     PatternName = str
+    from fem.effects.effect import Effect as Term
     from geometry.actuator import Actuator
-    from geometry.mesh.data import Floats, MeshData
+    from geometry.mesh.data import Floats, Ints, MeshData
     from geometry.winding.helix import Winding
+    from geometry.winding.ribbons import Ribbons
+    from geometry.winding.segments import EmbeddedFibers
     from materials.bulging import Bulging
 else:
     PatternName = Literal[tuple(PATTERNS)]
@@ -41,8 +46,6 @@ DEFAULT_LINES = 5
 DISCRETE: Kind = "discrete"
 CALIBRATED: Kind = "calibrated"
 SMEARED: Kind = "smeared"
-_POINTS_A_TURN = 24
-_ROUNDING = 1e-9
 _STIFF = 1e3
 """Modulus in MPa from which a thread hardly stretches."""
 
@@ -52,12 +55,23 @@ class WindingEffect(Effect):
 
     name = "winding"
 
-    pattern: PatternName
-    """Double helix: one right-handed and one left-handed, crossing on the plane of symmetry."""
-    pitch: Length
-    """Length along the axis of one turn."""
-    fiber: FiberSpec
-    """A named fiber or its modulus and diameter."""
+    model_config = ConfigDict(
+        json_schema_extra={
+            "oneOf": [{"required": ["pattern", "pitch", "fiber"]}, {"required": ["families"]}]
+        }
+    )
+
+    pattern: PatternName | None = None
+    """Double helix: one right-handed and one left-handed, crossing on the plane of symmetry;
+    needed without families."""
+    pitch: Length | None = None
+    """Length along the axis of one turn; needed without families."""
+    families: tuple[FamilySpec, ...] | None = Field(default=None, strict=False, min_length=1)
+    """Threads of any angle, in place of pattern and pitch."""
+    around: Around | None = None
+    """Where families lie: all around, or wall, not under the floor; all by default."""
+    fiber: FiberSpec | None = None
+    """A named fiber or its modulus and diameter; needed unless every family has its own."""
     representation: Kind | None = Field(default=None, alias="as")
     """Every turn by itself (discrete); the same thread spread over its surface, with rubber that
     bulges between the turns as in the cell of this section, which is solved before (calibrated); or
@@ -75,20 +89,37 @@ class WindingEffect(Effect):
     """The thread goes slack instead of carrying compression."""
 
     @property
-    def _twists(self) -> bool:
-        return not PATTERNS[self.pattern].mirrored
+    def _threads(self) -> Threads:
+        """How they run, of a winding that is valid."""
+        if self.families is None:
+            assert self.pattern is not None
+            assert self.pitch is not None
+            return ByPattern(self.pattern, self.pitch, self._made_of(None).thread())
+        each = tuple(self._made_of(family).thread() for family in self.families)
+        return ByFamilies(self.families, each, self.around or "all")
+
+    def _made_of(self, family: FamilySpec | None) -> FiberSpec:
+        own = None if family is None else family.fiber
+        fiber = self.fiber if own is None else own
+        assert fiber is not None
+        return fiber
+
+    @property
+    def _breaker(self) -> str:
+        """Why it is not its own mirror image, so that it may twist; empty where it is."""
+        return self._threads.breaker(self.representation == SMEARED)
 
     def needs(self) -> dict[str, str]:
         """Turns where every one is to lie by itself, twist where the pattern has a hand."""
         needed = {WOUND: "it has no thread around the body"}
-        if self.representation == DISCRETE:
+        if self.representation == DISCRETE and not self._threads.upright:
             needed[TURNS] = (
                 "only cell and body have turns (as: calibrated, as: smeared, or leave `as` to the "
                 "model)"
             )
         if self.representation == CALIBRATED:
             needed[THREAD] = "in closed forms no rubber bulges between turns (leave out `as`)"
-        if self._twists:
+        if self._breaker:
             needed[TWIST] = "the closed form has no twist"
         return needed
 
@@ -99,14 +130,17 @@ class WindingEffect(Effect):
     def hardly_felt(self, resolved: bool) -> dict[str, str]:
         """Of a stiff thread its modulus; spread over the surface, also what lies between turns."""
         felt = {}
-        stiff = self.fiber.thread().modulus >= _STIFF
+        spread = "its winding is spread over the surface, without a width"
+        if self.families is not None:
+            # nobody has measured what else such a winding hardly feels
+            return {} if resolved else dict.fromkeys(("width", "lines"), spread)
+        stiff = self._made_of(None).thread().modulus >= _STIFF
         if not resolved:
             felt["pitch"] = (
                 "its winding is spread over the surface, so that no rubber bulges between the "
                 "turns: a pitch of 1.5 to 6 mm moves the pressure for 90° by 1 %, by 11 % where "
                 "every turn lies by itself (docs/sweep.md)"
             )
-            spread = "its winding is spread over the surface, without a width"
             felt |= dict.fromkeys(("width", "lines"), spread)
             if stiff:
                 felt["fiber"] = (
@@ -123,13 +157,11 @@ class WindingEffect(Effect):
 
     def in_turns(self) -> dict[str, Any]:
         """Every turn by itself."""
-        turns = self.turns()
-        return {} if turns.discrete or turns.bulges else {"as": DISCRETE}
+        return {"as": DISCRETE} if self.representation == SMEARED else {}
 
     def mirror_breaker(self) -> str:
-        """A pattern with a hand."""
-        meaning = PATTERNS[self.pattern].meaning
-        return f"{meaning} is not its own mirror image" if self._twists else ""
+        """A pattern with a hand, families that are not balanced."""
+        return self._breaker
 
     def bends(self) -> bool:
         """Half a turn about the axis maps every pattern onto itself, half a pitch on."""
@@ -151,54 +183,62 @@ class WindingEffect(Effect):
             yield Problem(f"{path}.lines", f"{self.lines}, expected 1 line where the width is zero")
         if self.bulging is not None:
             yield from self.bulging.problems(f"{path}.bulging")
-        wrong = list(self.fiber.problems(f"{path}.fiber"))
+        wrong = [*self._runs(path), *self._made(path)]
         yield from wrong
-        if draft.actuator is None:
+        if draft.actuator is None or wrong:
             return
-        wanted = self.representation or (None if self.bulging is None else CALIBRATED)
-        if wanted == CALIBRATED and not _rounded(draft.actuator):
+        if self._wanted == CALIBRATED and not _rounded(draft.actuator):
             yield Problem(
                 f"{path}.as",
                 '"calibrated", but the thread is straight apart from corners, where it presses on '
                 "no length of rubber: expected discrete or smeared",
             )
-        if not wrong:
-            yield from self._room(path, draft.actuator)
+        yield from self._threads.room(path, draft.actuator, self.width or 0.0)
 
-    def _room(self, path: str, actuator: Actuator) -> Iterator[Problem]:
-        """A thread or ribbon that lies over itself, or that no place around the body holds."""
-        diameter, width = self.fiber.thread().diameter, self.width or 0.0
-        wide, what = (diameter, "thread") if diameter >= width else (width, "ribbon")
-        perimeter = actuator.winding_perimeter
-        apart = turn_spacing(self.pattern, self.pitch, perimeter)
-        if wide > apart * (1 + _ROUNDING):
-            least = least_pitch(self.pattern, wide, perimeter)
-            wanted = f"a thinner {what}"
-            if least is not None:
-                wanted = f'at least "{show(_rounded_up(least), "length")}" or {wanted}'
+    @property
+    def _wanted(self) -> Kind | None:
+        """How it is represented, as far as the case says."""
+        return self.representation or (None if self.bulging is None else CALIBRATED)
+
+    def _runs(self, path: str) -> Iterator[Problem]:
+        """Neither pattern nor families, or both; what is wrong with either."""
+        if self.families is None:
+            names = " or ".join(PATTERNS)
+            length = Quantity("length").expected
+            for key, text in {"pattern": f"{names}, or families", "pitch": length}.items():
+                if getattr(self, key) is None:
+                    yield Problem(f"{path}.{key}", f"missing, expected {text}")
+            if self.around is not None:
+                yield Problem(f"{path}.around", "no effect without families, expected no value")
+            return
+        for key in ("pattern", "pitch"):
+            if getattr(self, key) is not None:
+                yield Problem(f"{path}.{key}", "no effect beside families, expected no value")
+        for number, family in enumerate(self.families):
+            yield from family.problems(f"{path}.families.{number}")
+        if self._wanted == CALIBRATED:
             yield Problem(
-                f"{path}.pitch",
-                f'"{show(self.pitch, "length")}" lays the turns over each other, {apart:.3g} mm '
-                f"apart where the {what} is {wide:.3g} mm wide, expected {wanted}",
+                f"{path}.as",
+                '"calibrated", but one stiffness of the bulge between turns stands for one pitch '
+                "all around, expected smeared or discrete with families",
             )
-        if actuator.sheath is not None:
-            under = min(actuator.wall, actuator.profile.bottom - actuator.outline_bottom)
-            most, place = under + actuator.sheath, "wall or floor and sheath together"
-        else:
-            high = actuator.outline_top - actuator.outline_bottom
-            most, place = min(2 * actuator.outline_half_width, high), "the body within"
-        if diameter > most * (1 + _ROUNDING):
-            yield Problem(
-                f"{path}.fiber",
-                f"a thread {diameter:.4g} mm thick, expected one not thicker than {place}, "
-                f"{most:.4g} mm",
-            )
+
+    def _made(self, path: str) -> Iterator[Problem]:
+        """What is wrong with its fibers."""
+        own = [(n, each.fiber) for n, each in enumerate(self.families or ()) if each.fiber]
+        for number, fiber in own:
+            yield from fiber.problems(f"{path}.families.{number}.fiber")
+        if self.fiber is not None:
+            yield from self.fiber.problems(f"{path}.fiber")
+            if own and len(own) == len(self.families or ()):
+                text = "no effect where every family has its own, expected no value"
+                yield Problem(f"{path}.fiber", text)
+        elif not own or len(own) < len(self.families or ()):
+            text = "missing, expected a named fiber or its modulus and diameter"
+            yield Problem(f"{path}.fiber", text)
 
     def completed(self, offers: frozenset[str] | None) -> Self:
         """As finely as the model can have it; every turn where the model is to be chosen."""
-        fiber = self.fiber
-        if fiber.name is None and fiber.radius_factor is None:
-            fiber = fiber.model_copy(update={"radius_factor": 1.0})
         kind = self.representation
         if kind is None:
             ribbon = self.width is not None or self.lines is not None
@@ -206,11 +246,17 @@ class WindingEffect(Effect):
             kind = SMEARED if spread else DISCRETE
             if self.bulging is not None:
                 kind = CALIBRATED
-        update: dict[str, Any] = {"fiber": fiber, "representation": kind}
+        update: dict[str, Any] = {"representation": kind}
+        if self.fiber is not None:
+            update["fiber"] = self.fiber.plain()
+        if self.families is not None:
+            update["families"] = tuple(family.plain() for family in self.families)
         if kind == DISCRETE or (kind == CALIBRATED and self.bulging is None):
-            width = fiber.thread().diameter if self.width is None else self.width
+            width = self.width
+            if width is None and self.families is None:
+                width = self._made_of(None).thread().diameter
             update["width"] = width
-            update["lines"] = self.lines or (DEFAULT_LINES if width else 1)
+            update["lines"] = self.lines or (1 if width == 0 else DEFAULT_LINES)
         return self.model_copy(update=update)
 
     def representations(self) -> tuple[Self, ...]:
@@ -219,22 +265,24 @@ class WindingEffect(Effect):
         if given:
             return (self,)
         plain = self.model_copy(update={"width": None, "lines": None})
-        kinds = (SMEARED, CALIBRATED, DISCRETE)
+        kinds: tuple[Kind, ...] = (SMEARED, CALIBRATED, DISCRETE)
+        if self.families is not None:
+            kinds = (SMEARED, DISCRETE)
         return tuple(plain.model_copy(update={"representation": kind}) for kind in kinds)
 
-    def turns(self) -> Turns:
-        """Pitch, pattern and thread."""
+    def winds(self) -> bool:
+        """All around or around the wall."""
+        return True
+
+    def turns(self, actuator: Actuator) -> Turns:
+        """Of pattern or families."""
         discrete = self.representation in (DISCRETE, None)
-        thread = self.fiber.thread()
-        lines = (self.lines or DEFAULT_LINES) if discrete else 1
-        return Turns(
-            self.pitch,
+        return self._threads.turns(
+            actuator,
             discrete,
-            self._twists,
-            thread.stiffness,
-            thread.modulus,
-            lines * len(PATTERNS[self.pattern].helices),
+            spread=self.representation == SMEARED,
             bulges=self.representation == CALIBRATED,
+            lines=(self.lines or DEFAULT_LINES) if discrete else 1,
         )
 
     def fixes_circumference(self) -> bool:
@@ -243,19 +291,23 @@ class WindingEffect(Effect):
 
     def assumed(self) -> Iterator[str]:
         """Rigid, without pitch and twist."""
-        yield "the winding fixes the circumference; its pitch does not enter"
-        if self._twists:
-            yield f"the twist of {PATTERNS[self.pattern].meaning} is not in it"
+        yield from self._threads.assumed()
+
+    def runs(self, actuator: Actuator) -> list[str]:
+        """Every family by angle and pitch."""
+        return self._threads.words(actuator.winding_perimeter)
 
     def curves(self, actuator: Actuator) -> list[Floats]:
         """The axis of every fiber."""
-        helix, turns = self.helix(), math.ceil(actuator.length / self.pitch)
-        count = turns * _POINTS_A_TURN
-        return [helix.points(actuator, curve, count)[0] for curve in range(helix.curves)]
+        return self._threads.curves(actuator, self.width, self._lines(self.width))
+
+    def not_beside(self) -> str:
+        """Threads that bend it sideways."""
+        return self._threads.sideways()
 
     def follows_section(self) -> bool:
         """A body that twists leaves the plane of its section."""
-        return not self._twists
+        return not self._breaker
 
     def beside(self) -> WindingEffect:
         """The same thread, spread; calibrated as it is."""
@@ -299,39 +351,63 @@ class WindingEffect(Effect):
         return 0
 
     def helix(self) -> Winding:
-        """The curves as the geometry takes them; a width of zero is one line."""
+        """A pattern's curves as the geometry takes them; a width of zero is one line."""
         from geometry.winding.helix import Winding
 
-        width = self.width if self.width is not None else self.fiber.thread().diameter
+        if self.pattern is None or self.pitch is None:
+            raise ValueError("families are no pattern")
+        width = self._made_of(None).thread().diameter if self.width is None else self.width
+        return Winding(self.pattern, self.pitch, width, self._lines(width))
+
+    def _lines(self, width: float | None) -> int:
         lines = self.lines if self.lines is not None else DEFAULT_LINES
-        return Winding(self.pattern, self.pitch, width, lines if width > 0 else 1)
+        return 1 if width == 0 else lines
 
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
-        """The thread on the faces of the mesh."""
+        """The thread on the faces of the mesh; threads at places of their own are never spread."""
         from fem.effects.winding import CalibratedWinding, SmearedWinding, Winding
-        from geometry.winding.embed import embed
+        from geometry.winding.embed import embed_families
         from geometry.winding.smear import smear
 
-        actuator, helix = site.actuator, self.helix()
-        stiffness, slack = self.fiber.thread().stiffness, self.tension_only
-        if self.turns().discrete:
-            turns = embed(mesh, actuator, helix)
-            return Built((Winding(turns, stiffness, slack),), (), turns)
-        spread = smear(mesh, actuator, helix)
-        if self.representation == SMEARED:
-            return Built((SmearedWinding(spread, stiffness, slack),), (), spread, True)
-        if self.bulging is None:
-            raise ValueError("a winding that is to be calibrated is built after its cell")
-        term = CalibratedWinding(spread, stiffness, self.bulging.bulging(), slack)
-        return Built((term,), (), spread, True)
+        actuator, threads, slack = site.actuator, self._threads, self.tension_only
+        laid = threads.ribbons(actuator, self.width, self._lines(self.width)).turned(site.origin)
+        flat = mesh.nodes.shape[1] == 2
+        if self.representation in (DISCRETE, None):
+            segments, which = embed_families(mesh, actuator, laid)
+            stiffness = _stiffness(threads, laid, which)
+            return Built((Winding(segments, stiffness, slack),), (), segments, flat)
+        placed, spread = laid.chosen(places=True), laid.chosen(places=False)
+        if self.representation == CALIBRATED:
+            if self.bulging is None:
+                raise ValueError("a winding that is to be calibrated is built after its cell")
+            (fiber,), over = threads.fibers, smear(mesh, actuator, laid)
+            bulges = self.bulging.bulging()
+            return Built((CalibratedWinding(over, fiber.stiffness, bulges, slack),), (), over, True)
+        terms: list[Term] = []
+        shown: list[EmbeddedFibers] = []
+        if spread is not None:
+            over = smear(mesh, actuator, spread)
+            stiffness = _stiffness(threads, spread, over.curve)
+            terms.append(SmearedWinding(over, stiffness, slack))
+            shown.append(over)
+        if placed is not None:
+            segments, which = embed_families(mesh, actuator, placed)
+            stiffness = _stiffness(threads, placed, which)
+            terms.append(Winding(segments, stiffness, slack))
+            shown.append(segments)
+        return Built(tuple(terms), (), shown[0], spread is not None or flat)
+
+
+def _stiffness(threads: Threads, laid: Ribbons, which: Ints) -> float | Floats:
+    """EA in N of the thread of every segment, or of all where there is one."""
+    import numpy as np
+
+    each = [fiber.stiffness for fiber in threads.fibers]
+    if len(each) == 1:
+        return each[0]
+    return np.array([each[family.thread] for family in laid.families])[which]
 
 
 def _rounded(actuator: Actuator) -> bool:
     """Whether a thread around it is curved anywhere but at corners."""
     return any(side.center is not None for side in actuator.outline())
-
-
-def _rounded_up(length: float) -> float:
-    """The next length of four digits."""
-    step = 10.0 ** (math.floor(math.log10(length)) - 3)
-    return float(f"{math.ceil(length / step) * step:.4g}")

@@ -199,7 +199,7 @@ def representations(case: Case) -> tuple[str, tuple[str, ...]]:
         The path, and one empty word for a case without a winding.
     """
     for index, effect in enumerate(case.effects):
-        if effect.turns() is None:
+        if not effect.winds():
             continue
         for field in type(effect).model_fields.values():
             if field.alias == "as":
@@ -311,7 +311,7 @@ def _axials(case: Case, model: MeshedModel) -> list[str]:
     turns = case.turns
     if turns is not None and turns.discrete:
         parts = _EDGES if _one_size(case) else _LAYERS
-        lengths = [turns.pitch / (model.layers_a_pitch * factor) for factor in parts]
+        lengths = [turns.spacing / (model.layers_a_pitch * factor) for factor in parts]
     else:
         width = convert.dimensions(case.actuator).outline_half_width
         count = max(1, round(case.actuator.length / (_SPREAD * width)))

@@ -11,6 +11,11 @@ from fiberbend.models import lines
 from fiberbend.models.model import ModelKind, Objection
 from fiberbend.models.uniform import not_uniform
 
+_LOOSE = (
+    "the closed form fixes the circumference, which threads do that lie all around at 80° or more "
+    "from the axis: a family of the winding does not"
+)
+
 
 class Analytic(ModelKind):
     """Uniform bending of a section that keeps its shape."""
@@ -34,6 +39,12 @@ class Analytic(ModelKind):
         section = case.actuator.section
         if section != SHAPE:
             yield "actuator.section", f"the closed form is for a {SHAPE}, not a {section}"
+            return
+        turns = case.turns
+        if turns is not None and not turns.tight:
+            for index, effect in enumerate(case.effects):
+                if effect.winds():
+                    yield f"effects.{index}.{effect.name}", _LOOSE
             return
         reason = no_analytic(case)
         if reason:

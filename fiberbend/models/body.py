@@ -130,7 +130,7 @@ class Body(MeshedModel):
         if turns is None or not turns.discrete:
             return super().resolved_bulging(case)
         sizes, parts = zip(*_RESOLVED, strict=True)
-        ratio = case.mesh.axial / turns.pitch
+        ratio = case.mesh.axial / turns.spacing
         return 0.0 if ratio > _END * sizes[-1] else float(np.interp(ratio, sizes, parts))
 
     def size(self, case: Case) -> ProblemSize:
@@ -162,7 +162,7 @@ class Body(MeshedModel):
         """Long elements under a winding that is spread, parts of half a turn under turns."""
         turns = case.turns
         if turns is not None and turns.discrete:
-            lengths = [turns.pitch / 2 / layers for layers in (1, 2, 4)]
+            lengths = [turns.spacing / 2 / layers for layers in (1, 2, 4)]
         else:
             width = convert.dimensions(case.actuator).profile.half_width
             lengths = [width, width / 2]
@@ -179,7 +179,7 @@ class Body(MeshedModel):
         if case.mesh.element == "tetrahedron":
             return None
         turns, axial = case.turns, case.mesh.axial
-        layers = turns.pitch / 2 / axial if turns is not None and turns.discrete else 0.0
+        layers = turns.spacing / 2 / axial if turns is not None and turns.discrete else 0.0
         return Rung(case.mesh.section, layers, axial)
 
     def errors(self, case: Case) -> Iterator[str]:

@@ -46,34 +46,48 @@ class Cell(UniformModel):
     def completed(self, case: Case) -> Case:
         """Four layers in half a pitch: layers count most."""
         turns = case.turns
-        if turns is None:
+        if turns is None or math.isinf(turns.spacing):
             return case
-        axial = turns.pitch / self.layers_a_pitch
+        axial = turns.spacing / self.layers_a_pitch
         return case.model_copy(update={"mesh": completed_mesh(case.mesh, axial=axial)})
 
     def limits(self, case: Case) -> Iterator[Objection]:
         """No uniform bend, and no slice that the chamber has no room for."""
         yield from super().limits(case)
-        extent, length = self.slice(case, self.half(case)[0])[0], case.actuator.length
+        turns, length = case.turns, case.actuator.length
+        if turns is None or not turns.discrete:
+            return
+        extent = self.slice(case, self.half(case)[0])[0]
         for index, effect in enumerate(case.effects):
-            turns = effect.turns()
-            if turns is not None and turns.discrete and extent > length * (1 + 1e-9):
+            if not effect.winds():
+                continue
+            if turns.misfit:
+                yield f"effects.{index}.{effect.name}", turns.misfit
+            elif extent > length * (1 + 1e-9):
                 yield (
                     f"effects.{index}.{effect.name}",
                     f"the slice that repeats is {show(extent, 'length')} long, longer than the "
                     f"chamber, {show(length, 'length')} (as: smeared, or model body)",
                 )
 
+    def origin(self, case: Case) -> float:
+        """Where half a turn about a line along y maps the threads onto themselves."""
+        turns = case.turns
+        return 0.0 if turns is None or not turns.discrete else turns.origin or 0.0
+
     def slice(self, case: Case, half: bool) -> tuple[float, int]:
         """Length in mm of the slice that repeats, and its number of layers.
 
-        Half a pitch between mirror planes, a whole one without; without a winding any length does.
+        Half a period between mirror planes, a whole one without; of a pattern a period is its
+        pitch, of n equal starts a pitch over n. Without turns any length does.
         """
         from geometry.sections.size import divisions
 
         turns = case.turns
-        pitch = turns.pitch if turns is not None else 2 * case.mesh.axial
-        extent = pitch / 2 if half else pitch
+        period = None if turns is None else turns.period if turns.discrete else turns.spacing
+        if period is None or math.isinf(period):
+            period = 2 * case.mesh.axial
+        extent = period / 2 if half else period
         return extent, divisions(extent, case.mesh.axial)
 
     def mesh_size(self, case: Case, half: bool) -> MeshSize:
@@ -130,7 +144,7 @@ class Cell(UniformModel):
             yield from ({"section": number} for number in (1, 2, 3, 4))
             return
         for number, layers in itertools.product((1, 2), (1, 2, 4, 8)):
-            yield {"section": number, "axial": turns.pitch / 2 / layers}
+            yield {"section": number, "axial": turns.spacing / 2 / layers}
 
     def rung(self, case: Case) -> Rung:
         """Along it nothing counts where no turn lies by itself."""
@@ -138,7 +152,7 @@ class Cell(UniformModel):
         if turns is None or not turns.discrete:
             return Rung(case.mesh.section)
         extent, layers = self.slice(case, self.half(case)[0])
-        return Rung(case.mesh.section, layers * turns.pitch / 2 / extent)
+        return Rung(case.mesh.section, layers * turns.spacing / 2 / extent)
 
     def drawn(self, case: Case, size: ProblemSize) -> float:
         """All slices of the length."""
@@ -151,8 +165,8 @@ class Cell(UniformModel):
         if turns is None or not turns.discrete:
             # alike along the axis: no layers count
             return section_error(case)
-        half, _ = self.half(case)
-        layers = self.slice(case, half)[1] / (1 if half else 2)
+        extent, number = self.slice(case, self.half(case)[0])
+        layers = number * (turns.spacing / 2 / extent)
         return max(across, next(error for least, error in _ERRORS if layers >= least))
 
 

@@ -166,6 +166,10 @@ class ModelKind(ABC):
 
     # --- what it makes of a case ---------------------------------------------------------------
 
+    def origin(self, case: Case) -> float:
+        """z on the actuator where its mesh begins, mm: that of a slice that repeats."""
+        return 0.0
+
     def completed(self, case: Case) -> Case:
         """The case with the defaults that depend on the model."""
         return case
@@ -352,7 +356,7 @@ def pieces(case: Case, half: bool, around: int, length: float, layers: float) ->
     if not turns.discrete:
         return float(turns.curves * _POINTS * around * layers)
     part = 0.5 if half else 1.0
-    return turns.curves * (length / turns.pitch * around + part * layers)
+    return length * turns.around * around + part * turns.curves * layers
 
 
 def thread_mb(segments: float) -> float:

@@ -58,7 +58,8 @@ def build(case: Case, mesh: MeshData, model: MeshedModel) -> SceneParts:
         mesh: what is modelled.
         model: the model that solves it.
     """
-    site, requests = convert.site(case), convert.requests(case)
+    site = dataclasses.replace(convert.site(case), origin=model.origin(case))
+    requests = convert.requests(case)
     materials = {part: item for part, item in site.materials.items() if part in mesh.regions}
     laws: dict[str, dict[str, dict[str, float]]] = {}
     for region, material in materials.items():

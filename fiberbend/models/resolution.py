@@ -60,6 +60,13 @@ def lost_pressure(case: Case, model: ModelKind) -> Iterator[str]:
     turns = case.turns
     if turns is None or case.inflation is None or case.straight or not model.elements():
         return
+    if turns.pitch is None:
+        if model.resolved_bulging(case) < 1:
+            yield (
+                "winding: P too low, as the rubber between its threads bulges; by how much is not "
+                "known of families (as: discrete, elements of half their spacing along the axis)"
+            )
+        return
     if turns.bulges:
         # numbers that a case gives may be those of another section
         yield (
@@ -94,8 +101,9 @@ def winding_remark(case: Case) -> str | None:
     turns, model = case.turns, choose_model(case)[0].elements()
     if turns is None or not turns.discrete or model is None:
         return None
-    axial, most = model.mesh_size(case, model.half(case)[0]).axial, turns.pitch / 2
-    turn = f"a pitch of {show(turns.pitch, 'length')}"
+    axial, most = model.mesh_size(case, model.half(case)[0]).axial, turns.spacing / 2
+    apart = show(turns.spacing, "length")
+    turn = f"turns {apart} apart" if turns.pitch is None else f"a pitch of {apart}"
     if axial <= most * (1 + 1e-9):
         return f"resolved (elements of {show(axial, 'length')}, {turn})"
     return (

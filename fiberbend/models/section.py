@@ -55,9 +55,9 @@ class Section(UniformModel):
         """No uniform bend, and no effect that breaks the symmetry otherwise than a hand does."""
         yield from super().limits(case)
         for index, effect in enumerate(case.effects):
-            turns, reason = effect.turns(), effect.mirror_breaker()
+            reason = effect.mirror_breaker()
             known = self.offers.issuperset(effect.needs())
-            if known and reason and not (turns is not None and turns.twists):
+            if known and reason and not effect.winds():
                 yield f"effects.{index}.{effect.name}", f"half a section is solved, and {reason}"
 
     def unused(self, case: Case) -> dict[str, set[str]]:

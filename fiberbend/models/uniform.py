@@ -27,6 +27,12 @@ _HELD_HELIX = (
 )
 
 
+_SKEW = (
+    "no half turn about a line through top and bottom maps its threads onto themselves, so that it "
+    "bends sideways: expected other phases, or as: smeared, or model body"
+)
+
+
 class UniformModel(MeshedModel):
     """Curvature and stretch, and twist where the winding has a hand, are global unknowns."""
 
@@ -39,6 +45,13 @@ class UniformModel(MeshedModel):
         """No uniform bend."""
         yield from super().limits(case)
         yield from not_uniform(case)
+        turns = case.turns
+        if turns is None or turns.origin is not None:
+            return
+        for index, effect in enumerate(case.effects):
+            if effect.winds():
+                sideways = effect.not_beside() or _SKEW
+                yield f"effects.{index}.{effect.name}", sideways
 
     def observables(self, case: Case, scene: Scene) -> Observables:
         """Angle, stretch and twist are scalars."""
@@ -107,5 +120,5 @@ def not_uniform(case: Case) -> Iterator[Objection]:
 
 def twists(case: Case) -> bool:
     """Whether a winding may twist the body."""
-    found = (effect.turns() for effect in case.effects)
-    return any(turns.twists for turns in found if turns is not None)
+    turns = case.turns
+    return turns is not None and turns.twists

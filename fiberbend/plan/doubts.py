@@ -58,13 +58,17 @@ def _winding(case: Case, model: ModelKind) -> Iterator[str]:
     remark = winding_remark(case)
     if remark is not None and remark.startswith("NOT"):
         yield f"winding {remark}"
-    number = case.actuator.length / turns.pitch
-    if not turns.discrete and number < _FEW_TURNS:
+    number = case.actuator.length / turns.spacing
+    if number and not turns.discrete and number < _FEW_TURNS:
         yield (
             f"winding: {number:.2g} turns over the chamber's length are spread over its surface, "
             "where the thread lies in truth does not enter (as: discrete, model body)"
         )
-    elif turns.pitch > FARTHEST_PITCH and model.resolved_bulging(case) < 1:
+    elif (
+        turns.pitch is not None
+        and turns.pitch > FARTHEST_PITCH
+        and model.resolved_bulging(case) < 1
+    ):
         yield (
             f"winding: rubber bulges between turns {turns.pitch:g} mm apart, how much too low that "
             f"makes the pressure is not known beyond {FARTHEST_PITCH:g} mm (docs/crosscheck.md)"

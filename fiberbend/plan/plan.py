@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from fiberbend.accuracy.choice import picked
 from fiberbend.accuracy.words import expected_lines
 from fiberbend.calibration.expected import expected
+from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.models.choice import MODELS, choose_model, objection
 from fiberbend.models.model import MeshedModel, ModelKind
@@ -90,7 +91,9 @@ def make_plan(case: Case) -> Plan:
         "effects": [", ".join(effect.name for effect in case.effects)],
         "model": [f"{model.name} ({why})", *beside],
     }
+    actuator = convert.dimensions(case.actuator)
     tail = {
+        "threads": [line for effect in case.effects for line in effect.runs(actuator)],
         "accuracy": list(expected_lines(case)),
         "error": [] if case.accuracy is not None else list(errors(case, model)),
         "left out": [f"{path}: {text}" for path, text in model.leaves_out(case)],

@@ -70,7 +70,9 @@ def draw_in_space(
         from fiberbend.drawing.cell import draw_cell
 
         actuator = convert.dimensions(case.actuator)
-        draw_cell(space.own, snapshots, write, actuator, turns.stiffness, renderer, beside)
+        # of families no single thread goes once around
+        stiffness = None if turns.pitch is None else turns.stiffness
+        draw_cell(space.own, snapshots, write, actuator, stiffness, renderer, beside)
 
 
 def draw_bent(

@@ -129,7 +129,7 @@ def _settings(sweep: Sweep, model: ModelKind) -> dict[str, str]:
     if any(field.path == _AXIAL for field in sweep.columns):
         return settings
     cases = [_changed(point.given, settings) for point in points]
-    wanted = [(case, case.turns.pitch / layers) for case in cases if case.turns is not None]
+    wanted = [(case, case.turns.spacing / layers) for case in cases if case.turns is not None]
     if any(case.mesh.axial > _FINE * length for case, length in wanted):
         settings[_AXIAL] = show(min(length for _, length in wanted), "length")
     return settings

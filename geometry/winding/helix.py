@@ -9,8 +9,10 @@ import numpy as np
 
 from geometry.actuator import Actuator
 from geometry.mesh.data import Floats
+from geometry.winding.families import Family, helix
 from geometry.winding.outline import position, tangent
 from geometry.winding.patterns import PATTERNS
+from geometry.winding.ribbons import Ribbons
 
 
 @dataclasses.dataclass(frozen=True)
@@ -55,6 +57,15 @@ class Winding:
     def mirrored(self) -> bool:
         """Whether the planes of symmetry of the actuator are its own."""
         return PATTERNS[self.pattern].mirrored
+
+    def ribbons(self, actuator: Actuator) -> Ribbons:
+        """A family for every helix."""
+        perimeter = actuator.winding_perimeter
+        families: list[Family] = []
+        for one in PATTERNS[self.pattern].helices:
+            family = helix(perimeter, self.pitch, one.hand, phase=one.start)
+            families.append(dataclasses.replace(family, width=self.width))
+        return Ribbons(tuple(families), self.lines)
 
     @property
     def lines_per_fiber(self) -> int:

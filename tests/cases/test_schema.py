@@ -330,6 +330,7 @@ def test_bridge_takes_what_the_case_says() -> None:
     assert (wall.law, wall.parameters["c1"], wall.bulk) == ("yeoh", 0.11, 200.0)
     winding = case.find(WindingEffect)
     assert winding is not None
+    assert winding.fiber is not None
     assert winding.fiber.thread().stiffness == pytest.approx(3000 * math.pi * 0.1**2)
     assert convert.dimensions(case.actuator).total_length == 190.0
     own = MaterialSpec.model_validate({"law": "neo-hooke", "mu": "1 MPa", "density": "1.1 g/cm^3"})

@@ -110,7 +110,7 @@ def test_a_step_with_one_tangent_gives_a_neighbour() -> None:
     numbers, other = fit.Bulging(0.8, 0.6, 4.5), fit.Bulging(0.8008, 0.601, 4.51)
     small = Small(cases.bent_section(calibrating.with_bulging(case, numbers), reach, (1.0, 2.0)))
     state = small.march()[0][0]
-    (winding,) = (effect for effect in case.effects if effect.turns() is not None)
+    (winding,) = (effect for effect in case.effects if effect.winds())
     changed = small.windings(winding.with_bulging(other))
     (near,) = small.near(state, [changed])
     exact = small.again(state)

@@ -59,6 +59,12 @@ class FiberSpec(Spec):
         factor = 1.0 if self.radius_factor is None else self.radius_factor
         return Fiber(self.modulus, self.diameter, factor, source="the case")
 
+    def plain(self) -> FiberSpec:
+        """With its defaults; one by its name has none."""
+        if self.name is None and self.radius_factor is None:
+            return self.model_copy(update={"radius_factor": 1.0})
+        return self
+
     def problems(self, path: str) -> Iterator[Problem]:
         """What is missing, unknown or without effect."""
         own = ("modulus", "diameter", "radius_factor")

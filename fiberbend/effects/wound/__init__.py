@@ -1,0 +1,1 @@
+"""What a winding is made of: threads, families of them, and how they are checked."""
