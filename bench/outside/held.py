@@ -10,7 +10,7 @@ import math
 
 from analytic.tube import Family, Held
 from bench.outside.table import Row
-from bench.outside.tubes import exact
+from bench.outside.tubes import Rubber
 
 RADIUS, LENGTH, WALL = 5.0, 100.0, 1.0
 MU = 0.388
@@ -42,7 +42,8 @@ def slopes(
         stretch: that is held.
         stiffness: of the family, N/mm.
     """
-    tube = exact(MU, RADIUS - WALL, RADIUS, Family(-math.radians(degrees), stiffness))
+    family = Family(-math.radians(degrees), stiffness)
+    tube = Rubber(MU, RADIUS - WALL, RADIUS, LENGTH).wound(family)
     low = tube.solve(Held(pressure=PRESSURES[0], stretch=1.0, twist=0.0))
     low = tube.solve(Held(pressure=PRESSURES[0], stretch=stretch, twist=0.0), low)
     high = tube.solve(Held(pressure=PRESSURES[1], stretch=stretch, twist=0.0), low)

@@ -1,7 +1,8 @@
-"""Round tubes with one family of fibers as a case of the section model, and as the exact tube."""
+"""Round tubes with families of fibers as a case of the section model, and as the exact tube."""
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -14,63 +15,79 @@ DIAMETER = 0.36
 """Of a thread in a case, mm: only its EA matters to a section."""
 
 
-def exact(mu: float, inner: float, outer: float, *families: Family) -> Tube:
-    """The exact tube of a neo-Hookean rubber."""
-    return Tube(Material("neo-hooke", {"mu": mu}).principal, inner, outer, families)
+@dataclasses.dataclass(frozen=True)
+class Threads:
+    """A family in a case.
 
-
-def per_width(stiffness: float, outer: float, degrees: float) -> float:
-    """EA of one thread a helix over its pitch, across the threads, N/mm.
-
-    Args:
-        stiffness: EA, N.
-        outer: radius of the helix, mm.
-        degrees: its lean from the axis.
+    Attributes:
+        degrees: lean from the axis, above zero: right-handed.
+        stiffness: EA of a thread, N.
+        starts: threads side by side.
     """
-    return stiffness / (2 * math.pi * outer * math.cos(math.radians(degrees)))
+
+    degrees: float
+    stiffness: float
+    starts: int = 1
+
+    def family(self, outer: float) -> Family:
+        """The same spread over a radius in mm."""
+        angle = math.radians(self.degrees)
+        width = 2 * math.pi * outer * math.cos(angle)
+        return Family(angle, self.starts * self.stiffness / width)
+
+    def entry(self) -> dict[str, Any]:
+        """The same in a case."""
+        modulus = self.stiffness / (math.pi * DIAMETER**2 / 4)
+        return {
+            "angle_from_axis": f"{abs(self.degrees)!r} deg",
+            "hand": "right" if self.degrees > 0 else "left",
+            "starts": self.starts,
+            "fiber": {"modulus": f"{modulus!r} MPa", "diameter": f"{DIAMETER} mm"},
+        }
+
+
+@dataclasses.dataclass(frozen=True)
+class Rubber:
+    """A neo-Hookean tube; μ in MPa, radii and length in mm."""
+
+    mu: float
+    inner: float
+    outer: float
+    length: float
+
+    def wound(self, *families: Family) -> Tube:
+        """The exact tube."""
+        law = Material("neo-hooke", {"mu": self.mu}).principal
+        return Tube(law, self.inner, self.outer, families)
 
 
 def section(
-    tube: tuple[float, float, float, float],
-    winding: tuple[str, float, float],
-    pressures: Sequence[float],
-    refinement: int = 2,
+    tube: Rubber, threads: Sequence[Threads], pressures: Sequence[float], refinement: int = 2
 ) -> list[dict[str, Any]]:
     """Rows of the section model at some pressures.
 
     Args:
-        tube: μ in MPa, inner and outer radius and length in mm.
-        winding: pattern, its lean from the axis in degrees, and EA of a thread in N.
+        tube: the rubber.
+        threads: around it.
         pressures: MPa, rising.
         refinement: elements through the wall.
 
     Raises:
         RuntimeError: the run did not reach the last one.
     """
-    mu, inner, outer, length = tube
-    pattern, degrees, stiffness = winding
-    pitch = 2 * math.pi * outer / math.tan(math.radians(degrees))
-    modulus = stiffness / (math.pi * DIAMETER**2 / 4)
     result = run(
         {
             "title": "A tube beside the exact one",
             "actuator": {
                 "section": "circle",
-                "radius": f"{inner!r} mm",
-                "length": f"{length!r} mm",
-                "wall": f"{outer - inner!r} mm",
+                "radius": f"{tube.inner!r} mm",
+                "length": f"{tube.length!r} mm",
+                "wall": f"{tube.outer - tube.inner!r} mm",
             },
-            "materials": {"wall": {"law": "neo-hooke", "mu": f"{mu!r} MPa"}},
+            "materials": {"wall": {"law": "neo-hooke", "mu": f"{tube.mu!r} MPa"}},
             "effects": [
                 {"pressure": {"to": f"{pressures[-1]!r} MPa"}},
-                {
-                    "winding": {
-                        "pattern": pattern,
-                        "pitch": f"{pitch!r} mm",
-                        "fiber": {"modulus": f"{modulus!r} MPa", "diameter": f"{DIAMETER} mm"},
-                        "as": "smeared",
-                    }
-                },
+                {"winding": {"families": [each.entry() for each in threads], "as": "smeared"}},
             ],
             "model": "section",
             "mesh": {"section": refinement},
@@ -82,7 +99,7 @@ def section(
         }
     )
     if result.status != "converged":
-        raise RuntimeError(f"{pattern} at {degrees}°: {result.reason}")
+        raise RuntimeError(f"{threads}: {result.reason}")
     return [
         min(result.rows, key=lambda row: abs(row["pressure_kPa"] - 1e3 * pressure))
         for pressure in pressures

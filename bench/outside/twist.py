@@ -11,7 +11,7 @@ from scipy.optimize import minimize_scalar
 
 from analytic.tube import Family, Held, TubeState
 from bench.outside.table import Row
-from bench.outside.tubes import exact, section
+from bench.outside.tubes import Rubber, Threads, section
 
 INNER, OUTER, LENGTH = 4.7625, 6.35, 86.36
 PSI, INCH = 6.894757e-3, 25.4
@@ -72,7 +72,7 @@ SAMPLES = {
 
 def states(mu: float, sample: Sample) -> list[TubeState]:
     """The exact tube, its fibers of fixed length; left-handed, so that the twist is above zero."""
-    tube = exact(mu, INNER, OUTER, Family(-math.radians(sample.degrees)))
+    tube = Rubber(mu, INNER, OUTER, LENGTH).wound(Family(-math.radians(sample.degrees)))
     found: list[TubeState] = []
     for psi in sample.psi:
         found.append(tube.solve(Held(pressure=psi * PSI), found[-1] if found else None))
@@ -114,7 +114,7 @@ def rows() -> list[Row]:
         theory = _twists(ideal)
         pressures = [psi * PSI for psi in sample.psi]
         ran = section(
-            (mu, INNER, OUTER, LENGTH), ("single-helix-left", sample.degrees, STIFF), pressures
+            Rubber(mu, INNER, OUTER, LENGTH), [Threads(-sample.degrees, STIFF)], pressures
         )
         ours = np.radians([row["twist_deg"] for row in ran])
         worst = int(np.argmax(np.abs(ours / theory - 1)))
