@@ -30,8 +30,8 @@ SOURCES = {
     "figures are quoted.",
     "Bruder 2018": "D. Bruder, A. Sedal, R. Vasudevan, C. D. Remy, Force generation by parallel "
     "combinations of fiber-reinforced fluid-driven actuators, IEEE RA-L, arXiv 1805.00124: radius "
-    "5 mm, length 100 mm; slopes by regression over 500 states of TRI/IROS2018/testData_9 of the "
-    "same repository. No licence: only these figures are quoted.",
+    "5 mm, length 100 mm; slopes by regression over the states of TRI/IROS2018/testData_9 of the "
+    "same repository, its signs turned. No licence: only these figures are quoted.",
     "Dubied 2022": "M. Dubied, M. Michelis, A. Spielberg, R. Katzschmann, Sim-to-real for soft "
     "robots using differentiable FEM, arXiv 2201.12560: markers on a beam of 30 × 30 × 100 mm, "
     "clamped at one end; github.com/srl-ethz/diffPD_sim2real at 825e7b7, MIT. "

@@ -228,8 +228,8 @@ def rows(n: int = 4) -> list[Row]:
                 _worst(marked, theirs),
                 0.08,
                 "Dubied 2022",
-                "E is that source's own fit; the beam held level by hand before; two trials, up to "
-                "0.9 mm apart",
+                "E is that source's own fit; how the beam was held before; two trials, up to 1 mm "
+                "apart",
             )
         )
     return made

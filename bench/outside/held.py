@@ -27,8 +27,8 @@ ASKED = {48.0: (0.2, 0.2), -48.0: (0.2, 0.2), -85.0: (0.25, None)}
 UNKNOWN = {
     48.0: "wall, thread count, end fittings",
     -48.0: "wall, thread count, end fittings",
-    -85.0: "the wound angle as made, of which −79° would have the measured M/P; wall, thread "
-    "count, end fittings; F/P measured is 21.6 % below the computed one",
+    -85.0: "the wound angle as made (−79° would have the measured M/P), wall, thread count, end "
+    "fittings",
 }
 
 

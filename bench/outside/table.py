@@ -95,7 +95,7 @@ def page(rows: Sequence[Row], seconds: float, sources: Mapping[str, str]) -> str
         lines.append("Those that do not:\n")
         lines += [
             f"- {row.subject}, {row.quantity}: {percent(row.error or 0.0)} where "
-            f"{percent(row.asked or 0.0, sign=False)} was asked. {row.unknown}"
+            f"{percent(row.asked or 0.0, sign=False)} was asked. Not known: {row.unknown}."
             for row in missed
         ]
     lines.append("\n## The table\n")

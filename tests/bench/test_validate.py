@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import re
 
 import numpy as np
 import pytest
 
+from analytic.tube import Held
 from bench import validate
 from bench.outside import beam, braid, held, others, twist
 from bench.outside.table import Row, load, page, percent
+from bench.outside.tubes import section
 from tests.conftest import ROOT
 
 ROWS, SECONDS = load(validate.RECORD)
@@ -88,6 +91,23 @@ def test_what_is_exact_is_computed_again() -> None:
         old = kept(row.quantity, row.source)
         assert (row.computed, row.outside) == (old.computed, old.outside)
         assert row.holds
+
+
+def test_a_section_is_the_exact_tube_again() -> None:
+    threads = braid.WOUND["one, and half as much at −70°"](40.0)
+    families = (each.family(braid.TUBE.outer) for each in threads)
+    known = braid.TUBE.wound(*families).solve(Held(pressure=braid.PRESSURE))
+    row = section(braid.TUBE, threads, [braid.PRESSURE])[0]
+    assert row["axis_stretch"] == pytest.approx(known.stretch, rel=braid.ASKED)
+    twist_angle = known.twist * braid.TUBE.length
+    assert math.radians(row["twist_deg"]) == pytest.approx(twist_angle, rel=braid.ASKED)
+
+
+def test_a_coarse_beam_is_near_the_one_of_the_page() -> None:
+    coarse = beam.solve(1)
+    for load_of, seen in beam.COMSOL.items():
+        ours = [coarse[load_of][name] for name in beam.POINTS]
+        assert ours == pytest.approx(seen, rel=0.01)
 
 
 def test_markers_are_those_of_the_shipped_file() -> None:
