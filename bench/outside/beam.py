@@ -212,7 +212,7 @@ def rows(n: int = 4) -> list[Row]:
                 _worst(stiff, COMSOL[load]),
                 None,
                 "COMSOL",
-                "whether COMSOL's elements had pressures; these are as far off on the other side",
+                "whether COMSOL's elements had pressures",
             ),
         ]
         # the top's marker stands above a face that turns; the others beside it, along its axis
