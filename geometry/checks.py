@@ -8,7 +8,7 @@ from geometry.actuator import Actuator
 from geometry.mesh.data import Floats, Ints, MeshData
 from geometry.mesh.errors import MeshError
 from geometry.mesh.reference import area_vectors, cell_rule, determinants, gauss, shape_functions
-from geometry.winding.embed import embed_families
+from geometry.winding.embed import embed, embed_families
 from geometry.winding.outline import arc_length
 from geometry.winding.ribbons import Wound
 from geometry.winding.segments import EmbeddedFibers
@@ -149,7 +149,7 @@ def check(
     area = part * actuator.winding_perimeter * actuator.length
     pairs["winding area"] = (surface_area(mesh, "winding"), area)
     if winding is not None:
-        fibers, laid = embed_families(mesh, actuator, winding)[0], winding.ribbons(actuator)
+        fibers, laid = embed(mesh, actuator, winding), winding.ribbons(actuator)
         expected = float(laid.lengths(actuator).sum())
         if not mesh.half or mirrored(laid.families):
             pairs["winding length"] = (float(fibers.length @ fibers.share), part * expected)

@@ -21,7 +21,7 @@ from fiberbend.accuracy.table import (
     up_to,
 )
 from fiberbend.case.case import Case
-from fiberbend.effects.effect import Turns
+from fiberbend.effects.wound.turns import Turns
 from fiberbend.models.model import MeshedModel, Rung
 from fiberbend.models.resolution import CALIBRATED
 
@@ -320,7 +320,7 @@ def winding_error(case: Case, state: float) -> float:
     The run computes it: see `fiberbend.accuracy.computed`.
     """
     turns = case.turns
-    if turns is None or turns.discrete or turns.pitch is None:
+    if turns is None or turns.discrete or math.isinf(turns.spacing):
         return 0.0
     if turns.bulges:
         return CALIBRATED + lacking(case, state)

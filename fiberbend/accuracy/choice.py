@@ -13,7 +13,8 @@ from fiberbend.calibration import expected
 from fiberbend.calibration.calibrate import waits
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.effect import Draft, Turns
+from fiberbend.effects.effect import Draft
+from fiberbend.effects.wound.turns import Turns
 from fiberbend.models.choice import MODELS, objection
 from fiberbend.models.model import MeshedModel, Objection, completed_mesh
 from fiberbend.schema.quantities import Spec

@@ -7,9 +7,10 @@ import math
 from fiberbend.calibration.digest import CELL, LAYERS, SECTION, TOLERANCE
 from fiberbend.calibration.reach import Reach, height
 from fiberbend.case.case import Case, Mesh, Output, Solver
-from fiberbend.effects.effect import Effect, Turns
+from fiberbend.effects.effect import Effect
 from fiberbend.effects.pressure import inflate
 from fiberbend.effects.straight import straight_of
+from fiberbend.effects.wound.turns import Turns
 
 PARTS = (0.125, 0.25, 0.5, 0.75, 1.0)
 """Of the greatest curvature: states that are bent."""

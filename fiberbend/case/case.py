@@ -21,8 +21,9 @@ from pydantic_core import PydanticCustomError
 
 from fiberbend.case.coefficients import coefficient_fields
 from fiberbend.case.names import MODELS
-from fiberbend.effects.effect import Effect, Inflation, Turns, keep_straight
+from fiberbend.effects.effect import Effect, Inflation, keep_straight
 from fiberbend.effects.table import EffectEntry, unwrap
+from fiberbend.effects.wound.turns import Turns
 from fiberbend.schema.quantities import (
     Accuracy,
     Angle,

@@ -17,13 +17,14 @@ from fiberbend.effects.effect import (
     Effect,
     Requests,
     Site,
-    Turns,
 )
 from fiberbend.effects.wound.by_families import ByFamilies
 from fiberbend.effects.wound.by_pattern import ByPattern
-from fiberbend.effects.wound.family import Around, FamilySpec
+from fiberbend.effects.wound.family import Around, FamilySpec, fiber_problems
+from fiberbend.effects.wound.room import rounded
 from fiberbend.effects.wound.thread import BulgingSpec, FiberSpec
 from fiberbend.effects.wound.threads import Threads
+from fiberbend.effects.wound.turns import Turns
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Length, LengthOrZero, Quantity
 from geometry.winding.patterns import PATTERNS
@@ -160,8 +161,8 @@ class WindingEffect(Effect):
         return {"as": DISCRETE} if self.representation == SMEARED else {}
 
     def mirror_breaker(self) -> str:
-        """A pattern with a hand, families that are not balanced."""
-        return self._breaker
+        """A pattern with a hand, families that are not balanced; nothing is known of wrong ones."""
+        return "" if any(self._wrong("")) else self._breaker
 
     def bends(self) -> bool:
         """Half a turn about the axis maps every pattern onto itself, half a pitch on."""
@@ -183,17 +184,21 @@ class WindingEffect(Effect):
             yield Problem(f"{path}.lines", f"{self.lines}, expected 1 line where the width is zero")
         if self.bulging is not None:
             yield from self.bulging.problems(f"{path}.bulging")
-        wrong = [*self._runs(path), *self._made(path)]
+        wrong = list(self._wrong(path))
         yield from wrong
         if draft.actuator is None or wrong:
             return
-        if self._wanted == CALIBRATED and not _rounded(draft.actuator):
+        if self._wanted == CALIBRATED and not rounded(draft.actuator):
             yield Problem(
                 f"{path}.as",
                 '"calibrated", but the thread is straight apart from corners, where it presses on '
                 "no length of rubber: expected discrete or smeared",
             )
         yield from self._threads.room(path, draft.actuator, self.width or 0.0)
+
+    def _wrong(self, path: str) -> Iterator[Problem]:
+        yield from self._runs(path)
+        yield from fiber_problems(path, self.fiber, self.families or ())
 
     @property
     def _wanted(self) -> Kind | None:
@@ -222,20 +227,6 @@ class WindingEffect(Effect):
                 '"calibrated", but one stiffness of the bulge between turns stands for one pitch '
                 "all around, expected smeared or discrete with families",
             )
-
-    def _made(self, path: str) -> Iterator[Problem]:
-        """What is wrong with its fibers."""
-        own = [(n, each.fiber) for n, each in enumerate(self.families or ()) if each.fiber]
-        for number, fiber in own:
-            yield from fiber.problems(f"{path}.families.{number}.fiber")
-        if self.fiber is not None:
-            yield from self.fiber.problems(f"{path}.fiber")
-            if own and len(own) == len(self.families or ()):
-                text = "no effect where every family has its own, expected no value"
-                yield Problem(f"{path}.fiber", text)
-        elif not own or len(own) < len(self.families or ()):
-            text = "missing, expected a named fiber or its modulus and diameter"
-            yield Problem(f"{path}.fiber", text)
 
     def completed(self, offers: frozenset[str] | None) -> Self:
         """As finely as the model can have it; every turn where the model is to be chosen."""
@@ -406,8 +397,3 @@ def _stiffness(threads: Threads, laid: Ribbons, which: Ints) -> float | Floats:
     if len(each) == 1:
         return each[0]
     return np.array([each[family.thread] for family in laid.families])[which]
-
-
-def _rounded(actuator: Actuator) -> bool:
-    """Whether a thread around it is curved anywhere but at corners."""
-    return any(side.center is not None for side in actuator.outline())

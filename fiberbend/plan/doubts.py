@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.effect import Effect, Turns
+from fiberbend.effects.effect import Effect
+from fiberbend.effects.wound.turns import Turns
 from fiberbend.models.choice import choose_model
 from fiberbend.models.model import ModelKind
 from fiberbend.models.resolution import FARTHEST_PITCH, lost_pressure, winding_remark

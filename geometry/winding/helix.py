@@ -93,10 +93,6 @@ class Winding:
         """Length of one turn in mm, √(S² + pitch²)."""
         return math.hypot(actuator.winding_perimeter, self.pitch)
 
-    def curve_length(self, actuator: Actuator) -> float:
-        """Length of each curve in mm over the chamber's length, L/pitch √(S² + pitch²)."""
-        return actuator.length / self.pitch * self.turn_length(actuator)
-
     def density(self, actuator: Actuator) -> float:
         """Fiber length per area and helix in 1/mm, √(S² + pitch²) / (S pitch)."""
         return self.turn_length(actuator) / (actuator.winding_perimeter * self.pitch)

@@ -111,6 +111,14 @@ def test_a_body_without_a_floor_has_no_wall_alone() -> None:
         parse_case(given)
 
 
+@pytest.mark.parametrize("wrong", [{"pitch": "3 mm"}, {"families": [{"hand": "left"}]}])
+def test_what_is_missing_is_said_where_half_is_asked_for(wrong: dict[str, Any]) -> None:
+    winding = {"winding": wrong | {"fiber": "kevlar"}}
+    given = small(effects=[{"pressure": {"to": "60 kPa"}}, winding], mesh={"symmetry": "half"})
+    with pytest.raises(CaseError, match=r"missing|neither"):
+        parse_case(given)
+
+
 def test_a_pattern_has_no_around() -> None:
     given = small()
     given["effects"][1]["winding"]["around"] = "wall"

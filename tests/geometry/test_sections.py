@@ -39,6 +39,7 @@ from geometry.winding.outline import (
 )
 from geometry.winding.smear import smear
 from tests.exact.equal_area import EqualArea, Shape
+from tests.geometry.lengths import curve_length
 
 HEMICIRCLE = HemicircleActuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
 RECTANGLE = RectangleActuator(width=15, height=7, length=40, wall=2, floor=3, sheath=1, cap=8)
@@ -268,7 +269,7 @@ def test_windings_have_their_length(body: ShapedActuator, pattern: str) -> None:
     winding = Winding(pattern, 7, 0.38)
     hexes = hexahedral_body(body, MeshSize(axial=4, section=2, half=False))
     for mesh in (hexes, to_tetrahedra(hexes)):
-        expected = winding.curve_length(body)
+        expected = curve_length(winding, body)
         fibers = embed(mesh, body, winding)
         for curve in range(winding.curves):
             of_curve = fibers.curve == curve

@@ -22,6 +22,7 @@ from geometry.winding.outline import arc_length, curvature, pieces, position
 from geometry.winding.patterns import PATTERNS, Helix, Pattern
 from geometry.winding.segments import EmbeddedFibers
 from geometry.winding.smear import smear
+from tests.geometry.lengths import curve_length
 
 BODY = HemicircleActuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
 DOUBLE = Winding("double-helix", 3, 0.38)
@@ -39,7 +40,7 @@ def test_curves_have_their_length_and_tangents(winding: Winding) -> None:
     for curve in range(winding.curves):
         x, t = winding.points(BODY, curve, 40_001)
         length = np.linalg.norm(np.diff(x, axis=0), axis=1).sum()
-        assert length == pytest.approx(winding.curve_length(BODY), rel=2e-4)
+        assert length == pytest.approx(curve_length(winding, BODY), rel=2e-4)
         chord = np.diff(x, axis=0)
         mean = (t[1:] + t[:-1]) / 2
         aligned = (chord * mean).sum(axis=1) / np.linalg.norm(chord, axis=1)
@@ -100,7 +101,7 @@ def test_a_helix_starts_where_its_pattern_says(monkeypatch: pytest.MonkeyPatch) 
         mine = fibers.curve == curve
         phase = (fibers.z[mine] + 4 * fibers.s[mine] / BODY.winding_perimeter) / 4 % 1
         assert np.abs((phase - 0.5 * curve + 0.5) % 1 - 0.5).max() < 1e-9
-        assert fibers.length[mine].sum() == pytest.approx(one.curve_length(BODY), rel=2e-5)
+        assert fibers.length[mine].sum() == pytest.approx(curve_length(one, BODY), rel=2e-5)
 
 
 @pytest.mark.parametrize("winding", [DOUBLE, *SINGLES])
@@ -110,13 +111,13 @@ def test_embedded_length_is_exact_on_any_full_mesh(winding: Winding) -> None:
         fibers = embed(mesh, BODY, winding)
         for curve in range(winding.curves):
             length = fibers.length[fibers.curve == curve].sum()
-            assert length == pytest.approx(winding.curve_length(BODY), rel=2e-5)
+            assert length == pytest.approx(curve_length(winding, BODY), rel=2e-5)
 
 
 def test_half_mesh_has_half_the_fibers() -> None:
     for mesh in _meshes(half=True):
         fibers = embed(mesh, BODY, DOUBLE)
-        half = DOUBLE.curve_length(BODY) * len(DOUBLE.hands) / 2
+        half = curve_length(DOUBLE, BODY) * len(DOUBLE.hands) / 2
         assert fibers.length @ fibers.share == pytest.approx(half, rel=2e-5)
         assert fibers.s.max() <= BODY.winding_perimeter / 2
 
@@ -170,13 +171,13 @@ def test_a_line_along_a_border_of_tetrahedra_counts_once() -> None:
         winding = Winding(pattern, pitch, 0.0)
         for mesh in (hexes, tets):
             total = embed(mesh, BODY, winding).length.sum()
-            assert total == pytest.approx(winding.curve_length(BODY), rel=2e-5)
+            assert total == pytest.approx(curve_length(winding, BODY), rel=2e-5)
 
 
 def test_smeared_length_is_the_discrete_one() -> None:
     for mesh in _meshes(half=False):
         fibers = smear(mesh, BODY, DOUBLE)
-        total = len(DOUBLE.hands) * DOUBLE.curve_length(BODY)
+        total = len(DOUBLE.hands) * curve_length(DOUBLE, BODY)
         assert fibers.length.sum() == pytest.approx(total, rel=2e-5)
 
 
@@ -208,7 +209,7 @@ def test_smeared_fibers_know_the_curvature_of_their_path() -> None:
         return np.searchsorted(ends, np.minimum(s % perimeter, -s % perimeter))
 
     points, tangents = winding.points(BODY, 0, 20001)
-    step = winding.curve_length(BODY) / 20000
+    step = curve_length(winding, BODY) / 20000
     bend = np.linalg.norm(np.diff(tangents, axis=0), axis=1) / step
     middle = (points[1:] + points[:-1]) / 2
     along = piece_at(arc_length(BODY, middle[:, :2], middle[:, 0] < 0))

@@ -162,6 +162,22 @@ def test_threads_along_the_floor_and_around_the_wall_alone() -> None:
     assert abs(stretches[0]) < 0.3 * stretches[1]
 
 
+def test_threads_along_the_axis_are_the_same_in_section_and_cell() -> None:
+    places = [family(angle_from_axis="0 deg", at=["40 deg", "180 deg", "320 deg"], fiber=THREAD)]
+    section, discrete, cell = (
+        solved(places, model, kind, winding={"fiber": None}, pressure={"to": "10 kPa"})
+        for model, kind in (("section", "smeared"), ("section", "discrete"), ("cell", "discrete"))
+    )
+    alike(section, discrete, STATE, 1e-12)
+    alike(section, cell, STATE, 1e-8)
+    even = [family(angle_from_axis="0 deg", starts=200, fiber=THREAD)]
+    spread, each = (
+        solved(even, "section", kind, winding={"fiber": None}, pressure={"to": "10 kPa"})
+        for kind in ("smeared", "discrete")
+    )
+    assert each.last("angle_deg") == pytest.approx(spread.last("angle_deg"), rel=1e-3)
+
+
 @pytest.mark.parametrize("kind", ["smeared", "discrete"])
 def test_half_a_body_is_the_whole_one(kind: str) -> None:
     families = [

@@ -7,10 +7,10 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from fiberbend.effects.effect import Turns
 from fiberbend.effects.wound.family import Around, FamilySpec
 from fiberbend.effects.wound.room import of_families, thickness
 from fiberbend.effects.wound.threads import POINTS_A_TURN, Threads
+from fiberbend.effects.wound.turns import Turns
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.units import show
 from geometry.winding.families import Family

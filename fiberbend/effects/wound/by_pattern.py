@@ -7,9 +7,9 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from fiberbend.effects.effect import Turns
 from fiberbend.effects.wound.room import ROUNDING, rounded_up, thickness
 from fiberbend.effects.wound.threads import POINTS_A_TURN, Threads
+from fiberbend.effects.wound.turns import Turns
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.units import show
 from geometry.winding.patterns import PATTERNS, Pattern, least_pitch, turn_spacing

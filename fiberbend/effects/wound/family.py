@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field
@@ -160,3 +160,27 @@ class FamilySpec(Spec):
             f"{degrees:.4g}° from the axis, pitch {pitch:.4g} mm, {starts}, threads "
             f"{family.spacing:.4g} mm apart, {self.hand}{where}"
         )
+
+
+def fiber_problems(
+    path: str, whole: FiberSpec | None, families: Sequence[FamilySpec]
+) -> Iterator[Problem]:
+    """What is wrong with the fibers of a winding.
+
+    Args:
+        path: of the winding.
+        whole: of the winding.
+        families: which may have their own.
+    """
+    own = [(number, each.fiber) for number, each in enumerate(families) if each.fiber is not None]
+    for number, fiber in own:
+        yield from fiber.problems(f"{path}.families.{number}.fiber")
+    every = bool(own) and len(own) == len(families)
+    if whole is not None:
+        yield from whole.problems(f"{path}.fiber")
+        if every:
+            text = "no effect where every family has its own, expected no value"
+            yield Problem(f"{path}.fiber", text)
+    elif not every:
+        text = "missing, expected a named fiber or its modulus and diameter"
+        yield Problem(f"{path}.fiber", text)

@@ -36,6 +36,11 @@ def thickness(path: str, diameter: float, actuator: Actuator) -> Iterator[Proble
         )
 
 
+def rounded(actuator: Actuator) -> bool:
+    """Whether a thread around it is curved anywhere but at corners."""
+    return any(side.center is not None for side in actuator.outline())
+
+
 def rounded_up(length: float) -> float:
     """The next length of four digits."""
     step = 10.0 ** (math.floor(math.log10(length)) - 3)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Protocol
 
-from fiberbend.effects.effect import Turns
+from fiberbend.effects.wound.turns import Turns
 from fiberbend.schema.problems import Problem
 
 if TYPE_CHECKING:
