@@ -14,7 +14,7 @@ export PRTE_MCA_rmaps_default_mapping_policy := :oversubscribe
 
 .DEFAULT_GOAL := help
 .PHONY: help setup tools demo sweep test browser notebook verify hard survive tables speed accuracy \
-    calibration knowledge growth times peers check format docs pictures schema clean \
+    calibration knowledge growth times validate peers check format docs pictures schema clean \
     test-fast test-wheel test-debian13 test-image platforms
 
 help: ## list the commands
@@ -101,6 +101,9 @@ growth: setup ## time and memory on finer and finer bodies, one and two ranks; t
 
 times: setup ## fit the times and memory of `fiberbend plan` to runs; an idle machine, three minutes
 	$(BIN)/python -m bench.plan_times $(TIMES)
+
+validate: setup ## figures beside those that no one here wrote, docs/validation.md; a few minutes
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m bench.validate
 
 peers: setup ## bend the same actuator in CalculiX, felupe and plain dolfinx; half an hour
 	bench/peers/setup.sh
