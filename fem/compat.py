@@ -14,11 +14,7 @@ import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from fem.quick_start import (
-    without_method_caches,
-    without_pkg_resources,
-    without_settings_files,
-)
+from fem.quick_start import without_method_caches, without_pkg_resources, without_settings_files
 
 with without_pkg_resources(), without_method_caches():
     import basix
