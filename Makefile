@@ -14,8 +14,8 @@ export PRTE_MCA_rmaps_default_mapping_policy := :oversubscribe
 
 .DEFAULT_GOAL := help
 .PHONY: help setup tools demo sweep test browser notebook verify hard survive tables speed accuracy \
-    calibration knowledge growth times peers check format docs pictures schema clean \
-    test-fast test-wheel test-debian13 platforms
+    calibration knowledge growth times validate peers check format docs pictures schema clean \
+    test-fast test-wheel test-debian13 test-image platforms
 
 help: ## list the commands
 	@sed -n 's/^\([a-z0-9-]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 20
@@ -44,6 +44,9 @@ test-wheel: ## test-fast with dolfinx as wheels from PyPI, in build/wheel
 
 test-debian13: ## test-fast on a Debian 13 of its own, in build/debian13; needs root
 	bench/stacks/on.sh debian13 test-fast
+
+test-image: ## follow Dockerfile without Docker in a Debian 13, and run what it makes offline; needs root
+	bench/stacks/on.sh image
 
 browser: tools ## open reports in headless Chromium and use them; part of make test
 	$(BIN)/python -m pytest tests/report/test_browser.py
@@ -98,6 +101,9 @@ growth: setup ## time and memory on finer and finer bodies, one and two ranks; t
 
 times: setup ## fit the times and memory of `fiberbend plan` to runs; an idle machine, three minutes
 	$(BIN)/python -m bench.plan_times $(TIMES)
+
+validate: setup ## figures beside those that no one here wrote, docs/validation.md; a few minutes
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m bench.validate
 
 peers: setup ## bend the same actuator in CalculiX, felupe and plain dolfinx; half an hour
 	bench/peers/setup.sh

@@ -62,6 +62,8 @@ class Checker:
             "pip": self._pip,
             "source": self._source,
             "sbatch": self._sbatch,
+            "docker": self._docker,
+            "conda": self._conda,
             "cd": lambda _: None,
             "git": lambda _: None,
             "./setup.sh": lambda _: None,
@@ -104,6 +106,29 @@ class Checker:
         )
         if done.returncode:
             raise ValueError(done.stderr)
+
+    def _docker(self, words: list[str]) -> None:
+        if words == ["build", "--tag", "fiberbend", "."]:
+            return
+        if words[0] != "run":
+            raise ValueError("expected docker build --tag fiberbend . or docker run")
+        at = words.index("fiberbend")
+        options, rest = words[1:at], words[at + 1 :]
+        known = {"--rm": 1, "--volume": 2, "--network=none": 1, "--entrypoint": 2}
+        entry = "fiberbend"
+        while options:
+            if options[0] not in known:
+                raise ValueError(f"docker run {options[0]}, expected one of {', '.join(known)}")
+            if options[0] == "--entrypoint":
+                entry = options[1]
+            options = options[known[options[0]] :]
+        self.command(shlex.join([entry, *rest]), "in the container")
+
+    def _conda(self, words: list[str]) -> None:
+        if words[0] != "activate" and words[:3] != ["env", "create", "--file"]:
+            raise ValueError("expected conda env create --file FILE or conda activate NAME")
+        if words[0] == "env" and not (ROOT / words[3]).is_file():
+            raise ValueError(f"no file {words[3]}")
 
     def _source(self, words: list[str]) -> None:
         if words != [".venv/bin/activate"]:

@@ -115,7 +115,7 @@ actuator; bodies are coarse (elements of 8 mm) with their winding spread over it
 - *modes*: unstable modes at the end (negative eigenvalues with all loads kept, by inertia).
 - *gap*: of the work of the loads, ∫ P dV and the like by a spline through the steps, from the
   stored energy, over the greatest stored energy.
-- Times are wall times on the machine that made the page, beside whatever else it did.
+- *s*: processor time of the run on the machine that made the page, with kernels that it compiled.
 
 """
 COLUMNS = (

@@ -16,10 +16,11 @@ import resource
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 from bench.ranks import MPIRUN
 from fiberbend.process.ranks import launcher
@@ -56,51 +57,58 @@ TETRAHEDRA = (
     "output.stop_at_angle=90 deg",
 )
 """A body whose every tangent is left to MUMPS."""
-ORDERED = """
-import sys
-from fem.solver import factor
-factor.ORDERING_PORD = {number}
-sys.argv[0] = "fiberbend"
-from fiberbend.__main__ import entry
-entry()
-"""
+PROGRAM = (
+    "import sys, time; time.perf_counter = time.process_time; {first}; sys.argv[0] = 'fiberbend'; "
+    "from fiberbend.__main__ import entry; entry()"
+)
+"""fiberbend, whose solver reads the clock of its processor: something else may keep it waiting."""
+ORDERED = "from fem.solver import factor; factor.ORDERING_PORD = {number}"
 COLUMNS = ("pressure_kPa", "angle_deg", "tip_force_N")
 
 
-def solve(name: str, folder: Path) -> tuple[list[dict[str, float]], dict[str, Any], float]:
-    """Run one of the cases as a user does.
+class Run(NamedTuple):
+    """A run of a case; times in s."""
+
+    answers: list[dict[str, float]]
+    """What it answers where it was asked for."""
+    record: dict[str, Any]
+    """Its run.json."""
+    cpu: float
+    """Of all its processes together; ranks that wait for each other keep their processors busy."""
+    wall: float
+
+    @property
+    def factor(self) -> float:
+        """Processor time of all factorisations, of rank 0."""
+        return float(self.record["wall_s"]["solve/factor"])
+
+
+def solve(name: str, folder: Path) -> Run:
+    """Run one of the cases.
 
     Args:
         name: of CASES.
         folder: where the run is left.
-
-    Returns:
-        What it answers where it was asked for, its record, and the processor time of all its
-        processes in s.
     """
     ranks, changed = CASES[name]
-    return launch(ranks, ["-m", "fiberbend"], changed, folder)
+    return launch(ranks, "pass", changed, folder)
 
 
-def launch(
-    ranks: int, program: Sequence[str], changed: Sequence[str], folder: Path
-) -> tuple[list[dict[str, float]], dict[str, Any], float]:
-    """Run a case by a program.
+def launch(ranks: int, first: str, changed: Sequence[str], folder: Path) -> Run:
+    """Run a case as a user does, in processes of its own.
 
     Args:
         ranks: number of processes.
-        program: what Python runs.
+        first: a statement of Python that each runs before.
         changed: name of a case, and changes to it.
         folder: where the run is left.
-
-    Returns:
-        As `solve`.
 
     Raises:
         RuntimeError: it failed.
     """
     case, *changes = changed
-    command = [sys.executable, *program, "run", f"cases/{case}.yaml", "--quiet"]
+    program = PROGRAM.format(first=first)
+    command = [sys.executable, "-c", program, "run", f"cases/{case}.yaml", "--quiet"]
     command += ["--overwrite", "--out", str(folder)]
     command += [word for change in (*changes, *BARE) for word in ("--set", change)]
     if ranks > 1:
@@ -108,14 +116,14 @@ def launch(
     environment = os.environ | MPIRUN | {"PYTHONPATH": str(ROOT)}
     # a warm cache holds Python's bytes too
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    after, wall = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter() - began
     if done.returncode:
         raise RuntimeError(f"{case}: {done.stderr.strip()}")
     record = json.loads((folder / "run.json").read_text(encoding="utf-8"))
     spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return list(answers(folder / "history.csv")), record, spent
+    return Run(list(answers(folder / "history.csv")), record, spent, wall)
 
 
 def answers(history: Path) -> Iterator[dict[str, float]]:
@@ -140,14 +148,15 @@ def measured(before: Mapping[str, Any], only: Sequence[str]) -> dict[str, Any]:
     facts = {name: before.get(name) for name in ("versions", "processor", "blas")}
     for name in (name for name in CASES if name in only):
         with tempfile.TemporaryDirectory() as folder:
-            found, record, _ = solve(name, Path(folder) / "run")
+            found, record, *_ = solve(name, Path(folder) / "run")
             repeats = [solve(name, Path(folder) / "run") for _ in range(REPEATS)]
-        if any(again != found for again, _, _ in repeats) and CASES[name][0] == 1:
+        if any(again.answers != found for again in repeats) and CASES[name][0] == 1:
             raise RuntimeError(f"{name}: two runs of one process differ")
         runs[name] = {
             "answers": found,
-            "cpu_s": round(min(spent for _, _, spent in repeats), 2),
-            "factor_s": min(again["wall_s"]["solve/factor"] for _, again, _ in repeats),
+            "cpu_s": round(min(again.cpu for again in repeats), 2),
+            "wall_s": round(min(again.wall for again in repeats), 2),
+            "factor_cpu_s": min(again.factor for again in repeats),
             "unknowns": record["unknowns"],
             "iterations": record["newton_iterations"],
         }
@@ -156,7 +165,8 @@ def measured(before: Mapping[str, Any], only: Sequence[str]) -> dict[str, Any]:
             "processor": f"{record['machine']['processor']}, {record['blas']['kernel']}",
             "blas": record["blas"]["library"],
         }
-        print(f"{name}: {runs[name]['cpu_s']} s", flush=True)
+        spent = runs[name]
+        print(f"{name}: {spent['cpu_s']} s, {spent['wall_s']} s by the clock", flush=True)
     return {
         "stack": stack(),
         **facts,
@@ -167,20 +177,20 @@ def measured(before: Mapping[str, Any], only: Sequence[str]) -> dict[str, Any]:
 
 
 def orderings() -> dict[str, float | None]:
-    """Time of all factorisations of a body of tetrahedra by ordering, s; None: MUMPS has it not."""
+    """Processor time of all factorisations of tetrahedra by ordering, s; None: not in MUMPS."""
     found: dict[str, float | None] = {}
     for name, number in ORDERINGS.items():
-        program = ["-c", ORDERED.format(number=number)]
+        asked = ORDERED.format(number=number)
         times = []
         with tempfile.TemporaryDirectory() as folder:
             for _ in range(REPEATS):
                 try:
-                    _, record, _ = launch(1, program, TETRAHEDRA, Path(folder) / "run")
+                    run = launch(1, asked, TETRAHEDRA, Path(folder) / "run")
                 except RuntimeError as error:
                     if "MUMPS took ordering" not in str(error):
                         raise
                     break
-                times.append(record["wall_s"]["solve/factor"])
+                times.append(run.factor)
         found[name] = min(times) if times else None
         print(f"ordering {name}: {found[name]}", flush=True)
     return found
@@ -213,8 +223,9 @@ def release(record: Mapping[str, Any]) -> str:
 
 
 def records() -> list[dict[str, Any]]:
-    """What all stacks have left, the oldest release first."""
+    """What stacks have left on which all cases were run, the oldest release first."""
     found = [json.loads(p.read_text(encoding="utf-8")) for p in RECORDS.glob("dolfinx-*.json")]
+    found = [record for record in found if record["runs"].keys() == CASES.keys()]
     return sorted(found, key=lambda record: [int(part) for part in release(record).split(".")])
 
 
@@ -279,11 +290,10 @@ def page(all_records: Sequence[Mapping[str, Any]]) -> str:
     lines.append("|---" * (len(names) + 3) + "|")
     for name in CASES:
         runs = [record["runs"][name] for record in all_records]
-        lines.append(
-            f"| {name} | {runs[0]['unknowns']} | {runs[0]['iterations']} | "
-            + " | ".join(f"{r['cpu_s']:.2f} ({r['factor_s']:.2f})" for r in runs)
-            + " |"
+        spent = " | ".join(
+            "{cpu_s:.2f} ({factor_cpu_s:.2f}), {wall_s:.2f}".format(**r) for r in runs
         )
+        lines.append(f"| {name} | {runs[0]['unknowns']} | {runs[0]['iterations']} | {spent} |")
     lines += [ORDERING, "| ordering | " + " | ".join(names) + " |", "|---" * (len(names) + 1) + "|"]
     for ordering in ORDERINGS:
         times = [record["orderings"].get(ordering) for record in all_records]
@@ -318,19 +328,23 @@ DIFFERENCES = """
 ## Differences
 
 The greatest of all quantities above, relative to the greatest value of the quantity and to the
-first stack.
+first stack; 0 where all ten digits of `history.csv` are the same.
 """
 SPEED = """
 ## Speed
 
-Processor time of the whole process without pictures and report, s, and in parentheses the time of
-the factorisations: the least of two, after one run that compiles the kernels.
+Processor time of the whole process without pictures and report, s, in parentheses that of the
+factorisations, then the time by the clock, which grows with what else the machine does: the least
+of two each, after one run that compiles the kernels. Two ranks are counted together, also while one
+waits for the other, and the factorisations of one. Other programs share caches and cores, which
+lengthens processor time by up to half: stacks are compared by their iterations, and by times only
+where the machine was idle for all.
 """
 ORDERING = """
 ## Orderings
 
-Time of all factorisations of a body of tetrahedra by MUMPS up to 90°, s, by the ordering of its
-unknowns; the least of two. The program asks for PORD on every stack.
+Processor time of all factorisations of a body of tetrahedra by MUMPS up to 90°, s, by the ordering
+of its unknowns; the least of two. The program asks for PORD on every stack.
 """
 
 
@@ -345,9 +359,9 @@ def main() -> None:
         before = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
         record = measured(before, asked.only or [*CASES, "orderings"])
         file.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    complete = [record for record in records() if record["runs"].keys() == CASES.keys()]
-    if len(complete) > 1:
-        PAGE.write_text(page(complete), encoding="utf-8")
+    found = records()
+    if len(found) > 1:
+        PAGE.write_text(page(found), encoding="utf-8")
 
 
 if __name__ == "__main__":

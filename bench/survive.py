@@ -23,6 +23,7 @@ ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "stability.md"
 LIMIT = 300.0
 """Seconds after which a command hangs."""
+_LEADER = "FIBERBEND_LEADER"
 _ENDS = {".png": b"IEND\xaeB`\x82", ".csv": b"\n", ".yaml": b"\n", ".msh": b"\n$EndElements\n"}
 """How a file of a kind ends."""
 
@@ -32,7 +33,7 @@ def launch(ranks: int, arguments: Sequence[str | Path]) -> subprocess.Popen[str]
     environment = os.environ | MPIRUN | {"PYTHONPATH": str(ROOT)}
     mpirun = [launcher(), "-n", str(ranks)] if ranks > 1 else []
     return subprocess.Popen(
-        [*mpirun, sys.executable, "-m", "fiberbend", *map(str, arguments)],
+        led([*mpirun, sys.executable, "-m", "fiberbend", *map(str, arguments)]),
         env=environment,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
@@ -43,15 +44,26 @@ def launch(ranks: int, arguments: Sequence[str | Path]) -> subprocess.Popen[str]
     )
 
 
+def led(command: Sequence[str]) -> list[str]:
+    """A command all of whose processes know the number of the first one.
+
+    MPICH's launcher gives each rank a session of its own.
+    """
+    return ["bash", "-c", f'export {_LEADER}=$$; exec "$@"', "bash", *command]
+
+
 def session(number: int) -> list[int]:
-    """Processes of a session that still run."""
+    """Processes of a session, and all others of a command that is `led`, that still run."""
     found = []
+    led_by = f"{_LEADER}={number}".encode()
     for entry in Path("/proc").iterdir():
         if not entry.name.isdecimal():
             continue
         with contextlib.suppress(OSError):
             state, *numbers = (entry / "stat").read_text().rpartition(")")[2].split()
-            if int(numbers[2]) == number and state != "Z":
+            if state != "Z" and (
+                int(numbers[2]) == number or led_by in (entry / "environ").read_bytes().split(b"\0")
+            ):
                 found.append(int(entry.name))
     return found
 

@@ -1,8 +1,9 @@
-"""Imports of PETSc, ufl and ffcx: quicker, and not steered by what lies in the working folder."""
+"""Imports of PETSc, ufl and ffcx: quicker, not steered by the working folder, and forgetful."""
 
 from __future__ import annotations
 
 import contextlib
+import functools
 import sys
 import types
 from collections.abc import Iterator
@@ -29,7 +30,8 @@ def start_petsc() -> None:
         MachineError: the folders that MPI and dolfinx need cannot be used.
     """
     folders.settle()
-    from mpi4py import MPI
+    with world.starting():
+        from mpi4py import MPI
 
     if MPI.COMM_WORLD.size > 1 and sys.excepthook is sys.__excepthook__:
         sys.excepthook = _end_all
@@ -68,6 +70,28 @@ def without_pkg_resources() -> Iterator[None]:
         yield
     finally:
         del sys.modules["pkg_resources"]
+
+
+class _Forgetful(functools.singledispatchmethod):  # type: ignore[type-arg]
+    """A method that holds on to no object that it was called for."""
+
+    def __init__(self, function: Any) -> None:
+        super().__init__(function)
+        vars(self)["_method_cache"] = None
+
+
+@contextlib.contextmanager
+def without_method_caches() -> Iterator[None]:
+    """What is imported meanwhile forgets the objects of its methods that go by a type.
+
+    Python 3.13.0 and 3.13.1 keep each of them for ever, and ufl's have whole forms in them.
+    """
+    usual = functools.singledispatchmethod
+    functools.singledispatchmethod = _Forgetful  # type: ignore[assignment, misc]
+    try:
+        yield
+    finally:
+        functools.singledispatchmethod = usual  # type: ignore[misc]
 
 
 def without_settings_files(reader: str, *modules: Any) -> None:

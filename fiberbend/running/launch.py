@@ -94,7 +94,7 @@ def start_mpi() -> None:
     os.environ.update({name: _ALONE[name] for name in new})
     stray = {_STRAY: os.environ.pop(_STRAY)} if alone and _STRAY in os.environ else {}
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), world.starting():
             # of another launcher, of which the error below speaks
             warnings.filterwarnings("ignore", "suspicious MPI", RuntimeWarning)
             from mpi4py import MPI
@@ -226,6 +226,7 @@ def let_rank_0_speak(code: int) -> None:
         return
     time.sleep(_PATIENCE)
     print(f"rank {rank()}: {_group.error}", file=sys.stderr, flush=True)
+    ranks.end_all(code)
 
 
 def say(text: str, stream: TextIO | None = None) -> None:

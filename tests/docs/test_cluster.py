@@ -14,6 +14,7 @@ import yaml
 from bench.doc_commands import ROOT, Reader, blocks
 from bench.growth import MARKS
 from bench.ranks import MPIRUN
+from fiberbend.process.ranks import launcher
 from tests.run.conftest import small
 from tests.run.test_sweep import SWEEP
 
@@ -34,7 +35,7 @@ while [[ $1 == --* ]]; do
 done
 tasks=$SLURM_NTASKS
 unset SLURM_NTASKS SLURM_PROCID
-exec mpirun -n "$tasks" "$@"
+exec {mpirun} -n "$tasks" "$@"
 """
 
 
@@ -44,7 +45,7 @@ class Slurm(Reader):
     def __init__(self, folder: Path, tasks: int) -> None:
         super().__init__(folder)
         srun = folder / "bin" / "srun"
-        srun.write_text(SRUN, encoding="utf-8")
+        srun.write_text(SRUN.replace("{mpirun}", launcher()), encoding="utf-8")
         srun.chmod(0o755)
         # a batch script has these two before anything is launched
         self.environment |= MPIRUN | {"SLURM_NTASKS": str(tasks), "SLURM_PROCID": "0"}

@@ -50,9 +50,11 @@ def _stop(ranks: int, number: int, tmp_path: Path) -> tuple[int, str, dict[str, 
     return code, text, run
 
 
-def test_a_run_that_is_told_to_stop_keeps_its_steps(tmp_path: Path) -> None:
-    code, text, run = _stop(1, signal.SIGTERM, tmp_path)
-    assert code == 143
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+def test_a_run_that_is_told_to_stop_keeps_its_steps(number: int, tmp_path: Path) -> None:
+    """Also where a library of MPI would take the signal for itself."""
+    code, text, run = _stop(1, number, tmp_path)
+    assert code == 128 + number
     assert_said(text, run)
 
 

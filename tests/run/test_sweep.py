@@ -22,6 +22,7 @@ import pytest
 import yaml
 
 from bench.ranks import MPIRUN
+from bench.survive import led
 from fem import kernels
 from fiberbend import run
 from fiberbend.sweep.command import run_sweep
@@ -115,7 +116,7 @@ class Lab:
         command = [launcher(), "-n", ranks] if ranks else []
         command = [*command, sys.executable, "-m", "fiberbend", "sweep", str(self.file), "--out"]
         return subprocess.Popen(
-            [*command, str(self.out), *arguments],
+            led([*command, str(self.out), *arguments]),
             env=environment,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
