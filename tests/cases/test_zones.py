@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,7 +15,7 @@ from fiberbend.effects.pressure import inflate
 from fiberbend.models.choice import choose_model, meshed
 from fiberbend.models.closed_form import analytic_curves
 from fiberbend.plan.plan import make_plan
-from fiberbend.reader.reader import parse_case
+from fiberbend.reader.reader import parse_case, read_case
 from fiberbend.schema.problems import CaseError
 
 WOUND = {"pattern": "double-helix", "pitch": "3 mm", "fiber": "kevlar", "as": "smeared"}
@@ -66,6 +67,12 @@ def test_a_resolved_case_is_read_back() -> None:
     first = {"length": "60 mm", "winding": "none", "strip": [STRIP]}
     case = read(first, {"length": "40 mm", "winding": HAND}, {})
     assert parse_case(case.resolved()) == case
+
+
+def test_a_zone_without_a_length_takes_the_rest() -> None:
+    path = Path(__file__).resolve().parents[2] / "cases" / "thumb.yaml"
+    assert zones.lengths(read_case(path)) == (40.0, 60.0, 50.0)
+    assert zones.lengths(read_case(path, ["zones.0.length=30 mm"])) == (30.0, 60.0, 60.0)
 
 
 def test_a_case_without_zones_says_nothing_of_them() -> None:

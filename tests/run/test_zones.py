@@ -12,6 +12,7 @@ import pytest
 
 from analytic.path import arc, chained, screw
 from fiberbend import columns as col
+from fiberbend.answer.answer import answer
 from fiberbend.case.case import Case
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case, read_case
@@ -193,6 +194,18 @@ def test_a_run_says_what_each_zone_took(three: RunResult) -> None:
     each = three.run["zones"]
     assert [zone["length_mm"] for zone in each] == [18.0, 10.0, 20.0]
     assert three.run["unknowns"] == sum(zone["unknowns"] for zone in each)
+
+
+def test_the_answer_has_the_part_of_every_zone(three: RunResult) -> None:
+    zones: list[dict[str, Any]] = [
+        {"length": "18 mm"},
+        {"length": "10 mm", "floor": "elastosil-m4601"},
+        {"winding": WOUND | {"pattern": "single-helix-left"}},
+    ]
+    found = answer(case(*zones, wound=WOUND), three.rows, three.run)
+    (entry,) = (each for each in found.entries if each.label == "angles of the zones")
+    parts = [float(part.strip("°")) for part in entry.value.replace("−", "-").split(", ")]
+    assert sum(parts) == pytest.approx(15, abs=0.05)
 
 
 def test_an_angle_that_is_not_reached_is_said() -> None:
