@@ -144,12 +144,16 @@ class ModelKind(ABC):
 
     def refuses(self, case: Case) -> Iterator[Objection]:
         """What of a case it does not support: paths within the case and reasons."""
+        yield from self.refused_effects(case)
+        yield from self.limits(case)
+
+    def refused_effects(self, case: Case) -> Iterator[Objection]:
+        """Effects that need what it does not offer."""
         for index, effect in enumerate(case.effects):
             reasons = (why for what, why in effect.needs().items() if what not in self.offers)
             for reason in reasons:
                 yield f"effects.{index}.{effect.name}", reason
                 break
-        yield from self.limits(case)
 
     def limits(self, case: Case) -> Iterator[Objection]:
         """What it does not support, apart from effects."""
