@@ -31,6 +31,7 @@ FIBER_MAX = "fiber_max_N"
 UNIFORM_ANGLE = "uniform_angle_deg"
 UNIFORM_SIDE = "uniform_side_angle_deg"
 UNIFORM_TWIST = "uniform_twist_deg"
+UNIFORM_STRETCH = "uniform_stretch"
 AXIS_STRETCH = "axis_stretch"
 FLOOR_STRETCH = "floor_stretch"
 CROWN_STRETCH = "crown_stretch"
@@ -160,6 +161,7 @@ COLUMNS = (
     Column("zone_{zone}_angle_deg", "°", "the bending angle's part of a zone", ZONES),
     Column("zone_{zone}_twist_deg", "°", "the twist's part of a zone, likewise", ZONES),
     Column("zone_{zone}_stretch", "", "stretch of the centre-line of a zone", ZONES),
+    Column(UNIFORM_STRETCH, "", "stretch of the middle half of it", BODY),
     Column(FLOOR_STRETCH, "", "stretch λ0 of the line y = 0", UNIFORM),
     Column(CROWN_STRETCH, "", "stretch of the highest line", UNIFORM),
     Column(WORK, "mJ", "work of the loads since rest, Σ ∫ q dQ", ELEMENTS),

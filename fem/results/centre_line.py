@@ -59,7 +59,7 @@ class CentreLine:
         self._length = tip - root
         spline = _RodFit(data, root, tip)
         self._inverse, self._value, self._rate = spline.inverse, spline.value, spline.rate
-        self._along, self._share = spline.along, spline.share
+        self._along, self._within, self._share = spline.along, spline.within, spline.share
         ends = [_plane_fit(nodes, body.domain.surface_weights(name), data.half) for name in ENDS]
         rows = vstack([csr_matrix(ends[0]), spline.moments, csr_matrix(ends[1])]).tocsc()
         used = body.owned_nodes[np.diff(rows.indptr)[body.owned_nodes] > 0]
@@ -128,6 +128,11 @@ class CentreLine:
         slopes: Floats = np.polyfit(self._z[some], along[some], 1)[0]
         return slopes * self._length
 
+    def middle_stretch(self) -> float:
+        """Length of the middle half of the centre-line over its length at rest; collective."""
+        centre = (self._inverse @ self._sums()[2:-2])[: self._value.shape[1]]
+        return float(self._share @ np.linalg.norm(self._within @ centre, axis=1))
+
     def row(self, component: int) -> Floats:
         """Gradient of one of the turns on the owned dofs, rad/mm, (owned,); collective."""
         parts = self._parts()
@@ -189,7 +194,8 @@ class _RodFit:
         value: values of the m basis functions there, (s, m).
         rate: their slopes there, 1/mm, (s, m).
         along: slopes at Gauss points between the knots, (g, m).
-        share: their weights as parts of the length, (g,).
+        within: slopes at as many points of the middle half, between a quarter and three, (g, m).
+        share: their weights as parts of the length, or of half of it, (g,).
         moments: right-hand sides of the normal equations by the n nodes' positions, (3 m, n): of
             c, then of a_x, then of a_y.
         inverse: of the normal equations' matrix, (3 m, 3 m).
@@ -218,9 +224,9 @@ class _RodFit:
         self.value: Floats = spline(self.stations)
         self.rate: Floats = spline(self.stations, 1)
         points, parts = gauss(3)
-        self.along: Floats = spline(
-            (breaks[:-1, None] + np.diff(breaks)[:, None] * points).ravel(), 1
-        )
+        inside = (breaks[:-1, None] + np.diff(breaks)[:, None] * points).ravel()
+        self.along: Floats = spline(inside, 1)
+        self.within: Floats = spline((inside + (root + tip) / 2) / 2, 1)
         self.share: Floats = np.tile(parts / count, count)
         levers = vstack([basis, basis.multiply(plane[:, 0]), basis.multiply(plane[:, 1])])
         weighted = levers.multiply(weights[on]).tocoo()

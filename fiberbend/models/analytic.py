@@ -46,6 +46,16 @@ class Analytic(ModelKind):
                 if effect.winds():
                     yield f"effects.{index}.{effect.name}", _LOOSE
             return
+        strange = [
+            (f"effects.{index}.{effect.name}", reason)
+            for index, effect in enumerate(case.effects)
+            if (reason := effect.no_closed_form())
+        ]
+        if strange:
+            # most of them are refused by what they need, and said once
+            refused = {path for path, _ in self.refused_effects(case)}
+            yield from (found for found in strange if found[0] not in refused)
+            return
         reason = no_analytic(case)
         if reason:
             wound = any(effect.fixes_circumference() for effect in case.effects)

@@ -69,6 +69,7 @@ class BodyGauge:
         middle = self._line.middle()
         row = {col.UNIFORM_ANGLE: float(np.rad2deg(middle[0]))}
         row[col.AXIS_STRETCH] = self._line.stretch()
+        row[col.UNIFORM_STRETCH] = self._line.middle_stretch()
         if self._scene.domain.data.half:
             return row
         row |= _turns(self._line.turns())

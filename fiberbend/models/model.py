@@ -140,12 +140,16 @@ class ModelKind(ABC):
 
     def _refuses_alike(self, case: Case) -> Iterator[Objection]:
         """What it does not support of a case that is alike all along."""
+        yield from self.refused_effects(case)
+        yield from self.limits(case)
+
+    def refused_effects(self, case: Case) -> Iterator[Objection]:
+        """Effects that need what it does not offer."""
         for index, effect in enumerate(case.effects):
             reasons = (why for what, why in effect.needs().items() if what not in self.offers)
             for reason in reasons:
                 yield f"effects.{index}.{effect.name}", reason
                 break
-        yield from self.limits(case)
 
     def limits(self, case: Case) -> Iterator[Objection]:
         """What it does not support, apart from effects."""

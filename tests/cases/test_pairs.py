@@ -28,6 +28,12 @@ SETTINGS: dict[str, dict[str, Any]] = {
     "hold": {"stretch": 1.05},
     "tip-load": {"force": ["0 N", "-20 mN", "0 N"]},
     "tip-mass": {"mass": "2 g"},
+    "strip": {
+        "at": {"angle": "60 deg"},
+        "width": "3 mm",
+        "thickness": "0.1 mm",
+        "modulus": "200 MPa",
+    },
 }
 """One of each: a new effect is paired with all others once it has a line here."""
 PAIRS = list(itertools.combinations(SETTINGS, 2))

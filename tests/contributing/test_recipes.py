@@ -181,7 +181,11 @@ def test_a_pattern(tmp_path: Path) -> None:
 from fiberbend.models.choice import MODELS
 
 case = read_case("two.yaml", ["model=cell"])
-assert MODELS["cell"].half(case) == (False, "a two-start helix is not its own mirror image")
+assert MODELS["cell"].half(case) == (
+    False,
+    "half a turn about y maps it onto itself: it bends about x and twists, its section warps, "
+    "no side (a two-start helix is not its own mirror image)",
+)
 assert "twist" in MODELS["cell"].scalars(case)
 assert "model analytic does not support it: the closed form has no twist" in told(
     "two.yaml", "model=analytic"

@@ -56,9 +56,19 @@ def test_a_screw_turns_by_its_rates(degrees: tuple[float, float], tetrahedra: bo
     body, exact, stretch = _screw(_mesh(tetrahedra=tetrahedra), np.array([bend, 0.0, twist]))
     line = CentreLine(body)
     assert line.stretch() == pytest.approx(stretch, rel=3e-3)
+    assert line.middle_stretch() == pytest.approx(stretch, rel=3e-3)
     error = 3e-3 * np.abs(exact).max()
     assert line.turns() == pytest.approx(exact, abs=error)
     assert line.middle() == pytest.approx(exact, abs=error)
+
+
+def test_the_middle_half_has_a_stretch_of_its_own() -> None:
+    mesh = _mesh()
+    placed, length, more = mesh.nodes.copy(), FINGER.length, 0.3
+    placed[:, 2] += more / length**2 * (mesh.nodes[:, 2] - length / 2) ** 3
+    line = CentreLine(_body(mesh, placed))
+    assert line.stretch() == pytest.approx(1 + more / 4, rel=1e-6)
+    assert line.middle_stretch() == pytest.approx(1 + more / 16, rel=1e-6)
 
 
 def test_mirrored_it_twists_the_other_way() -> None:
