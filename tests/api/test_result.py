@@ -394,7 +394,8 @@ def test_two_ranks_each_have_the_states(mpirun: MpiRun, tmp_path: Path) -> None:
         "case = json.loads(Path(sys.argv[1]).read_text())\n"
         "r = fiberbend.run(case)\n"
         "grid = r.mesh('last')\n"
-        "print(rank(), grid.n_cells, r.last('angle_deg'), r.kept_in, flush=True)\n"
+        "found = rank(), grid.n_cells, r.last('angle_deg'), r.kept_in\n"
+        "sys.stdout.write(' '.join(map(str, found)) + '\\n')  # at once, so that lines stay whole\n"
     )
     case = small(mesh={"axial": "6 mm"}, output={})
     case["effects"][0] = {"pressure": {"to": "10 kPa"}}
