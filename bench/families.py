@@ -80,7 +80,7 @@ class Example:
             "model": model,
             "mesh": mesh,
             "output": {"fields": False, "pictures": False},
-            "solver": {"tolerance": 1e-12},
+            "solver": {"tolerance": 1e-10},
         }
 
     def solved(self, kind: Kind, **how: Any) -> RunResult:
@@ -239,7 +239,8 @@ Three windings, and a fourth with threads along one side so that there is a side
 section with its threads spread, as a cell and as a whole body with every thread by itself.
 `python -m bench.families` makes the page. tests/bench/test_families.py holds its sections and cells
 to what the program says now, and solves bodies again by `pytest -m hard`. Chamber radius 5 mm, wall
-1.5 mm of dragon-skin-30, on the hemicircle a floor of 1.5 mm of combined-base; threads of 31 GPa, 0.18 mm thick.
+1.5 mm of dragon-skin-30, on the hemicircle a floor of 1.5 mm of combined-base; threads of 31 GPa,
+0.18 mm thick.
 
 Of a body the middle half counts: the columns `uniform_angle_deg`, `uniform_side_angle_deg`,
 `uniform_twist_deg` and `uniform_stretch`. Angles are those of the whole length, λ is the stretch of
@@ -250,7 +251,8 @@ Away from its ends the body is its cell: angle, side angle, twist and stretch di
 most, and by 0.3 % but for a bend of 1.5°. The section is not: rubber bulges between threads 3 to
 7 mm apart, of which it knows nothing. That takes 1 % of the twist of a tube and 6 % of a braid's
 contraction, and on the hemicircle, where two families all but balance, the section has a fifth less
-twist. The last part has the same with closer threads.
+twist. With closer threads the cell comes to the section (last part); the bend of the hemicircle stays
+within 0.9 % there and does not settle on these meshes.
 """
 
 
