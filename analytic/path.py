@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -98,6 +99,26 @@ def centre_line(
     axes[:, :2] -= np.outer(t + np.array([0.0, 0.0, 1.0]), t[:2]) / (1 + t[2])
     axes[:, 2] = t
     return length, axes.T @ spin, axes
+
+
+def chained(parts: Sequence[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:
+    """Frames at the root of every part of a line that is put together, and at its end.
+
+    A part carries a frame from its root, the axes e1, e2, e3 at the origin, to its end R, c. Put
+    together, R_{i+1} = R_i R and c_{i+1} = c_i + R_i c: the end of a part is the root of the next.
+
+    Args:
+        parts: R, (3, 3), and c, (3,), mm, of every part from root to tip.
+
+    Returns:
+        Rotations and places, one more than parts, the first ones those of space.
+    """
+    rotation, place = np.eye(3), np.zeros(3)
+    frames = [(rotation, place)]
+    for turn, step in parts:
+        rotation, place = rotation @ turn, place + rotation @ step
+        frames.append((rotation, place))
+    return frames
 
 
 def section_axes(a_x: Floats, a_y: Floats, along: Floats) -> Floats:

@@ -282,7 +282,7 @@ def integrals(form: Any, ffi: Any) -> list[Integral]:
     ):
         raise NotImplementedError("only cells, boundary facets and elements that need no turning")
     found = []
-    # always in this order: dolfinx 0.9 gives a set, whose order changes from process to process
+    # always in this order: from dolfinx 0.9 on they are a set, ordered anew in each process
     for kind in (kind for kind in sides if kind in there):
         kernels_of, ids = _kernels(form.ufcx_form, sides[kind])
         keys = ids if _BEFORE_10 else range(len(ids))

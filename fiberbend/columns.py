@@ -59,6 +59,8 @@ ELEMENTS = "elements"
 """Columns of a model of finite elements."""
 UNIFORM = "uniform"
 """Columns of a model whose curvature and stretch are global unknowns."""
+ZONES = "zones"
+"""Columns of a model that may have zones along the length."""
 BODY = "body"
 """Columns of a body in space, with its supports and obstacles."""
 
@@ -156,6 +158,9 @@ COLUMNS = (
     Column(UNIFORM_SIDE, "°", "the same of the side angle", BODY),
     Column(UNIFORM_TWIST, "°", "the same of the twist", BODY),
     Column(AXIS_STRETCH, "", "stretch of the centre-line, through the centroids", ELEMENTS),
+    Column("zone_{zone}_angle_deg", "°", "the bending angle's part of a zone", ZONES),
+    Column("zone_{zone}_twist_deg", "°", "the twist's part of a zone, likewise", ZONES),
+    Column("zone_{zone}_stretch", "", "stretch of the centre-line of a zone", ZONES),
     Column(UNIFORM_STRETCH, "", "stretch of the middle half of it", BODY),
     Column(FLOOR_STRETCH, "", "stretch λ0 of the line y = 0", UNIFORM),
     Column(CROWN_STRETCH, "", "stretch of the highest line", UNIFORM),
@@ -238,6 +243,16 @@ def contact(obstacle: str, quantity: str) -> str:
         quantity: of `CONTACT`.
     """
     return f"contact_{obstacle}_{quantity}"
+
+
+def zone(number: int, quantity: str) -> str:
+    """The column of a zone.
+
+    Args:
+        number: of the zone, from 0; columns count from 1, the zone at the root.
+        quantity: end of its name, "angle_deg", "twist_deg" or "stretch".
+    """
+    return f"zone_{number + 1}_{quantity}"
 
 
 def obstacles(rows: Iterable[Row]) -> list[str]:

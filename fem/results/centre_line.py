@@ -101,6 +101,16 @@ class CentreLine:
         whole: Floats = self._steps().sum(axis=0)
         return whole
 
+    def turns_to(self, z: Floats) -> Floats:
+        """The part of `turns` from z = 0 to some heights, (n, 3), rad; collective.
+
+        Args:
+            z: (n,), mm; between stations turns grow evenly.
+        """
+        along = np.vstack([np.zeros(3), np.cumsum(self._steps(), axis=0)])
+        parts: Floats = np.column_stack([np.interp(z, self._z, part) for part in along.T])
+        return parts
+
     def stretch(self) -> float:
         """Length of the centre-line from z = 0 to z = L over L; collective."""
         centre = (self._inverse @ self._sums()[2:-2])[: self._value.shape[1]]

@@ -10,8 +10,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from fiberbend import columns as col
+from fiberbend.answer.motion import SEEN, motion, turn
 from fiberbend.answer.numbers import number, quantity
 from fiberbend.answer.touch import touches
+from fiberbend.answer.turned import turned
 from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
 from fiberbend.models.model import ModelKind
@@ -25,8 +27,6 @@ _SAME = 1e-6
 _HARD = "\u00a0"
 _TOGETHER = re.compile(r"(?<==) (?=-?\d)|(?<=[a-z]) (?==)|(?<=\d) (?=(?:[a-zA-Z]+³?|%)(?:\W|$))")
 """Spaces within "x = 8 mm"."""
-_SEEN = 5e-3
-"""Degrees and millimetres that are shown; less is round-off."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -98,7 +98,7 @@ def answer(case: Case, rows: Sequence[col.Row], run: Mapping[str, Any]) -> Answe
         *(_forces(case, model, rows) if case.straight else _bending(case, rows)),
         _end(case, rows),
         *_tip(case, rows),
-        *_turns(rows),
+        *(Entry(*told) for told in turned(rows, len(case.zones or ()))),
         *_contacts(case, rows),
         *_critical(case, run),
         *_strain(run),
@@ -166,8 +166,8 @@ def _sentence(case: Case, model: ModelKind, rows: Sequence[col.Row], run: Mappin
             )
         if case.inflation is None:
             return f"The actuator ends at {here} ({model.name} model)."
-        angle, pressure = quantity(last[col.ANGLE], "°"), quantity(last[col.PRESSURE], "kPa")
-        return f"The actuator bends to {angle} at {pressure} ({model.name} model)."
+        pressure = quantity(last[col.PRESSURE], "kPa")
+        return f"The actuator {motion(last)} at {pressure} ({model.name} model)."
     if len(rows) < 2:
         return (
             f"The run {status} before its first load step: it has no answer ({model.name} model)."
@@ -182,8 +182,8 @@ def _state(case: Case, row: col.Row) -> str:
         parts.append(quantity(row[col.TIP_FORCE], "N"))
     if case.inflation is not None:
         parts.append(quantity(row[col.PRESSURE], "kPa"))
-    if not case.straight or abs(row[col.ANGLE]) > _SEEN:
-        parts.append(quantity(row[col.ANGLE], "°"))
+    if not case.straight or abs(row[col.ANGLE]) > SEEN:
+        parts.append(turn(row))
     return ", ".join(parts)
 
 
@@ -276,17 +276,9 @@ def _tip(case: Case, rows: Sequence[col.Row]) -> Iterator[Entry]:
 def _place(row: col.Row) -> str:
     keys = {"x": col.TIP_X, "y": col.TIP_Y, "z": col.TIP_Z}
     known = {name: row[key] for name, key in keys.items() if row.get(key) is not None}
-    if abs(known.get("x", 0.0)) <= _SEEN:
+    if abs(known.get("x", 0.0)) <= SEEN:
         known.pop("x", None)
     return ", ".join(f"{name} = {quantity(value, 'mm')}" for name, value in known.items())
-
-
-def _turns(rows: Sequence[col.Row]) -> Iterator[Entry]:
-    """Twist and side angle, where there are any."""
-    for key, label in ((col.TWIST, "twist"), (col.SIDE_ANGLE, "side angle")):
-        values = [row[key] for row in rows if row.get(key) is not None]
-        if values and max(map(abs, values)) > _SEEN:
-            yield Entry(f"{label} at the end", quantity(values[-1], "°"))
 
 
 def _contacts(case: Case, rows: Sequence[col.Row]) -> Iterator[Entry]:

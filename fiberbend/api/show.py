@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from fiberbend.case import convert
+from fiberbend.case import convert, zones
 from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
 from fiberbend.schema.problems import CaseError, Problem
@@ -38,6 +38,8 @@ def facts(case: Case) -> Iterator[tuple[str, str]]:
     words = _winding(case)
     if words:
         yield "winding", words
+    for number, text in enumerate(zones.words(case), start=1):
+        yield f"zone {number}", text
     for name in convert.obstacle_shapes(case):
         yield "obstacle", name
     model, why = choose_model(case)
@@ -73,7 +75,7 @@ def blueprint(case: Case) -> Blueprint:
         length=case.actuator.length,
         cap=case.actuator.cap,
         width=_chamber(case),
-        curves=[curve for effect in case.effects for curve in effect.curves(actuator)],
+        curves=convert.curves(case),
         winding=_winding(case),
         pitch=None if turns is None else turns.pitch,
         scenery=scenery(case),

@@ -6,12 +6,12 @@ values against each other, and reports every problem at once.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar
+import itertools
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 
 from pydantic import (
     AfterValidator,
     Field,
-    create_model,
     field_serializer,
     field_validator,
     model_serializer,
@@ -19,8 +19,10 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from fiberbend.case.coefficients import coefficient_fields
+from fiberbend.case.materials import Materials as Materials
+from fiberbend.case.materials import MaterialSpec as MaterialSpec
 from fiberbend.case.names import MODELS
+from fiberbend.case.zone_spec import ZoneSpec as ZoneSpec
 from fiberbend.effects.effect import Effect, Inflation, keep_straight
 from fiberbend.effects.table import EffectEntry, unwrap
 from fiberbend.effects.wound.turns import Turns
@@ -28,28 +30,23 @@ from fiberbend.schema.quantities import (
     Accuracy,
     Angle,
     BodyLength,
-    Density,
     Dimension,
     DimensionOrZero,
     Length,
-    Modulus,
     Pressure,
     SignedPressure,
     Spec,
     UnitName,
 )
 from geometry.sections.table import SECTIONS
-from materials.laws.table import LAWS
 
 E = TypeVar("E", bound=Effect)
 
 if TYPE_CHECKING:
     AnyEffect = Effect
-    LawName = str
     ModelName = str
     SectionName = str
 else:
-    LawName = Literal[tuple(LAWS)]
     ModelName = Literal[(*MODELS, "auto")]
     SectionName = Literal[tuple(SECTIONS)]
     AnyEffect = Annotated[EffectEntry, AfterValidator(unwrap)]
@@ -85,81 +82,6 @@ class ActuatorSpec(Spec):
     def _none_if_zero(cls, value: float | None) -> float | None:
         """What has no thickness does not exist."""
         return value or None
-
-
-class _Source(Spec):
-    """Where a material's behaviour comes from."""
-
-    name: str | None = None
-    """A named material; written alone where nothing else is given, `wall: elastosil-m4601`."""
-    law: LawName | None = None
-    """Law of a material that has no name here."""
-
-
-_COEFFICIENTS = coefficient_fields()
-"""Keys of the laws' parameters; `materials.laws.table.LAWS` lists those of each law."""
-
-if TYPE_CHECKING:
-    _Coefficients = _Source
-else:
-    _Coefficients = create_model("_Coefficients", __base__=_Source, **_COEFFICIENTS)
-
-
-class MaterialSpec(_Coefficients):
-    """A material by name, or a law with its coefficients."""
-
-    density: Density | None = None
-    """Density; gravity needs it. "0 g/cm^3" is a part without weight."""
-    bulk: Modulus | None = None
-    """Bulk modulus of a nearly incompressible material; exactly incompressible by default."""
-
-    @property
-    def coefficients(self) -> dict[str, float]:
-        """The coefficients that are given, in MPa where they have a unit."""
-        given = {key: getattr(self, key) for key in _COEFFICIENTS}
-        return {key: value for key, value in given.items() if value is not None}
-
-    def plain(self, weighs: bool) -> Self:
-        """The same without keys whose zero says no more than leaving them out.
-
-        Args:
-            weighs: densities count: a part of none is weightless.
-        """
-        if self.law is None:
-            off = set()
-        else:
-            given = self.coefficients
-            off = given.keys() - LAWS[self.law].plain(given).keys()
-        if self.density == 0 and not weighs:
-            off = {*off, "density"}
-        return self.model_copy(update=dict.fromkeys(off)) if off else self
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_name(cls, data: Any) -> Any:
-        return {"name": data} if isinstance(data, str) else data
-
-    @model_serializer(mode="wrap")
-    def _to_name(self, write: Any) -> Any:
-        return self.name if self.model_fields_set == {"name"} else write(self)
-
-    @classmethod
-    def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict[str, Any]:
-        """A name alone is allowed too."""
-        return {"anyOf": [{"type": "string"}, handler.resolve_ref_schema(handler(schema))]}
-
-
-class Materials(Spec):
-    """Material of each part."""
-
-    wall: MaterialSpec
-    """Wall and end caps."""
-    floor: MaterialSpec | None = None
-    """Floor under the chamber, where the actuator has one."""
-    sheath: MaterialSpec | None = None
-    """Sheath, where the actuator has one."""
-    layer: MaterialSpec | None = None
-    """Strain-limiting layer, where the actuator has one."""
 
 
 class Mesh(Spec):
@@ -285,6 +207,8 @@ class Case(Spec):
     """Material of each part."""
     effects: tuple[AnyEffect, ...] = Field(strict=False)
     """What acts on the body; loads are applied in this order, earlier ones kept."""
+    zones: tuple[ZoneSpec, ...] | None = Field(default=None, strict=False)
+    """Lengths of the chamber from root to tip, each with a winding and materials of its own."""
     support: Literal["clamped-root"] = "clamped-root"
     """How the body is supported."""
     model: ModelName = "auto"
@@ -313,6 +237,12 @@ class Case(Spec):
         return next((effect for effect in self.effects if isinstance(effect, kind)), None)
 
     @property
+    def acting(self) -> tuple[Effect, ...]:
+        """Effects that act anywhere along the length: the case's and those of its zones."""
+        own = (effects for zone in self.zones or () for effects in zone.effects.values())
+        return (*self.effects, *itertools.chain.from_iterable(own))
+
+    @property
     def inflation(self) -> Inflation | None:
         """How the chamber is loaded, or None where it is not."""
         found = (effect.inflation() for effect in self.effects)
@@ -320,7 +250,7 @@ class Case(Spec):
 
     @property
     def turns(self) -> Turns | None:
-        """The thread around the body, or None where there is none."""
+        """The thread around the body, or None where there is none; zones may have others."""
         from fiberbend.case import convert
 
         winding = next((effect for effect in self.effects if effect.winds()), None)

@@ -8,11 +8,12 @@ from __future__ import annotations
 import dataclasses
 from typing import TYPE_CHECKING
 
-from fiberbend.case import case
+from fiberbend.case import case, zones
 from fiberbend.effects.effect import Requests, Site, mirror_breakers
 
 if TYPE_CHECKING:
     from fiberbend.states.obstacles import Shape
+    from geometry.mesh.data import Floats
     from geometry.sections.shape import ShapedActuator
     from geometry.sections.size import MeshSize
     from materials.material import Material
@@ -54,15 +55,30 @@ def material(spec: case.MaterialSpec) -> Material:
 
 
 def site(given: case.Case) -> Site:
-    """The actuator of a case as its effects see it."""
+    """The actuator of a case as its effects see it, with the regions of its zones."""
     specs = {part: spec for part, spec in dict(given.materials).items() if spec is not None}
+    for zone, names in zip(given.zones or (), zones.own_regions(given), strict=True):
+        specs |= {names[part]: spec for part, spec in zone.materials.items()}
     return Site(
         actuator=dimensions(given.actuator),
         materials={part: material(spec) for part, spec in specs.items()},
         straight=given.straight,
-        mirrored=not any(mirror_breakers(given.effects)),
+        mirrored=not any(mirror_breakers(given.acting)),
         weight=next((w for e in given.effects if (w := e.weight()) is not None), None),
     )
+
+
+def curves(given: case.Case) -> list[Floats]:
+    """Polylines of all threads of a case in space, (n, 3), mm, in every zone its own."""
+    if not zones.differing(given):
+        actuator = dimensions(given.actuator)
+        return [curve for effect in given.effects for curve in effect.curves(actuator)]
+    import numpy as np
+
+    found = []
+    for start, zone in zip(zones.bounds(given), zones.zone_cases(given), strict=False):
+        found += [curve + np.array([0.0, 0.0, start]) for curve in curves(zone)]
+    return found
 
 
 def obstacle_shapes(given: case.Case) -> dict[str, Shape]:

@@ -21,6 +21,9 @@ def as_section(case: Case, load: Effect) -> Case:
     Raises:
         CaseError: a section cannot have an effect of the case.
     """
+    if case.zones is not None:
+        text = "one section stands for no actuator with zones (model section chains one of each)"
+        raise CaseError([Problem("zones", text)])
     problems = [
         Problem(f"effects.{index}.{effect.name}", reason)
         for index, effect in enumerate(case.effects)
@@ -44,7 +47,8 @@ def as_section(case: Case, load: Effect) -> Case:
 
 def section_guides(case: Case) -> bool:
     """Whether a section bends as the body of a case does, between its ends."""
-    if case.inflation is None or not all(effect.follows_section() for effect in case.effects):
+    alike = case.zones is None and case.inflation is not None
+    if not alike or not all(effect.follows_section() for effect in case.effects):
         return False
     beside = (effect.beside() for effect in case.effects)
     return Symmetry.of([effect for effect in beside if effect is not None]).plane

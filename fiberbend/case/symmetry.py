@@ -88,7 +88,7 @@ class Symmetry:
 
 def twists(case: Case) -> bool:
     """Whether a case may twist the body."""
-    return Symmetry.of(case.effects).twists
+    return Symmetry.of(case.acting).twists
 
 
 def upside_down(actuator: ActuatorSpec, materials: Materials) -> bool:
@@ -105,7 +105,9 @@ def upside_down(actuator: ActuatorSpec, materials: Materials) -> bool:
 
 
 def stays_straight(case: Case) -> bool:
-    """Whether nothing bends it: neither its section nor an effect."""
+    """Whether nothing bends it: neither its section nor an effect, nor what is said of a zone."""
+    if case.zones is not None:
+        return False
     alike = upside_down(case.actuator, case.materials)
     return alike and not any(effect.bends() for effect in case.effects)
 

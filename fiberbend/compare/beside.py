@@ -42,7 +42,8 @@ def check_run(
             goes beyond.
     """
     measured = read_measured(case)
-    if case.inflation is None or solve is None or model.name == MODEL:
+    alike = case.zones is None
+    if case.inflation is None or solve is None or model.name == MODEL or not alike:
         return crosscheck(case, model, rows, measured=measured)
     keys = (col.ANGLE, col.UNIFORM_ANGLE)
     furthest = max((row[key] for row in rows for key in keys if row.get(key) is not None), key=abs)

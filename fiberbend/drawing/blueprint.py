@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from fiberbend.drawing.page import COLORS, NAMES, figure, heading, nice_above, save
+from fiberbend.drawing.page import COLORS, NAMES, color_of, figure, heading, nice_above, save
 from fiberbend.drawing.renderer import Renderer
 from fiberbend.drawing.space.obstacles import COLOR, Scenery
 from fiberbend.drawing.space.panel import STRIP, Panel
@@ -181,7 +181,7 @@ class Blueprint:
         bottom, top = layers[0][1], layers[-1][2]
         for name, low, high in layers:
             body: dict[str, Any] = {
-                "facecolor": COLORS.get(name or "wall", "#999999"),
+                "facecolor": color_of(name or "wall"),
                 "edgecolor": "0.45",
             }
             axes.add_patch(Rectangle((start, low), end - start, high - low, linewidth=0.6, **body))
@@ -300,7 +300,7 @@ class Blueprint:
         names = {number: name for name, number in mesh.regions.items()}
         corner = [0, 1, 2, 5, 8, 7, 6, 3]
         shown = mesh.nodes[mesh.cells[:, corner]]
-        colors = [COLORS.get(names[int(n)], "#999999") for n in mesh.cell_region]
+        colors = [color_of(names[int(n)]) for n in mesh.cell_region]
         for side in (1.0, -1.0):
             pieces = PolyCollection(
                 list(shown * [side, 1.0]), facecolors=colors, edgecolors=colors, linewidths=0.6
@@ -337,7 +337,7 @@ class Blueprint:
 
         regions = [name for name, _, _ in self.layers if name]
         handles: list[Any] = [
-            Patch(facecolor=COLORS.get(n, "#999999"), edgecolor="0.45", label=NAMES.get(n, n))
+            Patch(facecolor=color_of(n), edgecolor="0.45", label=NAMES.get(n, n))
             for n in dict.fromkeys(regions)
         ]
         if self.winding:

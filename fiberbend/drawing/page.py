@@ -34,11 +34,34 @@ SMEARED = "winding spread over its surface"
 """Also of a calibrated one: there are no single turns to draw."""
 NAMES = {"layer": "strain-limiting layer", "fiber": "fibers", "winding": SMEARED}
 """Names in a legend that are not those of the regions."""
+_OTHER = "#999999"
+"""Colour of a region that has none."""
+_SHADES = (0.45, -0.35, 0.2, -0.6)
+"""How much lighter or darker a part is in the zones, from the first on, where it has its own."""
 WARN = "#b01818"
 """Colour of what has to be said of a state."""
 _HEADING = 17
 _LONGEST = 120
 """Characters of a line of text; the end of a title, which tells pictures apart, is kept."""
+
+
+def color_of(region: str) -> str:
+    """Colour of a region: that of its part, in a zone lighter or darker, "floor_2"."""
+    part, _, zone = region.partition("_")
+    color = COLORS.get(part, _OTHER)
+    if not zone.isdecimal():
+        return COLORS.get(region, _OTHER)
+    shade = _SHADES[(int(zone) - 1) % len(_SHADES)]
+    parts = (int(color[i : i + 2], 16) for i in (1, 3, 5))
+    toward = (round(v + shade * (255 - v) if shade > 0 else v * (1 + shade)) for v in parts)
+    return "#" + "".join(f"{value:02x}" for value in toward)
+
+
+def name_of(region: str) -> str:
+    """A region in a legend: "floor, zone 2" where a zone has its own."""
+    part, _, zone = region.partition("_")
+    name = NAMES.get(part, part)
+    return f"{name}, zone {zone}" if zone.isdecimal() else NAMES.get(region, region)
 
 
 _plain: dict[str, Any] = {}

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fiberbend.drawing.page import COLORS, SMEARED
+from fiberbend.drawing.page import COLORS, SMEARED, color_of
 from fiberbend.drawing.renderer import Drawable
 from fiberbend.drawing.tessellation import Tessellation, boundary_facets, on_mirror
 from fiberbend.states.fiber_lines import fiber_lines
@@ -118,7 +118,7 @@ class BodySurfaces:
             if len(pairs):
                 skin = Tessellation(mesh, pairs, level)
                 data = self.surface(skin, state, mesh.half and not open_at_mirror)
-                found.append(Drawable(data, color=COLORS.get(name, "#999999")))
+                found.append(Drawable(data, color=color_of(name)))
         return found
 
     def winding_line(self, state: Snapshot | None = None) -> list[Drawable]:

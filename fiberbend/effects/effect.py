@@ -46,6 +46,9 @@ from fiberbend.effects.records import (
     WOUND as WOUND,
 )
 from fiberbend.effects.records import (
+    ZONES as ZONES,
+)
+from fiberbend.effects.records import (
     Built as Built,
 )
 from fiberbend.effects.records import (
@@ -59,6 +62,9 @@ from fiberbend.effects.records import (
 )
 from fiberbend.effects.records import (
     Site as Site,
+)
+from fiberbend.effects.records import (
+    Stretch as Stretch,
 )
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Spec
@@ -323,6 +329,29 @@ class Effect(Spec):
             NotImplementedError: the effect cannot be built.
         """
         raise NotImplementedError(f"effect {self.name} cannot be built")
+
+    def unlike(self, other: Effect) -> str:
+        """Why one mesh cannot have it in one zone and another of its kind in the next.
+
+        Args:
+            other: of the same class.
+
+        Returns:
+            The reason; empty where it can.
+        """
+        return f"{self.name} is not known to differ along the length"
+
+    def build_along(self, zones: Sequence[Stretch], requests: Requests) -> Built:
+        """Effects of this kind on one mesh, each in its zone.
+
+        Args:
+            zones: those that have one, from root to tip, this effect the first of them.
+            requests: as in `build`.
+
+        Raises:
+            NotImplementedError: the effect cannot differ along the length.
+        """
+        raise NotImplementedError(f"effect {self.name} cannot differ along the length")
 
     def doubts(self, site: Site, rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
         """What makes a run with it doubtful, a line each, from the rows of its history."""

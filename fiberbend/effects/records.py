@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from fem.march.records import Ramp
     from fiberbend.effects.effect import Effect
     from geometry.actuator import Actuator
+    from geometry.mesh.data import MeshData
     from geometry.winding.segments import EmbeddedFibers
     from materials.material import Material
 
@@ -40,6 +41,8 @@ TURNS = "turns"
 """Every turn of a winding lies where it is wound."""
 HOOPS = "hoops"
 """A circumference can be fixed."""
+ZONES = "zones"
+"""Winding and materials may differ along the length."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -110,6 +113,23 @@ class Requests:
     at_pressures: tuple[float, ...]
     at_angles: tuple[float, ...]
     stop_at_angle: float | None
+
+
+@dataclasses.dataclass(frozen=True)
+class Stretch:
+    """A zone along the length as an effect of its own is built there.
+
+    Attributes:
+        effect: of the zone.
+        site: the actuator, as long as the zone, with the materials there.
+        mesh: of the whole body, its winding that of the zone alone, z = 0 at the zone's root end.
+        start: z of that end in the body, mm.
+    """
+
+    effect: Effect
+    site: Site
+    mesh: MeshData
+    start: float
 
 
 @dataclasses.dataclass(frozen=True)

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field, model_serializer, model_validator
 
-from fiberbend.effects.effect import SIDE, THREAD, Built, Draft, Effect, Requests, Site
+from fiberbend.effects.effect import (
+    SIDE,
+    THREAD,
+    Built,
+    Draft,
+    Effect,
+    Requests,
+    Site,
+    Stretch,
+)
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Angle as AngleOtherThanZero
 from fiberbend.schema.quantities import Coordinate, Length, Modulus, Spec
@@ -198,6 +208,27 @@ class StripEffect(Effect):
         (window,) = self.windows(site.actuator)
         laid = lay(mesh, site.actuator, window)
         return Built((Strip(str(self.at), laid, self.modulus * self.thickness, self.tension_only),))
+
+    def unlike(self, other: Effect) -> str:
+        """Fabric may differ in all: every zone has its own."""
+        return ""
+
+    def build_along(self, zones: Sequence[Stretch], requests: Requests) -> Built:
+        """A term of each, by its place and its zone."""
+        from fem.effects.fabric import Strip
+        from geometry.winding.strip import lay
+
+        terms = []
+        for zone in zones:
+            strip, actuator = zone.effect, zone.site.actuator
+            assert isinstance(strip, StripEffect)
+            (window,) = strip.windows(actuator)
+            laid = lay(zone.mesh, actuator, window)
+            laid = dataclasses.replace(laid, z=laid.z + zone.start)
+            name = f"{strip.at} from {show(zone.start, 'length')} on"
+            stiffness = strip.modulus * strip.thickness
+            terms.append(Strip(name, laid, stiffness, strip.tension_only))
+        return Built(tuple(terms))
 
 
 def _multiple(angle: float, step: float) -> bool:

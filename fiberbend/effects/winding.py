@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 from pydantic import ConfigDict, Field
@@ -17,10 +17,13 @@ from fiberbend.effects.effect import (
     Effect,
     Requests,
     Site,
+    Stretch,
 )
+from fiberbend.effects.wound import zoned
 from fiberbend.effects.wound.by_families import ByFamilies
 from fiberbend.effects.wound.by_pattern import ByPattern
 from fiberbend.effects.wound.family import Around, FamilySpec, bend, fiber_problems
+from fiberbend.effects.wound.felt import hardly_felt
 from fiberbend.effects.wound.room import rounded
 from fiberbend.effects.wound.thread import BulgingSpec, FiberSpec
 from fiberbend.effects.wound.threads import Threads, stiffness_of
@@ -46,8 +49,6 @@ DEFAULT_LINES = 5
 DISCRETE: Kind = "discrete"
 CALIBRATED: Kind = "calibrated"
 SMEARED: Kind = "smeared"
-_STIFF = 1e3
-"""Modulus in MPa from which a thread hardly stretches."""
 
 
 class WindingEffect(Effect):
@@ -129,31 +130,8 @@ class WindingEffect(Effect):
 
     def hardly_felt(self, resolved: bool) -> dict[str, str]:
         """Of a stiff thread its modulus; spread over the surface, also what lies between turns."""
-        felt = {}
-        spread = "its winding is spread over the surface, without a width"
-        if self.families is not None:
-            # nobody has measured what else such a winding hardly feels
-            return {} if resolved else dict.fromkeys(("width", "lines"), spread)
-        stiff = self._made_of(None).thread().modulus >= _STIFF
-        if not resolved:
-            felt["pitch"] = (
-                "its winding is spread over the surface, so that no rubber bulges between the "
-                "turns: a pitch of 1.5 to 6 mm moves the pressure for 90° by 1 %, by 11 % where "
-                "every turn lies by itself (docs/sweep.md)"
-            )
-            felt |= dict.fromkeys(("width", "lines"), spread)
-            if stiff:
-                felt["fiber"] = (
-                    "its winding is spread over the surface, and its thread hardly stretches: a "
-                    "diameter of 0.1 to 1 mm moves the pressure for 90° by +1 %, by −3 % where "
-                    "every turn lies by itself (docs/sweep.md)"
-                )
-        if stiff:
-            felt["fiber.modulus"] = (
-                "a thread of 1 GPa or more hardly stretches: 1 to 300 GPa move the pressure for "
-                "90° by 1 % in every model (docs/sweep.md)"
-            )
-        return felt
+        made_of = None if self.families is not None else self._made_of(None)
+        return hardly_felt(made_of, resolved)
 
     def in_turns(self) -> dict[str, Any]:
         """Every turn by itself."""
@@ -394,3 +372,11 @@ class WindingEffect(Effect):
             terms.append(Winding(segments, stiffness, slack))
             shown.append(segments)
         return Built(tuple(terms), (), shown[0], spread is not None or flat)
+
+    def unlike(self, other: Effect) -> str:
+        """Threads differ in all but how they are represented."""
+        return zoned.unlike(self, other)
+
+    def build_along(self, zones: Sequence[Stretch], requests: Requests) -> Built:
+        """Every thread ends at the borders of its zone."""
+        return zoned.build(zones, requests, self.tension_only)

@@ -23,7 +23,7 @@ from fiberbend.models.model import MeshedModel, ModelKind
 from fiberbend.plan.estimate import cost_of
 from fiberbend.plan.memory import needed_mb
 from fiberbend.reader.reader import as_case
-from fiberbend.schema.problems import CaseError
+from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.units import show
 
 BARE = (
@@ -154,6 +154,9 @@ def ladder(source: Path | dict[str, Any], settings: Sequence[str] = ()) -> Ladde
         CaseError: the case itself is wrong.
     """
     base = as_case(source, settings)
+    if base.zones is not None:
+        text = "no error is known of an actuator with zones, expected a case without"
+        raise CaseError([Problem("zones", text)])
     rungs: list[Rung] = []
     missing: list[Missing] = []
     for family, changes in _families(base):

@@ -56,10 +56,10 @@ class Analytic(ModelKind):
             refused = {path for path, _ in self.refused_effects(case)}
             yield from (found for found in strange if found[0] not in refused)
             return
-        reason = no_analytic(case)
-        if reason:
+        missing = no_analytic(case)
+        if missing:
             wound = any(effect.fixes_circumference() for effect in case.effects)
-            yield "materials.floor" if wound else "effects", reason
+            yield "materials.floor" if wound else "effects", missing
 
     def leaves_out(self, case: Case) -> Iterator[Objection]:
         """Details of effects, and compressibility."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import math
 from collections.abc import Iterator
@@ -11,7 +12,9 @@ from typing import TYPE_CHECKING, Any
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.section_beside import section_guides
+from fiberbend.case.zones import borders, differing, effects_of, own_regions, zone_cases
 from fiberbend.columns import BODY, MIDDLE
+from fiberbend.columns import ZONES as ZONE_COLUMNS
 from fiberbend.effects.effect import (
     CHAMBER,
     ENDS,
@@ -23,18 +26,22 @@ from fiberbend.effects.effect import (
     TWIST,
     VOLUME,
     WOUND,
+    ZONES,
+    Effect,
     tip_strips,
 )
+from fiberbend.models.costs.size import pieces
 from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import (
+    AT_ENDS,
     ENDS_BEND,
     MeshedModel,
+    Objection,
     Observables,
     ProblemSize,
     Rung,
     count,
     found_pressure,
-    pieces,
 )
 
 if TYPE_CHECKING:
@@ -58,8 +65,10 @@ class Body(MeshedModel):
     """Everything that can act on an actuator acts on it here."""
 
     name = "body"
-    offers = frozenset({CHAMBER, WOUND, SPACE, ENDS, STRIPS, VOLUME, TWIST, SIDE, THREAD, TURNS})
-    fills = MeshedModel.fills | {MIDDLE, BODY}
+    offers = frozenset(
+        {CHAMBER, WOUND, SPACE, ENDS, STRIPS, VOLUME, TWIST, SIDE, THREAD, TURNS, ZONES}
+    )
+    fills = MeshedModel.fills | {MIDDLE, BODY, ZONE_COLUMNS}
     shared = True
     resumes = True
     takes_mesh_as_given = True
@@ -79,17 +88,19 @@ class Body(MeshedModel):
     fields_s = 1.0
 
     def mesh_size(self, case: Case, half: bool) -> MeshSize:
-        """As the case gives it."""
-        return convert.mesh_size(case.mesh, half)
+        """As the case gives it; no element crosses from a zone to the next."""
+        return dataclasses.replace(convert.mesh_size(case.mesh, half), borders=borders(case))
 
     def mesh(self, case: Case, msh: Path | None = None) -> MeshData:
         """Meshed by gmsh, with the fibers' curves."""
         from geometry.bodies.gmsh_body import build_body
+        from geometry.bodies.zones import with_regions
 
         actuator = convert.dimensions(case.actuator)
         size = self.mesh_size(case, self.half(case)[0])
-        curves = [curve for effect in case.effects for curve in effect.curves(actuator)]
-        return build_body(actuator, size, tip_strips(case.effects), curves or None, msh)
+        curves = convert.curves(case) or None
+        mesh = build_body(actuator, size, tip_strips(case.effects), curves, msh)
+        return with_regions(mesh, size.borders, own_regions(case)) if case.zones else mesh
 
     def kinematics(self, case: Case) -> KinematicsFactory:
         """x = X + u."""
@@ -115,9 +126,19 @@ class Body(MeshedModel):
         return Observables(
             frames,
             BendingAngle(line),
-            lambda: BodyGauge(scene, line),
+            lambda: BodyGauge(scene, line, borders(case)),
             lambda: BodyRod(scene.body, frames),
         )
+
+    def limits_of_zones(self, case: Case) -> Iterator[Objection]:
+        """Effects of zones that one mesh cannot have side by side."""
+        first: dict[str, Effect] = {}
+        for number in range(len(case.zones or ())):
+            for path, effect in effects_of(case, number).items():
+                if effect.name in differing(case):
+                    other = first.setdefault(effect.name, effect)
+                    if other is not effect and (reason := effect.unlike(other)):
+                        yield path, reason
 
     def force_named(self) -> str:
         """Of its tip on what blocks it."""
@@ -149,6 +170,11 @@ class Body(MeshedModel):
         unknowns = count(counts, 3, pressures)
         around, length = winding_sides(actuator, size), actuator.length
         segments = pieces(case, half, around, length, length / size.axial)
+        if differing(case):
+            segments = sum(
+                pieces(zone, half, around, zone.actuator.length, zone.actuator.length / size.axial)
+                for zone in zone_cases(case, self.name)
+            )
         scalars = found_pressure(case)
         return ProblemSize(counts.cells, kind, unknowns, scalars, layers, segments, exact)
 
@@ -197,7 +223,11 @@ class Body(MeshedModel):
         for effect in case.effects:
             yield from effect.uncertainties(case.straight)
         if not case.straight and not any(effect.alone() for effect in case.effects):
-            yield f"ends: {ENDS_BEND}: see uniform_angle_deg"
+            yield f"{AT_ENDS}{ENDS_BEND}: see uniform_angle_deg"
+
+    def errors_of_zones(self) -> Iterator[str]:
+        """It has the borders."""
+        yield f"{AT_ENDS}caps and borders of zones are those of the mesh, as long as its elements"
 
 
 MODEL = Body()

@@ -13,9 +13,22 @@ from typing import TYPE_CHECKING, Any
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import Symmetry
-from fiberbend.effects.effect import ARC, CHAMBER, HELD, SIDE, THREAD, TURNS, TWIST, VOLUME, WOUND
+from fiberbend.case.zones import zone_cases
+from fiberbend.effects.effect import (
+    ARC,
+    CHAMBER,
+    HELD,
+    SIDE,
+    THREAD,
+    TURNS,
+    TWIST,
+    VOLUME,
+    WOUND,
+    ZONES,
+)
+from fiberbend.models.costs.size import pieces, summed
 from fiberbend.models.mesh_error import cell_section_error, section_error
-from fiberbend.models.model import Objection, ProblemSize, Rung, completed_mesh, count, pieces
+from fiberbend.models.model import Objection, ProblemSize, Rung, completed_mesh, count
 from fiberbend.models.uniform import UniformModel
 from fiberbend.schema.units import show
 
@@ -34,7 +47,7 @@ class Cell(UniformModel):
     """Half a pitch between mirror planes, or a whole pitch with tied ends."""
 
     name = "cell"
-    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, SIDE, THREAD, TURNS})
+    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, SIDE, THREAD, TURNS, ZONES})
     layers_a_pitch = 8.0
     turn = math.radians(45)
     first_turn = math.radians(10)
@@ -46,16 +59,18 @@ class Cell(UniformModel):
 
     def completed(self, case: Case) -> Case:
         """Four layers in half a pitch: layers count most."""
-        turns = case.turns
-        if turns is None or math.isinf(turns.spacing):
+        found = (zone.turns for zone in zone_cases(case))
+        spacings = [turns.spacing for turns in found if turns is not None]
+        finite = [spacing for spacing in spacings if not math.isinf(spacing)]
+        if not finite:
             return case
-        axial = turns.spacing / self.layers_a_pitch
+        axial = min(finite) / self.layers_a_pitch
         return case.model_copy(update={"mesh": completed_mesh(case.mesh, axial=axial)})
 
     def limits(self, case: Case) -> Iterator[Objection]:
         """No uniform bend, half a slice without mirror planes, and one that has no room."""
         yield from super().limits(case)
-        symmetry = Symmetry.of(case.effects)
+        symmetry = Symmetry.of(case.acting)
         if case.mesh.symmetry == "half" and symmetry.along:
             yield "mesh.symmetry", f"its ends are no mirror planes: {'; '.join(symmetry.along)}"
         turns, length = case.turns, case.actuator.length
@@ -78,7 +93,7 @@ class Cell(UniformModel):
         """Half a section between mirror planes, where it has both; else a whole period."""
         if case.mesh.symmetry != "auto":
             return super().half(case)
-        symmetry = Symmetry.of(case.effects)
+        symmetry = Symmetry.of(case.acting)
         return symmetry.plane, symmetry.words()
 
     def origin(self, case: Case) -> float:
@@ -118,7 +133,7 @@ class Cell(UniformModel):
         """Three components of the displacement."""
         from fem.kinematics.cell import Cell as Bending
 
-        symmetry = Symmetry.of(case.effects)
+        symmetry = Symmetry.of(case.acting)
         return functools.partial(
             Bending,
             length=case.actuator.length,
@@ -140,7 +155,9 @@ class Cell(UniformModel):
         return 1.0 if turns is not None and turns.discrete else super().resolved_bulging(case)
 
     def size(self, case: Case) -> ProblemSize:
-        """Of its mesh."""
+        """Of its mesh, or of those of all zones."""
+        if case.zones is not None:
+            return summed(self.size(zone) for zone in zone_cases(case, self.name))
         from geometry.bodies.counts import slice_counts, winding_sides
 
         half, _ = self.half(case)
@@ -173,6 +190,9 @@ class Cell(UniformModel):
 
     def drawn(self, case: Case, size: ProblemSize) -> float:
         """All slices of the length."""
+        if case.zones is not None:
+            zones = zone_cases(case, self.name)
+            return sum(self.drawn(zone, self.size(zone)) for zone in zones)
         extent = self.slice(case, self.half(case)[0])[0]
         return size.elements * max(1.0, case.actuator.length / extent)
 

@@ -20,6 +20,8 @@ the paper's combined base has 50 times the wall's, a floor of the wall's rubber 
 
 def no_analytic(case: Case) -> str | None:
     """Why no analytical line stands for a case, or None where all do."""
+    if case.zones is not None:
+        return "the closed form is of one winding and one floor all along, not of zones"
     section = case.actuator.section
     if section != SHAPE:
         return f"the closed form of bending is for a {SHAPE}, not for a {section}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -41,10 +41,11 @@ class BodyGauge:
     Args:
         scene: the scene.
         line: the line of its sections' centroids.
+        borders: z of the planes between zones, mm; without them it is alike all along.
     """
 
-    def __init__(self, scene: Scene, line: CentreLine) -> None:
-        self._scene, self._line = scene, line
+    def __init__(self, scene: Scene, line: CentreLine, borders: Sequence[float] = ()) -> None:
+        self._scene, self._line, self._borders = scene, line, borders
         self._tip = Tip(scene.body)
         self._guided = "post" in scene.supports
         # a pressurised closed chamber has no resultant
@@ -59,7 +60,12 @@ class BodyGauge:
         return 0.0 if self._scene.domain.data.half else x, y, z
 
     def columns(self, state: State) -> dict[str, float]:
-        """Side angle and twist of a whole body, all angles without end effects, and stretch."""
+        """Side angle and twist of a whole body, all angles without end effects, and stretch.
+
+        Of a body with zones the angles of each in place of those without end effects.
+        """
+        if self._borders:
+            return self._zones()
         middle = self._line.middle()
         row = {col.UNIFORM_ANGLE: float(np.rad2deg(middle[0]))}
         row[col.AXIS_STRETCH] = self._line.stretch()
@@ -72,6 +78,18 @@ class BodyGauge:
             col.UNIFORM_SIDE: uniform[col.SIDE_ANGLE],
             col.UNIFORM_TWIST: uniform[col.TWIST],
         }
+
+    def _zones(self) -> dict[str, float]:
+        row, whole = {col.AXIS_STRETCH: self._line.stretch()}, self._line.turns()
+        half = self._scene.domain.data.half
+        if not half:
+            row |= _turns(whole)
+        parts = self._line.turns_to(np.asarray(self._borders))
+        for number, turns in enumerate(np.diff([np.zeros(3), *parts, whole], axis=0)):
+            row[col.zone(number, "angle_deg")] = float(np.rad2deg(turns[0]))
+            if not half:
+                row[col.zone(number, "twist_deg")] = float(np.rad2deg(turns[2]))
+        return row
 
     def last_columns(self, state: State) -> dict[str, float]:
         """Forces of supports and obstacles on the body, and what it touches."""

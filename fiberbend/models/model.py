@@ -9,9 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from fiberbend.case.case import Case, Mesh
+from fiberbend.case.zones import path_of, zone_cases
 from fiberbend.columns import ELEMENTS, RUN
-from fiberbend.effects.effect import mirror_breakers
+from fiberbend.effects.effect import ZONES, mirror_breakers
 from fiberbend.models.costs.price import Price, price
+from fiberbend.models.costs.size import ProblemSize as ProblemSize
+from fiberbend.models.costs.size import thread_mb
 
 if TYPE_CHECKING:
     from fem.effects.effect import Effect as Term
@@ -28,15 +31,12 @@ if TYPE_CHECKING:
 
     KinematicsFactory = Callable[[Domain, Iterable[str]], Kinematics]
 
+AT_ENDS = "ends: "
+"""Begins what a model says of the bend near caps; zones say it of their borders as well."""
 ENDS_BEND = (
     "the whole body bends further than its middle, the baseline's by 0.6 to 1.4 % "
     "(docs/evidence/free.md)"
 )
-
-_POINTS = 9
-"""Quadrature points of a facet, of each a piece of every helix of a winding that is spread."""
-_SEGMENT_MB = 0.025
-"""Measured on bodies of 14 000 and 60 000 unknowns with pitches from 6 to 0.5 mm."""
 
 Objection = tuple[str, str]
 """A path within a case, and what a model has against it."""
@@ -88,29 +88,6 @@ class Rung:
     axial: float = 0.0
 
 
-@dataclasses.dataclass(frozen=True)
-class ProblemSize:
-    """How large a problem is.
-
-    Attributes:
-        elements: number of elements.
-        kind: what they are.
-        unknowns: displacements and pressures, before any are fixed.
-        scalars: global unknowns beside them.
-        layers: elements along the axis.
-        segments: pieces of thread, each within an element.
-        exact: elements and unknowns are those of the run; else about as many.
-    """
-
-    elements: int
-    kind: str
-    unknowns: int
-    scalars: tuple[str, ...]
-    layers: float
-    segments: float
-    exact: bool = True
-
-
 class ModelKind(ABC):
     """A model of an actuator, from the cheapest closed form to the whole body."""
 
@@ -144,6 +121,25 @@ class ModelKind(ABC):
 
     def refuses(self, case: Case) -> Iterator[Objection]:
         """What of a case it does not support: paths within the case and reasons."""
+        if case.zones is None:
+            yield from self._refuses_alike(case)
+        elif ZONES not in self.offers:
+            yield "zones", "one winding and one material of each part act all along"
+        else:
+            yield from self.limits_of_zones(case)
+            by_zone = (
+                (path_of(case, number, path), reason)
+                for number, zone in enumerate(zone_cases(case, self.name))
+                for path, reason in self._refuses_alike(zone)
+            )
+            yield from dict.fromkeys(by_zone)
+
+    def limits_of_zones(self, case: Case) -> Iterator[Objection]:
+        """What it does not support of a case with zones, each of which it supports by itself."""
+        yield from ()
+
+    def _refuses_alike(self, case: Case) -> Iterator[Objection]:
+        """What it does not support of a case that is alike all along."""
         yield from self.refused_effects(case)
         yield from self.limits(case)
 
@@ -161,6 +157,14 @@ class ModelKind(ABC):
 
     def leaves_out(self, case: Case) -> Iterator[Objection]:
         """What it leaves out of what it supports: a reason not to choose it, none to refuse."""
+        if case.zones is not None:
+            by_zone = (
+                (path_of(case, number, path), reason)
+                for number, zone in enumerate(zone_cases(case, self.name))
+                for path, reason in self.leaves_out(zone)
+            )
+            yield from dict.fromkeys(by_zone)
+            return
         for index, effect in enumerate(case.effects):
             if not self.offers.issuperset(effect.needs()):
                 continue
@@ -182,7 +186,7 @@ class ModelKind(ABC):
         """Whether half the section, x ≥ 0, stands for the whole, and the reason."""
         if case.mesh.symmetry != "auto":
             return case.mesh.symmetry == "half", "given in the case"
-        breakers = list(mirror_breakers(case.effects))
+        breakers = list(mirror_breakers(case.acting))
         if breakers:
             return False, "; ".join(breakers)
         return True, "section, winding and loads are mirror-symmetric about x = 0"
@@ -220,6 +224,10 @@ class ModelKind(ABC):
         """How far its answer is expected to be off, a line with its source each."""
         yield from ()
 
+    def errors_of_zones(self) -> Iterator[str]:
+        """How far zones beside each other are expected to be off, with the source."""
+        yield from ()
+
 
 class MeshedModel(ModelKind):
     """A model of finite elements."""
@@ -255,6 +263,17 @@ class MeshedModel(ModelKind):
     def elements(self) -> MeshedModel:
         """The model itself."""
         return self
+
+    def steps_of_zones(self, case: Case) -> int | None:
+        """Load steps of a case with zones; None where they cannot be predicted."""
+        return None
+
+    def repeats(self, case: Case) -> bool:
+        """Whether its mesh is one section or slice that goes on alike along the axis.
+
+        Zones are put together in space: the run leaves the mesh of the whole length.
+        """
+        return not self.ends and case.zones is None
 
     @abstractmethod
     def mesh_size(self, case: Case, half: bool) -> MeshSize:
@@ -323,7 +342,7 @@ class MeshedModel(ModelKind):
     def bounded_turn(self, case: Case, turn: float) -> float:
         """A change of the angle in a step, rad, or the greatest that the case's effects allow."""
         length, cap = case.actuator.length, case.actuator.cap
-        return min(turn, *(effect.largest_turn(length, cap) for effect in case.effects))
+        return min(turn, *(effect.largest_turn(length, cap) for effect in case.acting))
 
 
 def completed_mesh(mesh: Mesh, **defaults: Any) -> Mesh:
@@ -342,30 +361,6 @@ def count(counts: Counts, components: int, pressures: int) -> int:
     """
     constraints = pressures * counts.cells if pressures else counts.pressures
     return components * counts.nodes + constraints
-
-
-def pieces(case: Case, half: bool, around: int, length: float, layers: float) -> float:
-    """Pieces of thread, each within an element: one for each facet that a curve crosses.
-
-    Args:
-        case: has the thread, or none.
-        half: half the section is modelled.
-        around: facets around what is modelled of the section.
-        length: of the wound part, mm.
-        layers: facets along it.
-    """
-    turns = case.turns
-    if turns is None:
-        return 0.0
-    if not turns.discrete:
-        return float(turns.curves * _POINTS * around * layers)
-    part = 0.5 if half else 1.0
-    return length * turns.around * around + part * turns.curves * layers
-
-
-def thread_mb(segments: float) -> float:
-    """Memory of pieces of thread with their matrices, MB."""
-    return _SEGMENT_MB * segments
 
 
 def found_pressure(case: Case) -> tuple[str, ...]:

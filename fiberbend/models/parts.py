@@ -11,11 +11,16 @@ from fem.effects.incompressible import Incompressible
 from fem.march.records import Ramp
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.effect import Built, Requests
+from fiberbend.case.zones import borders, bounds, differing, zone_cases
+from fiberbend.effects.effect import Built, Requests, Stretch
 from fiberbend.models.model import MeshedModel
+from geometry.bodies.zones import wound_part
 from geometry.mesh.data import MeshData
 from geometry.winding.segments import EmbeddedFibers
 from materials.material import Material
+
+_SURFACES = ("winding",)
+"""Surfaces of a body on which effects lie that may differ along the length."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -65,7 +70,12 @@ def build(case: Case, mesh: MeshData, model: MeshedModel) -> SceneParts:
     for region, material in materials.items():
         laws.setdefault(material.law, {})[region] = dict(material.parameters)
     bulk = {region: m.bulk for region, m in materials.items() if m.bulk is not None}
-    built = [effect.build(site, mesh, requests) for effect in case.effects]
+    apart = differing(case)
+    built = [
+        Built(()) if effect.name in apart else effect.build(site, mesh, requests)
+        for effect in case.effects
+    ]
+    built += [_along(case, name, mesh, requests) for name in sorted(apart)]
     wound = next((item for item in built if item.fibers is not None), None)
     return SceneParts(
         effects=[
@@ -79,6 +89,19 @@ def build(case: Case, mesh: MeshData, model: MeshedModel) -> SceneParts:
         fibers=None if wound is None else wound.fibers,
         smeared=wound is not None and wound.smeared,
     )
+
+
+def _along(case: Case, name: str, mesh: MeshData, requests: Requests) -> Built:
+    """An effect that differs along the length, in every zone that has one."""
+    stretches = []
+    for number, (start, zone) in enumerate(zip(bounds(case), zone_cases(case), strict=False)):
+        part = wound_part(mesh, borders(case), number, _SURFACES)
+        stretches += [
+            Stretch(effect, convert.site(zone), part, start)
+            for effect in zone.effects
+            if effect.name == name
+        ]
+    return stretches[0].effect.build_along(stretches, requests)
 
 
 def _asked(case: Case, built: Sequence[Built], requests: Requests) -> Iterator[Ramp]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from fiberbend.case.case import Case
+from fiberbend.case.zones import zone_cases
 from fiberbend.models.choice import choose_model
 from fiberbend.models.model import ModelKind
 
@@ -95,8 +96,12 @@ def winding_remark(case: Case) -> str | None:
     """Whether the elements of a case's model resolve its winding.
 
     Returns:
-        A sentence, or None without a discrete winding.
+        A sentence, or None without a discrete winding; of zones those that differ.
     """
+    if case.zones is not None:
+        name = choose_model(case)[0].name
+        each = (winding_remark(zone) for zone in zone_cases(case, name))
+        return "; ".join(dict.fromkeys(text for text in each if text is not None)) or None
     turns, model = case.turns, choose_model(case)[0].elements()
     if turns is None or not turns.discrete or model is None:
         return None

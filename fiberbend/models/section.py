@@ -12,7 +12,19 @@ from typing import TYPE_CHECKING, Any
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import Symmetry, twists
-from fiberbend.effects.effect import ARC, CHAMBER, HELD, SIDE, THREAD, TWIST, VOLUME, WOUND
+from fiberbend.case.zones import zone_cases
+from fiberbend.effects.effect import (
+    ARC,
+    CHAMBER,
+    HELD,
+    SIDE,
+    THREAD,
+    TWIST,
+    VOLUME,
+    WOUND,
+    ZONES,
+)
+from fiberbend.models.costs.size import summed
 from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import ProblemSize, Rung, completed_mesh, count
 from fiberbend.models.uniform import UniformModel
@@ -35,7 +47,7 @@ class Section(UniformModel):
     """Nothing depends on z in the frame that turns with the section."""
 
     name = "section"
-    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, SIDE, THREAD})
+    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, SIDE, THREAD, ZONES})
     turn = math.radians(10)
     first_turn = math.radians(10)
     memory = 5
@@ -50,7 +62,7 @@ class Section(UniformModel):
 
     def half(self, case: Case) -> tuple[bool, str]:
         """Where it has both mirror planes, or half a turn about y maps the section onto itself."""
-        symmetry = Symmetry.of(case.effects)
+        symmetry = Symmetry.of(case.acting)
         return symmetry.halved, symmetry.words()
 
     def unused(self, case: Case) -> dict[str, set[str]]:
@@ -72,7 +84,7 @@ class Section(UniformModel):
         """Two components of the displacement, three where it may twist."""
         from fem.kinematics.section import Section as Bending
 
-        symmetry = Symmetry.of(case.effects)
+        symmetry = Symmetry.of(case.acting)
         return functools.partial(
             Bending,
             length=case.actuator.length,
@@ -90,7 +102,9 @@ class Section(UniformModel):
         return [TwofoldAxis() if twists(case) else Mirror(halves=True)]
 
     def size(self, case: Case) -> ProblemSize:
-        """Of its mesh."""
+        """Of its mesh, or of those of all zones."""
+        if case.zones is not None:
+            return summed(self.size(zone) for zone in zone_cases(case, self.name))
         from geometry.bodies.counts import section_counts
 
         size = self.mesh_size(case, self.half(case)[0])
@@ -111,6 +125,9 @@ class Section(UniformModel):
 
     def drawn(self, case: Case, size: ProblemSize) -> float:
         """The section along the whole length."""
+        if case.zones is not None:
+            zones = zone_cases(case, self.name)
+            return sum(self.drawn(zone, self.size(zone)) for zone in zones)
         return float(size.elements * picture_layers(case))
 
     def mesh_error(self, case: Case) -> float:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.case.zones import zone_cases
 from fiberbend.effects.effect import Effect
 from fiberbend.effects.wound.turns import Turns
 from fiberbend.models.choice import choose_model
-from fiberbend.models.model import ModelKind
+from fiberbend.models.model import AT_ENDS, ModelKind
 from fiberbend.models.resolution import FARTHEST_PITCH, lost_pressure, winding_remark
 from fiberbend.plan.memory import gigabytes, needed_mb, room
 from fiberbend.schema.slips import LIMITS
@@ -36,6 +38,12 @@ def errors(case: Case, model: ModelKind) -> Iterator[str]:
     """
     if case.inflation is None:
         return
+    if case.zones is not None:
+        each = (errors(zone, model) for zone in zone_cases(case, model.name))
+        lines = dict.fromkeys(itertools.chain.from_iterable(each))
+        yield from (line for line in lines if not line.startswith(AT_ENDS))
+        yield from model.errors_of_zones()
+        return
     yield from model.errors(case)
     if case.mesh.element == "tetrahedron":
         apart = "tip force 3 to 4 % below" if case.straight else "P up to 1.3 % above"
@@ -46,13 +54,17 @@ def errors(case: Case, model: ModelKind) -> Iterator[str]:
 def _model(case: Case, model: ModelKind) -> Iterator[str]:
     for path, text in model.leaves_out(case):
         yield f"model {model.name} leaves out {path}: {text}"
-    for effect in case.effects:
+    for effect in case.acting:
         # an effect that says nothing of its errors
         if type(effect).uncertainties is Effect.uncertainties:
             yield from effect.uncertainties(case.straight)
 
 
 def _winding(case: Case, model: ModelKind) -> Iterator[str]:
+    if case.zones is not None:
+        for place, zone in enumerate(zone_cases(case, model.name), start=1):
+            yield from (f"zone {place}: {line}" for line in _winding(zone, model))
+        return
     turns = case.turns
     if turns is None or model.elements() is None:
         return

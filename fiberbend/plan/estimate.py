@@ -139,6 +139,8 @@ def cold() -> bool:
 
 def steps_of(case: Case, model: MeshedModel) -> int | None:
     """Load steps of a run, or None where they cannot be predicted."""
+    if case.zones is not None:
+        return model.steps_of_zones(case)
     others = [effect.steps() for effect in case.effects]
     if None in others:
         return None

@@ -12,6 +12,7 @@ from fiberbend.calibration.expected import expected
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import twists
+from fiberbend.case.zones import words
 from fiberbend.models.choice import MODELS, choose_model, objection
 from fiberbend.models.model import MeshedModel, ModelKind
 from fiberbend.models.resolution import winding_remark
@@ -89,6 +90,7 @@ def make_plan(case: Case) -> Plan:
     beside = [] if picked(case) else _cheaper(case, model)
     head = {
         "effects": [", ".join(effect.name for effect in case.effects)],
+        "zones": [f"{n}: {text}" for n, text in enumerate(words(case), start=1)],
         "model": [f"{model.name} ({why})", *beside],
     }
     actuator = convert.dimensions(case.actuator)

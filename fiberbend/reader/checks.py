@@ -17,13 +17,7 @@ from fiberbend.case.case import (
     Solver,
 )
 from fiberbend.case.symmetry import upside_down
-from fiberbend.effects.effect import (
-    Draft,
-    Effect,
-    Inflation,
-    keep_straight,
-    mirror_breakers,
-)
+from fiberbend.effects.effect import Draft, Effect, Inflation, keep_straight, mirror_breakers
 from fiberbend.effects.table import EFFECTS
 from fiberbend.models.choice import MODELS, choose_model
 from fiberbend.reader.proportions import disproportions
@@ -53,6 +47,7 @@ class ValidParts:
     solver: Solver | None = None
     output: Output | None = None
     model: str | None = None
+    zoned: bool = False
     effects: dict[int, Effect] = dataclasses.field(default_factory=dict)
     broken_effects: bool = False
 
@@ -66,6 +61,7 @@ class ValidParts:
             case.solver,
             case.output,
             case.model,
+            case.zones is not None,
             dict(enumerate(case.effects)),
         )
 
@@ -178,7 +174,7 @@ def _material(path: str, material: MaterialSpec) -> Iterator[Problem]:
 
 def _bends(parts: ValidParts) -> Iterator[Problem]:
     """An angle that is asked of a pressure under which a section bends neither way."""
-    if parts.broken_effects or any(effect.bends() for effect in parts.effects.values()):
+    if parts.broken_effects or parts.zoned or any(e.bends() for e in parts.effects.values()):
         return
     for index, effect in parts.effects.items():
         load = effect.inflation()

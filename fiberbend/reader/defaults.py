@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from fiberbend.case.case import Case
 from fiberbend.models.choice import MODELS, choose_model
 
@@ -24,6 +26,9 @@ def complete(case: Case) -> Case:
         if (found := accuracy.complete(case)) is not None:
             return found
     effects = tuple(effect.completed(offers) for effect in case.effects)
-    case = case.model_copy(update={"effects": effects})
+    update: dict[str, Any] = {"effects": effects}
+    if case.zones is not None:
+        update["zones"] = tuple(zone.completed(offers, weighs) for zone in case.zones)
+    case = case.model_copy(update=update)
     model, _ = choose_model(case)
     return model.completed(case)

@@ -28,6 +28,7 @@ from fiberbend.reader.yaml_file import (
     root_paths,
     setting_path,
 )
+from fiberbend.reader.zones import zone_problems
 from fiberbend.schema.paths import put
 from fiberbend.schema.problems import CaseError, Problem, found
 from fiberbend.schema.validation import from_pydantic
@@ -136,6 +137,8 @@ def parse_case(data: Mapping[str, Any]) -> Case:
         problems += from_pydantic(error, Case)
         parts = _valid_parts(data) if isinstance(data, Mapping) else ValidParts()
     problems += check(parts)
+    if case is not None and case.zones is not None:
+        problems += zone_problems(case, problems)
     if problems or case is None:
         raise CaseError(problems)
     if case.accuracy is not None:

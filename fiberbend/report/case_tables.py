@@ -9,6 +9,7 @@ import yaml
 
 from fiberbend import columns as col
 from fiberbend.case.case import ActuatorSpec, Case
+from fiberbend.case.zones import words
 from fiberbend.plan.plan import make_plan
 from fiberbend.schema.descriptions import descriptions
 
@@ -68,6 +69,8 @@ def effects(case: Case) -> Iterator[Line]:
     for entry in case.resolved()["effects"]:
         for name, settings in entry.items():
             yield Line(name, in_words(settings))
+    for number, text in enumerate(words(case), start=1):
+        yield Line(f"zone {number}", text)
 
 
 def case_text(case: Case) -> str:

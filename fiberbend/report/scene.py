@@ -11,7 +11,7 @@ import numpy as np
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.drawing.page import COLORS, NAMES
+from fiberbend.drawing.page import color_of, name_of
 from fiberbend.drawing.renderer import FROM_THE_SIDE
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.drawing.tessellation import Tessellation, boundary_facets, on_mirror
@@ -189,7 +189,7 @@ def scene_data(
             )
         ],
         "regions": [
-            {"number": number, "name": NAMES.get(name, name), "color": COLORS.get(name, "#999999")}
+            {"number": number, "name": name_of(name), "color": color_of(name)}
             for name, number in space.model_mesh.mesh.regions.items()
         ],
         "quantities": [

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.case.zones import borders, own_regions, zone_cases
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.states.snapshot import ModelMesh
 
@@ -28,20 +29,22 @@ def body_at_rest(case: Case) -> ModelMesh:
         CaseError: dimensions of which no mesh can be made.
     """
     from geometry.bodies.extrude import hexahedral_body
+    from geometry.bodies.zones import with_regions
     from geometry.sections.size import MeshSize
 
     actuator, site = convert.dimensions(case.actuator), convert.site(case)
-    size = MeshSize(axial=_LAYER * actuator.outer_half_width, section=_ROUND)
+    between = borders(case)
+    size = MeshSize(axial=_LAYER * actuator.outer_half_width, section=_ROUND, borders=between)
     try:
-        mesh = hexahedral_body(actuator, size)
+        mesh = with_regions(hexahedral_body(actuator, size), between, own_regions(case))
     except ValueError as error:
         raise CaseError([Problem("actuator", str(error))]) from None
-    turns = case.turns
+    found = [zone.turns for zone in zone_cases(case)]
     return ModelMesh(
         mesh=mesh,
         materials={name: site.materials[name] for name in mesh.regions},
         fibers=None,
-        smeared=turns is not None and not turns.discrete,
+        smeared=any(turns is not None and not turns.discrete for turns in found),
         title=case.title,
     )
 
@@ -54,8 +57,7 @@ def threads(case: Case) -> list[Floats]:
     Args:
         case: the case.
     """
-    turns = case.turns
-    if turns is None or not turns.discrete:
+    alone = [zone for zone in zone_cases(case) if zone.turns is not None]
+    if not any(zone.turns is not None and zone.turns.discrete for zone in alone):
         return []
-    actuator = convert.dimensions(case.actuator)
-    return [curve for effect in case.effects for curve in effect.curves(actuator)]
+    return convert.curves(case)

@@ -62,6 +62,9 @@ def write_mesh_file(case: Case, path: Path, overwrite: bool = False) -> list[str
 
     check_target(path, overwrite)
     model = choose_model(case)[0]
+    if case.zones is not None and not model.ends:
+        text = f"each has a mesh of its own in model {model.name}, expected model body"
+        raise CaseError([Problem("zones", text)])
     elements = model.elements()
     if elements is None:
         names = [name for name, other in MODELS.items() if other.elements() is not None]
@@ -102,7 +105,7 @@ def mesh_of(case: Case, model: MeshedModel) -> ModelMesh:
         fibers=parts.fibers,
         smeared=parts.smeared,
         title=case.title,
-        uniform=not model.ends,
+        uniform=model.repeats(case),
     )
 
 

@@ -170,7 +170,7 @@ class States:
             fibers=fibers,
             smeared=smeared,
             title=self._case.title,
-            uniform=elements is not None and not elements.ends,
+            uniform=elements is not None and elements.repeats(self._case),
         )
 
     def read(self, kept: Kept) -> Snapshot | None:

@@ -58,7 +58,7 @@ class Assembly:
             fibers=self.parts.fibers,
             smeared=self.parts.smeared,
             title=case.title,
-            uniform=not meshed(case).ends,
+            uniform=meshed(case).repeats(case),
         )
 
 
@@ -92,12 +92,12 @@ def assemble(
         # sections and cells are too small to be shared
         iterative=model.shared and case.solver.linear == "iterative",
     )
-    for effect in case.effects:
+    for effect in case.acting:
         settings = effect.settings(settings)
     newton = Newton(scene, comm, settings)
     frames = observables.frames
     walls = Walls(scene) if watch else None
-    touching = [Approach(scene)] if any(effect.touches() for effect in case.effects) else []
+    touching = [Approach(scene)] if any(effect.touches() for effect in case.acting) else []
     guide = None if make_guide is None or frames is None else make_guide(scene, frames)
     march = March(
         scene,
@@ -134,6 +134,6 @@ def rules(case: Case, model: MeshedModel, guided: bool) -> Rules:
     )
     if guided:
         found = dataclasses.replace(found, grow=model.guided_growth)
-    for effect in case.effects:
+    for effect in case.acting:
         found = effect.rules(found, case.straight)
     return found

@@ -144,6 +144,10 @@ def _solve(
             run = _Run(whole, model, folder, progress, comm, comm.size, scratch, whole_own)
             return run.go(False)
     # too small to share: one rank solves it
+    if case.zones is not None:
+        from fiberbend.running.zones.run import run_zones
+
+        return run_zones(case, model, folder, progress, comm, own, scratch)
     alone = _Run(case, model, folder, progress, MPI.COMM_SELF, comm.size, scratch, own)
     return on_rank_0(comm, lambda: alone.go(False))
 
@@ -355,10 +359,8 @@ class _Run:
         from fiberbend.compare.beside import check_run
 
         self.progress.phase("crosscheck")
-        known = None if section is None else section.bending
-        return on_rank_0(
-            self.comm, lambda: check_run(self.case, self.model, rows, _solve_beside, known)
-        )
+        given = (rows, _solve_beside, None if section is None else section.bending)
+        return on_rank_0(self.comm, lambda: check_run(self.case, self.model, *given))
 
     def _close(self, run: dict[str, Any], assembly: Assembly, recording: Recording) -> None:
         """Write how long the last phase took, and what it warned of; on the rank that writes."""
@@ -387,14 +389,6 @@ class _Run:
     ) -> None:
         """Fields, pictures and plots, on rank 0."""
         assert self.folder is not None
-        draw(
-            self.folder,
-            self.case,
-            assembly.model_mesh(self.case),
-            recording.snapshots,
-            rows,
-            reason,
-            lambda text: recording.warn([text]),
-            check,
-            self.model.name,
-        )
+        mesh, shots = assembly.model_mesh(self.case), recording.snapshots
+        beside = (lambda text: recording.warn([text]), check, self.model.name)
+        draw(self.folder, self.case, mesh, shots, rows, reason, *beside)

@@ -110,6 +110,32 @@ class UnitName:
         return text
 
 
+NONE = "none"
+"""What a case writes where a part of it is to be absent."""
+
+
+class OrNone:
+    """Annotation of a part of a case that may be the word `none` in its place: absent there."""
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        """The word as it is, anything else as the part reads and writes it."""
+        return core_schema.no_info_wrap_validator_function(
+            lambda value, read: value if value == NONE else read(value),
+            handler(source),
+            serialization=core_schema.wrap_serializer_function_ser_schema(
+                lambda value, write: value if value == NONE else write(value)
+            ),
+        )
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """The word is allowed too."""
+        return {"anyOf": [{"const": NONE}, handler(schema["schema"])]}
+
+
 Length = Annotated[float, Quantity("length")]
 """mm, above zero."""
 LengthOrZero = Annotated[float, Quantity("length", "zero or above")]

@@ -37,6 +37,9 @@ def from_pydantic(error: ValidationError, root: type[Spec]) -> Iterator[Problem]
         root: the class that it was validating.
     """
     for line in error.errors(include_url=False):
+        # pydantic counts the valid entries of a list alone
+        if line["type"] == "too_short" and line["input"]:
+            continue
         yield Problem(dotted(line["loc"]), _text(line, root))
 
 

@@ -286,7 +286,8 @@ def mesh_body(spec: dict[str, Any], out: Path) -> None:
             "seed" of random numbers; "adapted": whether surfaces are triangulated by MeshAdapt.
         out: .npz file for `MeshData.load`.
     """
-    actuator, size = make_actuator(spec["actuator"]), MeshSize(**spec["size"])
+    actuator = make_actuator(spec["actuator"])
+    size = MeshSize(**spec["size"] | {"borders": tuple(spec["size"]["borders"])})
     strips = Strips(**spec["strips"]) if spec["strips"] else None
     gmsh.model.add("fiberbend")
     size = size.of_edges() if size.element == "tetrahedron" else size

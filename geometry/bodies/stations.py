@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 
 from geometry.actuator import Actuator
 from geometry.sections.size import MeshSize, Strips, divisions
@@ -53,6 +54,8 @@ _CHAMBER = _EVERYWHERE | {"chamber", "winding", "roof"}
 def body_stations(actuator: Actuator, size: MeshSize, strips: Strips | None = None) -> Stations:
     """Stations of the whole body: root cap, chamber, tip cap, and the post's strip at its end.
 
+    The chamber is divided at the borders that the fineness names.
+
     Surfaces: "clamp" and "tip" (end faces), "section_root" and "section_tip" (the ring of material
     at z = 0 and z = L), "chamber" with its end planes, "winding" and "roof" for 0 ≤ z ≤ L,
     "post", and everywhere "outer" and "symmetry".
@@ -68,21 +71,26 @@ def body_stations(actuator: Actuator, size: MeshSize, strips: Strips | None = No
     if strips:
         post = end - strips.post_length
         beside = min(beside, _BESIDE_POST * strips.post_length)
+    chamber = [
+        Segment(a, b, divisions(b - a, size.axial), _CHAMBER, False)
+        for a, b in itertools.pairwise((0.0, *size.borders, length))
+    ]
     segments = [
         Segment(-cap, 0.0, divisions(cap, size.axial), _EVERYWHERE, True),
-        Segment(0.0, length, divisions(length, size.axial), _CHAMBER, False),
+        *chamber,
         Segment(length, post, divisions(post - length, beside), _EVERYWHERE, True),
     ]
     planes: list[tuple[str | None, str | None]] = [
         ("clamp", "clamp"),
         ("section_root", "chamber"),
+        *[(None, None)] * len(size.borders),
         ("section_tip", "chamber"),
         ("tip", "tip"),
     ]
     if strips:
         with_post = _EVERYWHERE | {"post"}
         segments.append(Segment(post, end, divisions(end - post, size.axial), with_post, True))
-        planes.insert(3, (None, None))
+        planes.insert(-1, (None, None))
     return Stations(tuple(segments), tuple(planes), origin=1)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterator
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from geometry.actuator import Actuator
 
@@ -29,6 +29,7 @@ class MeshSize:
             half width and height of a rectangle; tetrahedra have edges of axial / n.
         element: "hexahedron" or "tetrahedron".
         half: mesh x ≥ 0 only.
+        borders: z in mm of planes across the chamber that no element crosses, in order.
 
     Raises:
         ValueError: a value outside these meanings.
@@ -38,6 +39,7 @@ class MeshSize:
     section: int = 1
     element: str = "hexahedron"
     half: bool = True
+    borders: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.axial) and self.axial > 0):
@@ -138,12 +140,19 @@ def in_unit(lengths: Lengths, unit: float) -> Lengths:
     if unit == 1.0:  # exact: a power of ten, and mm themselves
         return lengths
     given = {field.name: getattr(lengths, field.name) for field in dataclasses.fields(lengths)}
-    scaled = {
-        name: float(f"{value / unit:.{_DIGITS}g}")
-        for name, value in given.items()
-        if isinstance(value, float)
+    scaled: dict[str, Any] = {
+        name: _in_unit(value, unit) for name, value in given.items() if isinstance(value, float)
     }
-    return dataclasses.replace(lengths, **scaled)  # type: ignore[arg-type]
+    scaled |= {
+        name: tuple(_in_unit(part, unit) for part in value)
+        for name, value in given.items()
+        if isinstance(value, tuple)
+    }
+    return dataclasses.replace(lengths, **scaled)
+
+
+def _in_unit(length: float, unit: float) -> float:
+    return float(f"{length / unit:.{_DIGITS}g}")
 
 
 def divisions(length: float, target: float) -> int:

@@ -97,6 +97,12 @@ def test_a_wrong_family_is_refused(given: dict[str, Any], line: str) -> None:
     assert line in str(raised.value)
 
 
+def test_a_wrong_family_is_named_once() -> None:
+    with pytest.raises(CaseError) as error:
+        parse_case(case(HELIX | {"starts": 0}))
+    assert [problem.path for problem in error.value.problems] == [f"{F}.starts"]
+
+
 def test_a_body_without_a_floor_has_no_wall_alone() -> None:
     given = case(HOOPS, around="wall")
     given["actuator"] = {

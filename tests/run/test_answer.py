@@ -152,9 +152,28 @@ def test_turns_out_of_the_plane() -> None:
     ]
     rows[-1]["tip_x_mm"] = 84.09
     said = answer(case_of("single_helix"), rows, CONVERGED)
+    assert said.sentence.startswith("The actuator bends to 197° and twists by 83.28° at 100 kPa")
     assert found(said, "twist at the end").value == "83.28°"
     assert "side angle at the end" not in labels(said)
     assert found(said, "tip at the end").value.startswith("x = 84.09 mm, y = ")
+
+
+@pytest.mark.parametrize(
+    ("more", "sentence", "end"),
+    [
+        ({"twist_deg": -148.3}, "twists by -148.3°", "twist -148.3°"),
+        ({"axis_stretch": 1.23456}, "lengthens by 23.5 %", "stretch 1.235"),
+        ({"axis_stretch": 0.9}, "shortens by 10 %", "stretch 0.9"),
+        ({"side_angle_deg": 12.0}, "bends by 12° to the side", "0°"),
+        ({"axis_stretch": 1.00001}, "bends to 0°", "0°"),
+    ],
+)
+def test_what_does_not_bend_does_something_else(
+    more: dict[str, float], sentence: str, end: str
+) -> None:
+    said = answer(case_of("single_helix"), [row(0, 0, 0), row(1, 50, 1e-9, **more)], CONVERGED)
+    assert said.sentence.startswith(f"The actuator {sentence} at 50 kPa")
+    assert found(said, "end of the run").value == f"50 kPa, {end}"
 
 
 # --- blocked ----------------------------------------------------------------------------------

@@ -96,7 +96,7 @@ def test_the_command_ends_without_a_search_for_cycles() -> None:
 
 
 def test_every_process_comes_to_the_same_to_the_last_bit(tmp_path: Path) -> None:
-    """Python orders sets in its own way in each process; dolfinx 0.9 has a set of integrals."""
+    """Python orders sets anew in each process; from dolfinx 0.9 on integrals come as a set."""
     changes = ["output.pictures=false", "output.fields=false", "output.report=false"]
     changes += ["model=section", "output.at_angles=[]", "output.stop_at_angle=30 deg"]
     words = [word for change in changes for word in ("--set", change)]

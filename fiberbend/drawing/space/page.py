@@ -15,15 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fiberbend.drawing.page import (
-    COLORS,
-    NAMES,
     WARN,
     Box,
+    color_of,
     colormap,
     columns_of,
     figure,
     fit,
     heading,
+    name_of,
     nice_above,
     save,
     wrap,
@@ -243,9 +243,9 @@ class Page:
         """
         from matplotlib.patches import Patch
 
-        labels = {name: f"{NAMES.get(name, name)} {(more or {}).get(name, '')}" for name in names}
+        labels = {name: f"{name_of(name)} {(more or {}).get(name, '')}" for name in names}
         patches = [
-            Patch(facecolor=COLORS.get(name, "#999999"), edgecolor="0.4", label=label.strip())
+            Patch(facecolor=color_of(name), edgecolor="0.4", label=label.strip())
             for name, label in labels.items()
         ]
         self._figure.legend(

@@ -1,0 +1,1 @@
+"""Runs of section and cell over zones along the length: one march for each, chained."""
