@@ -11,8 +11,10 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable, Sequence
 
-from fiberbend.case.case import Case
+from fiberbend.case import convert
+from fiberbend.case.case import ActuatorSpec, Case, Materials
 from fiberbend.effects.effect import Effect
+from materials.laws.table import LAWS
 
 
 @dataclasses.dataclass(frozen=True)
@@ -87,6 +89,27 @@ class Symmetry:
 def twists(case: Case) -> bool:
     """Whether a case may twist the body."""
     return Symmetry.of(case.acting).twists
+
+
+def upside_down(actuator: ActuatorSpec, materials: Materials) -> bool:
+    """Whether a section is its own image turned upside down, in shape and materials.
+
+    Args:
+        actuator: valid.
+        materials: those of its wall and floor are there and valid.
+    """
+    regions = convert.dimensions(actuator).one_material()
+    made = [convert.material(getattr(materials, region)) for region in regions]
+    known = [(item.law, LAWS[item.law].complete(item.parameters), item.bulk) for item in made]
+    return bool(known) and all(item == known[0] for item in known)
+
+
+def stays_straight(case: Case) -> bool:
+    """Whether nothing bends it: neither its section nor an effect, nor what is said of a zone."""
+    if case.zones is not None:
+        return False
+    alike = upside_down(case.actuator, case.materials)
+    return alike and not any(effect.bends() for effect in case.effects)
 
 
 def _reasons(found: Iterable[str]) -> tuple[str, ...]:

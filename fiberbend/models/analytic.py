@@ -47,9 +47,9 @@ class Analytic(ModelKind):
                     yield f"effects.{index}.{effect.name}", _LOOSE
             return
         strange = [
-            (f"effects.{index}.{effect.name}", reason)
+            (f"effects.{index}.{effect.name}", why)
             for index, effect in enumerate(case.effects)
-            if (reason := effect.no_closed_form())
+            if (why := effect.no_closed_form())
         ]
         if strange:
             # most of them are refused by what they need, and said once

@@ -11,7 +11,6 @@ from fiberbend.case.case import Case
 from fiberbend.case.zones import zone_cases
 from fiberbend.models.choice import choose_model
 from fiberbend.models.model import ModelKind
-from fiberbend.schema.units import show
 
 BULGING_PITCH = 3.0
 """Pitch in mm for which the bulging between the fibers was measured."""
@@ -107,12 +106,12 @@ def winding_remark(case: Case) -> str | None:
     if turns is None or not turns.discrete or model is None:
         return None
     axial, most = model.mesh_size(case, model.half(case)[0]).axial, turns.spacing / 2
-    apart = show(turns.spacing, "length")
+    apart = f"{turns.spacing:.4g} mm"
     turn = f"turns {apart} apart" if turns.pitch is None else f"a pitch of {apart}"
     if axial <= most * (1 + 1e-9):
-        return f"resolved (elements of {show(axial, 'length')}, {turn})"
+        return f"resolved (elements of {axial:.4g} mm, {turn})"
     return (
-        f"NOT resolved (elements of {show(axial, 'length')} under {turn}, needs "
-        f"{show(most, 'length')}): rubber between the turns bulges too little, the pressure for "
+        f"NOT resolved (elements of {axial:.4g} mm under {turn}, needs "
+        f"{most:.4g} mm): rubber between the turns bulges too little, the pressure for "
         "an angle comes out too low"
     )

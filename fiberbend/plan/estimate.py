@@ -10,6 +10,7 @@ import math
 
 from fiberbend.case.case import Case
 from fiberbend.case.section_beside import section_guides
+from fiberbend.case.symmetry import stays_straight
 from fiberbend.models import lines
 from fiberbend.models.costs.price import machine
 from fiberbend.models.model import MeshedModel, ModelKind, ProblemSize
@@ -54,7 +55,9 @@ class Cost:
         if self.steps is None or whole is None:
             steps, time = each, f"about {_rounded(self.step_s)} s a step"
         else:
-            steps = f"about {self.steps}" + ("" if case.straight else f", {each}")
+            steps = f"about {self.steps}" + (
+                "" if case.straight or stays_straight(case) else f", {each}"
+            )
             time = f"about {_rounded(whole)} s"
             if model.shared:
                 time += f" on one rank, {_rounded(self.seconds(2) or whole)} s on two"
@@ -148,7 +151,7 @@ def steps_of(case: Case, model: MeshedModel) -> int | None:
     least = 0
     if load.to is not None and case.solver.max_step is not None:
         least = math.ceil(abs(load.to) / case.solver.max_step)
-    if case.straight:
+    if case.straight or stays_straight(case):
         # the angle is all but zero: no step is bounded by its turn
         if load.to is None:
             return None

@@ -16,6 +16,7 @@ from fiberbend.case.case import (
     Output,
     Solver,
 )
+from fiberbend.case.symmetry import upside_down
 from fiberbend.effects.effect import Draft, Effect, Inflation, keep_straight, mirror_breakers
 from fiberbend.effects.table import EFFECTS
 from fiberbend.models.choice import MODELS, choose_model
@@ -194,9 +195,7 @@ def _upside_down(parts: ValidParts) -> bool:
     specs = [getattr(parts.materials, region) for region in regions]
     if not regions or any(spec is None or any(_material("", spec)) for spec in specs):
         return False
-    made = [convert.material(spec) for spec in specs]
-    known = [(item.law, LAWS[item.law].complete(item.parameters), item.bulk) for item in made]
-    return all(item == known[0] for item in known)
+    return upside_down(parts.actuator, parts.materials)
 
 
 def _density(parts: ValidParts) -> Iterator[Problem]:

@@ -26,12 +26,13 @@ class Space:
 
     Attributes:
         own: as given.
+        length: of the chamber at rest, mm; whole slices come only near to it.
         stack: what the section or cell becomes; None for a body.
         halves: the half in space and its mirror image; None where there is no image.
     """
 
     def __init__(self, case: Case, own: ModelMesh, both: bool = False) -> None:
-        self.own = own
+        self.own, self.length = own, case.actuator.length
         self.stack = _whole(case, own) if own.uniform else None
         one = own if self.stack is None else self.stack.model_mesh
         self.halves = Halves(one) if both and one.mesh.half else None

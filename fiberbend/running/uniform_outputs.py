@@ -121,7 +121,7 @@ def _caption(state: Snapshot, space: Space, beside: Scenery) -> str:
     if state.twist == 0 and state.side_curvature == 0:
         return caption
     rates = Bend.of(state, space.own.mesh).rates
-    _, side, twist = np.rad2deg(rates * space.model_mesh.mesh.nodes[-1, 2]) + 0.0
+    _, side, twist = np.rad2deg(rates * space.length) + 0.0
     turned = f"{caption},  side {side:.0f}°" if state.side_curvature else caption
     turned = f"{turned},  twist {twist:.0f}°" if state.twist else turned
     return turned.replace("-", "−")

@@ -46,6 +46,8 @@ BLOCKED_COLUMNS = {
 PAPER = "paper"
 """Entry of a case's `compare` that asks for the figures of the paper."""
 _SAME = 1e-6
+_NO_ANGLE = 1e-6
+"""Degrees below which a body does not turn: solvers leave 1e-9."""
 _MOST_ROWS = 20
 """More points than this are not listed one by one."""
 
@@ -56,8 +58,18 @@ def collect(sweep: Sweep, store: Store) -> list[TableRow]:
     for index, point in enumerate(sweep.points):
         row: TableRow = {"point": point.name}
         row |= {column.name: column.values[index] for column in sweep.columns}
-        rows.append(row | _results(point, sweep.report, store))
+        found = _results(point, sweep.report, store)
+        rows.append(row | {name: _settled(name, value) for name, value in found.items()})
     return rows
+
+
+def _settled(name: str, value: Any) -> Any:
+    """A result, zero where it is an angle of which there is none but for round-off.
+
+    Trends would tell how it rises and falls.
+    """
+    angle = name.endswith("_deg") and isinstance(value, float)
+    return 0.0 if angle and abs(value) < _NO_ANGLE else value
 
 
 def as_csv(rows: Sequence[TableRow]) -> str:

@@ -149,19 +149,22 @@ def _changes(found: Sequence[Group], name: str, between: str) -> str:
     values = [y for group in found if _whole(y := group.values(name))]
     if not values:
         return ""
-    # of the first value's size: a vacuum that grows is a pressure that falls
-    changes = [
-        100 * (y[-1] - y[0]) / abs(y[0])
-        if abs(y[0]) > _ROUND_OFF * abs(y[-1])
-        else math.copysign(math.inf, y[-1])
-        for y in values
-    ]
+    changes = [_change(float(y[0]), float(y[-1])) for y in values]
     ends = dict.fromkeys(f"{bound:+.1f} %" for bound in (min(changes), max(changes)))
     return between.join(ends).replace("-", "−")
 
 
+def _change(first: float, last: float) -> float:
+    """In percent of the first value's size: a vacuum that grows is a pressure that falls."""
+    if first == last:
+        return 0.0
+    if abs(first) > _ROUND_OFF * abs(last):
+        return 100 * (last - first) / abs(first)
+    return math.copysign(math.inf, last)
+
+
 def _shape(y: Floats) -> str:
-    if np.ptp(y) < INSENSITIVE * abs(y[0]):
+    if np.ptp(y) == 0 or np.ptp(y) < INSENSITIVE * abs(y[0]):
         return "—"
     steps = np.diff(y)
     # a plateau neither rises nor falls, whatever its last digits do

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import subprocess
 import sys
 from collections.abc import Callable
@@ -17,8 +18,11 @@ from fiberbend.drawing.cell import Slices, plot_tension, tension_along
 from fiberbend.drawing.crosscut import Crosscut
 from fiberbend.drawing.renderer import Renderer
 from fiberbend.drawing.section import Sections
+from fiberbend.drawing.space.obstacles import Scenery
 from fiberbend.reader.reader import parse_case
 from fiberbend.results.folder import RunFolder
+from fiberbend.results.space import Space
+from fiberbend.running import uniform_outputs
 from fiberbend.running.outputs import draw
 from fiberbend.states.bend import Bend
 from fiberbend.states.recovery import cauchy_stress, recover
@@ -254,6 +258,19 @@ def test_twisted_section_is_drawn_whole(tmp_path: Path) -> None:
     states = [state(scene, 60.0, move=warp, twist=-0.01)]
     draw(RunFolder(tmp_path), case_of("section"), scene, states, [], None, print)
     assert is_drawn(tmp_path / "pictures" / "bent.png")
+
+
+def test_a_caption_has_the_twist_of_the_whole_length_not_of_whole_slices() -> None:
+    case, scene = case_of("cell"), cell(False)
+    actuator = case.actuator.model_copy(update={"length": 2.3 * PITCH})
+    space = Space(case.model_copy(update={"actuator": actuator}), scene)
+    drawn = float(np.ptp(space.model_mesh.mesh.nodes[:, 2]))
+    assert abs(drawn - 2.3 * PITCH) > 0.1
+    twisted = state(scene, 0.0, twist=0.1)
+    turn = math.degrees(Bend.of(twisted, scene.mesh).rates[2] * 2.3 * PITCH)
+    assert abs(turn) > 20
+    caption = uniform_outputs._caption(twisted, space, Scenery())
+    assert caption.endswith(f"twist {turn:.0f}°")
 
 
 def test_floor_bulge_is_read_between_middle_and_edge() -> None:

@@ -15,6 +15,12 @@ from fiberbend.results.reading import read_history
 from fiberbend.running.runner import run_case
 
 ROOT = Path(__file__).resolve().parents[2]
+TUBES = {
+    "extending": ((1.04, 1.1), (0, 0)),
+    "contracting": ((0.9, 0.99), (0, 0)),
+    "twisting": ((0.99, 1.0), (10, 20)),
+}
+"""Between which values stretch and twist of a tube end, °."""
 HOOPS = ["--set", "effects.1={hoops: {}}"]
 
 
@@ -27,6 +33,9 @@ HOOPS = ["--set", "effects.1={hoops: {}}"]
         ("circle", "section", "effects.0.pressure.angle=20 deg"),
         ("single_helix", "section", "effects.0.pressure.to=10 kPa"),
         ("straight", "section", "effects.0.pressure.to=50 kPa"),
+        ("extending", "cell", "effects.0.pressure.to=20 kPa"),
+        ("contracting", "cell", "effects.0.pressure.to=10 kPa"),
+        ("twisting", "cell", "effects.0.pressure.to=10 kPa"),
     ],
 )
 def test_case_file_runs(name: str, model: str, load: str) -> None:
@@ -36,6 +45,11 @@ def test_case_file_runs(name: str, model: str, load: str) -> None:
     assert result.run["model"] == model
     if name == "single_helix":
         assert result.last("twist_deg") > 0, "left-handed, as the file says"
+    elif name in TUBES:
+        stretch, twist = TUBES[name]
+        assert result.last("angle_deg") == pytest.approx(0, abs=1e-6)
+        assert stretch[0] < result.last("axis_stretch") < stretch[1], "as its title says"
+        assert twist[0] <= result.rows[-1].get("twist_deg", 0.0) <= twist[1]
     elif name == "straight":
         assert result.last("angle_deg") == 0
         assert result.last("tip_force_N") == pytest.approx(result.last("blocked_moment_Nmm") / 15)
