@@ -68,6 +68,7 @@ if TYPE_CHECKING:
     from fem.solver.newton import Settings
     from fiberbend.effects.wound.turns import Turns
     from fiberbend.states.obstacles import Shape
+    from fiberbend.states.snapshot import FamilyLook
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
     from geometry.sections.size import MeshSize, Strips
@@ -191,6 +192,10 @@ class Effect(Spec):
 
     def runs(self, actuator: Actuator) -> list[str]:
         """How its thread runs, a line for each family of it; may be empty."""
+        return []
+
+    def looks(self, actuator: Actuator) -> list[FamilyLook]:
+        """Its families of threads as pictures tell them apart; may be empty."""
         return []
 
     def fixes_circumference(self) -> bool:

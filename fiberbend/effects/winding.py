@@ -32,6 +32,7 @@ from geometry.winding.patterns import PATTERNS
 if TYPE_CHECKING:
     PatternName = str
     from fem.effects.effect import Effect as Term
+    from fiberbend.states.snapshot import FamilyLook
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
     from geometry.winding.helix import Winding
@@ -298,6 +299,10 @@ class WindingEffect(Effect):
     def runs(self, actuator: Actuator) -> list[str]:
         """Every family by angle and pitch."""
         return self._threads.words(actuator.winding_perimeter)
+
+    def looks(self, actuator: Actuator) -> list[FamilyLook]:
+        """Each family, where there is one of its own or more."""
+        return self._threads.looks(actuator)
 
     def curves(self, actuator: Actuator) -> list[Floats]:
         """The axis of every fiber."""

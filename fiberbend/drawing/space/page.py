@@ -234,18 +234,25 @@ class Page:
         bar.ax.tick_params(labelsize=12)
         bar.set_label(label, fontsize=13)
 
-    def legend(self, names: Sequence[str], more: Mapping[str, str] | None = None) -> None:
+    def legend(
+        self,
+        names: Sequence[str],
+        more: Mapping[str, str] | None = None,
+        colors: Mapping[str, str] | None = None,
+    ) -> None:
         """Names of the colours, below the images.
 
         Args:
             names: regions, "fiber" or "winding".
             more: what is added to a name.
+            colors: of names that have none of their own.
         """
         from matplotlib.patches import Patch
 
         labels = {name: f"{NAMES.get(name, name)} {(more or {}).get(name, '')}" for name in names}
+        known = COLORS | dict(colors or {})
         patches = [
-            Patch(facecolor=COLORS.get(name, "#999999"), edgecolor="0.4", label=label.strip())
+            Patch(facecolor=known.get(name, "#999999"), edgecolor="0.4", label=label.strip())
             for name, label in labels.items()
         ]
         self._figure.legend(
