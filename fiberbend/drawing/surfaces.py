@@ -52,7 +52,8 @@ class BodySurfaces:
         names: the regions, and "fiber" where there are lines, or the families where they are told
             apart, "winding" where they are smeared.
         family_colors: of each family that is told apart, by its name.
-        line_colors: the same by the number of the family of a segment.
+        image_colors: by the place of a family among those, the place of its mirror image's.
+        line_colors: the colours by the number of the family of a segment.
     """
 
     def __init__(self, model_mesh: ModelMesh, scenery: Scenery | None = None) -> None:
@@ -71,6 +72,8 @@ class BodySurfaces:
         self.family_colors = {
             name: FAMILIES[number % len(FAMILIES)] for number, name in enumerate(numbers)
         }
+        image = {look.name: numbers.index(looks[look.image].name) for look in looks}
+        self.image_colors = [image[name] for name in numbers]
         self.line_colors = [self.family_colors[look.name] for look in looks]
         wound = ["winding"] if self.smeared else ["fiber"] if self.fibers is not None else []
         self.names = [*self.mesh.regions, *(self.family_colors or wound)]
@@ -79,9 +82,10 @@ class BodySurfaces:
     @property
     def remark(self) -> str:
         """What a colour bar has to say of winding and sheath, after a comma; may be empty."""
+        said = "" if self.bare.all() else ", sheath not drawn"
         if self.smeared:
-            return f", {SMEARED}"
-        return "" if self.bare.all() else ", sheath not drawn"
+            said = f", {SMEARED}"
+        return f"{said}, fabric green" if self._scenery.strips else said
 
     def points(self, state: Snapshot | None) -> Floats:
         """Nodes of the body, also of a half's mirror image, mm, (n, 3).
@@ -223,9 +227,9 @@ class BodySurfaces:
         for window in scenery.strips:
             apart = np.abs((s - window.middle + perimeter / 2) % perimeter - perimeter / 2)
             data["aside"] = apart - window.width / 2
-            part = data.clip_scalar("aside", value=0.0)
+            part = data.clip_scalar(scalars="aside", value=0.0)
             if part.n_points:
-                part = part.clip_scalar("along", value=0.0)
+                part = part.clip_scalar(scalars="along", value=0.0)
             if part.n_cells:
                 found.append(Drawable(part, color=COLORS["fabric"]))
         return found

@@ -35,6 +35,8 @@ from fiberbend.states.snapshot import Target
 
 _REMARK = 11.5
 _NARROW = 1200
+_IN_A_ROW = 4
+"""Names in a legend beside a scale."""
 _FLAT = 0.5
 """Height over width of images that stand in two columns at most."""
 
@@ -255,8 +257,10 @@ class Page:
             Patch(facecolor=known.get(name, "#999999"), edgecolor="0.4", label=label.strip())
             for name, label in labels.items()
         ]
+        # beside the scale there is room for so many in a row
+        columns = len(patches) if len(patches) <= _IN_A_ROW else math.ceil(len(patches) / 2)
         self._figure.legend(
-            handles=patches, loc="lower center", ncols=len(patches), frameon=False, fontsize=13
+            handles=patches, loc="lower center", ncols=columns, frameon=False, fontsize=13
         )
 
     def pixels(self) -> Image:
