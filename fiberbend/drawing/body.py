@@ -138,7 +138,7 @@ class BodyPictures:
             state.remark,
         )
         panel = page.image(image, _BOX, view)
-        write_forces(panel, self._obstacles, surfaces.points(state), state)
+        write_forces(panel, self._obstacles, surfaces.points(state), state, tip=surfaces.tip(state))
         page.legend(surfaces.names, colors=surfaces.family_colors)
         page.scale(panel)
         page.save(target)
@@ -153,7 +153,8 @@ class BodyPictures:
         state = self.snapshots[number]
         page = Page(SIZE, self.model_mesh.title, self._scenery.caption(state), state.remark)
         panel = page.image(self._image(number), _BOX, self._view)
-        write_forces(panel, self._obstacles, self._surfaces.points(state), state)
+        points, tip = self._surfaces.points(state), self._surfaces.tip(state)
+        write_forces(panel, self._obstacles, points, state, tip=tip)
         page.color_bar(self._limits, self._strain_label())
         page.scale(panel)
         page.save(target)
@@ -171,7 +172,8 @@ class BodyPictures:
             margins=self._obstacles.margins(SIZE[0]),
         )
         for panel, state in zip(page.panels, states, strict=True):
-            write_forces(panel, self._obstacles, self._surfaces.points(state), state, 9)
+            points, tip = self._surfaces.points(state), self._surfaces.tip(state)
+            write_forces(panel, self._obstacles, points, state, 9, tip)
         page.color_bar(self._limits, self._strain_label())
         page.save(target)
 

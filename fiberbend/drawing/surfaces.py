@@ -85,7 +85,10 @@ class BodySurfaces:
         said = "" if self.bare.all() else ", sheath not drawn"
         if self.smeared:
             said = f", {SMEARED}"
-        return f"{said}, fabric green" if self._scenery.strips else said
+        if not self._scenery.strips:
+            return said
+        covered = self.bare.all() and self.sheathed.any()
+        return f"{said}, fabric {'under the sheath' if covered else 'green'}"
 
     def points(self, state: Snapshot | None) -> Floats:
         """Nodes of the body, also of a half's mirror image, mm, (n, 3).
@@ -95,6 +98,13 @@ class BodySurfaces:
         """
         nodes = self.mesh.nodes if state is None else self.mesh.nodes + state.displacement
         return np.concatenate([nodes, nodes * _MIRROR]) if self.mesh.half else nodes
+
+    def tip(self, state: Snapshot) -> Floats:
+        """The middle of the face at the far end, mm, (3,)."""
+        rest = self.points(None)[:, 2]
+        there = rest > rest.max() - _ON_PLANE * np.ptp(rest)
+        middle: Floats = self.points(state)[there].mean(axis=0)
+        return middle
 
     def outside(self, cells: Mask, chamber: bool = True) -> Ints:
         """Facets (cell, local facet) around some cells, without the mirror plane of a half.

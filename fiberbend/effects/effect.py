@@ -241,6 +241,14 @@ class Effect(Spec):
         """
         return {}
 
+    def at_tip(self, row: Mapping[str, Any]) -> dict[str, tuple[float, float, float] | None]:
+        """What acts at the tip's outer face, by what pictures call it: its force in N.
+
+        Args:
+            row: of the history; None stands for a force whose direction is not known.
+        """
+        return {}
+
     def windows(self, actuator: Actuator) -> list[Window]:
         """Parts of the outline that it covers with fabric, as pictures show them."""
         return []
