@@ -279,10 +279,9 @@ class WindingEffect(Effect):
 
     def turns(self, actuator: Actuator) -> Turns:
         """Of pattern or families."""
-        discrete = self.representation in (DISCRETE, None)
         return self._threads.turns(
             actuator,
-            discrete,
+            discrete := self.representation in (DISCRETE, None),
             spread=self.representation == SMEARED,
             bulges=self.representation == CALIBRATED,
             lines=(self.lines or DEFAULT_LINES) if discrete else 1,
@@ -301,7 +300,7 @@ class WindingEffect(Effect):
         return self._threads.words(actuator.winding_perimeter)
 
     def looks(self, actuator: Actuator) -> list[FamilyLook]:
-        """Each family, where there is one of its own or more."""
+        """Angle and hand of each family."""
         return self._threads.looks(actuator)
 
     def curves(self, actuator: Actuator) -> list[Floats]:
