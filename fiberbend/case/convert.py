@@ -13,6 +13,7 @@ from fiberbend.effects.effect import Requests, Site, mirror_breakers
 
 if TYPE_CHECKING:
     from fiberbend.states.obstacles import Shape
+    from fiberbend.states.snapshot import FamilyLook
     from geometry.mesh.data import Floats
     from geometry.sections.shape import ShapedActuator
     from geometry.sections.size import MeshSize
@@ -88,6 +89,12 @@ def obstacle_shapes(given: case.Case) -> dict[str, Shape]:
     for effect in given.effects:
         found |= effect.obstacle_shapes(actuator)
     return found
+
+
+def looks(given: case.Case) -> tuple[FamilyLook, ...]:
+    """Families of threads of a case's winding, as pictures tell them apart."""
+    actuator = dimensions(given.actuator)
+    return tuple(look for effect in given.effects for look in effect.looks(actuator))
 
 
 def requests(given: case.Case) -> Requests:

@@ -68,7 +68,7 @@ class BodyPictures:
             raise ValueError("no state to draw")
         self.model_mesh, self.snapshots = model_mesh, snapshots
         self._scenery = scenery or Scenery()
-        self._surfaces = BodySurfaces(model_mesh)
+        self._surfaces = BodySurfaces(model_mesh, self._scenery)
         mesh = model_mesh.mesh
         self._nodes = split_nodes(mesh)
         fields = fields or [recover(model_mesh, state, self._nodes) for state in snapshots]
@@ -94,6 +94,7 @@ class BodyPictures:
         top = self._renderer.draw(
             surfaces.parts(surfaces.peeled | peeled)
             + surfaces.fiber_tubes()
+            + surfaces.fabric()
             + self._obstacles.seen_through(),
             view,
             (SIZE[0], _BAND),
@@ -106,7 +107,8 @@ class BodyPictures:
         close = frame(both, _OBLIQUE, SIZE[0] / _BAND)
         piece = self._renderer.draw(
             surfaces.parts(inside & (surfaces.peeled | ~bare), level=6)
-            + surfaces.fiber_tubes(low=start, high=float(points[:, 2].max())),
+            + surfaces.fiber_tubes(low=start, high=float(points[:, 2].max()))
+            + surfaces.fabric(low=start, high=float(points[:, 2].max())),
             close,
             (SIZE[0], _BAND),
         )
@@ -116,7 +118,7 @@ class BodyPictures:
             [(top, view, 560), (piece, close, _PIECE)],
         )
         write_forces(page.panels[0], self._obstacles, rest)
-        page.legend(surfaces.names)
+        page.legend(surfaces.names, colors=surfaces.family_colors)
         page.save(target)
 
     def cut(self, target: Target, snapshot: Snapshot | None = None) -> None:
@@ -127,6 +129,7 @@ class BodyPictures:
         view = self._obstacles.frame(surfaces.points(state), FROM_THE_SIDE, SIZE[0] / _BAND)
         layers = surfaces.parts(far, state, open_at_mirror=True)
         layers += surfaces.fiber_tubes(state) + surfaces.winding_line(state)
+        layers += surfaces.fabric(state, opened=True)
         image = self._renderer.draw(layers + self._obstacles.behind(view), view, (SIZE[0], _BAND))
         page = Page(
             SIZE,
@@ -135,8 +138,8 @@ class BodyPictures:
             state.remark,
         )
         panel = page.image(image, _BOX, view)
-        write_forces(panel, self._obstacles, surfaces.points(state), state)
-        page.legend(surfaces.names)
+        write_forces(panel, self._obstacles, surfaces.points(state), state, tip=surfaces.tip(state))
+        page.legend(surfaces.names, colors=surfaces.family_colors)
         page.scale(panel)
         page.save(target)
 
@@ -150,7 +153,8 @@ class BodyPictures:
         state = self.snapshots[number]
         page = Page(SIZE, self.model_mesh.title, self._scenery.caption(state), state.remark)
         panel = page.image(self._image(number), _BOX, self._view)
-        write_forces(panel, self._obstacles, self._surfaces.points(state), state)
+        points, tip = self._surfaces.points(state), self._surfaces.tip(state)
+        write_forces(panel, self._obstacles, points, state, tip=tip)
         page.color_bar(self._limits, self._strain_label())
         page.scale(panel)
         page.save(target)
@@ -168,7 +172,8 @@ class BodyPictures:
             margins=self._obstacles.margins(SIZE[0]),
         )
         for panel, state in zip(page.panels, states, strict=True):
-            write_forces(panel, self._obstacles, self._surfaces.points(state), state, 9)
+            points, tip = self._surfaces.points(state), self._surfaces.tip(state)
+            write_forces(panel, self._obstacles, points, state, 9, tip)
         page.color_bar(self._limits, self._strain_label())
         page.save(target)
 
@@ -181,6 +186,7 @@ class BodyPictures:
             values = self._skin.interpolate(self._strain[number])
             skin["strain"] = np.resize(values, skin.n_points)
             layers = [Drawable(skin, scalars="strain"), *self._surfaces.fiber_tubes(state)]
+            layers += self._surfaces.fabric(state)
             layers += self._obstacles.behind(self._view)
             self._images[number] = self._renderer.draw(
                 layers, self._view, (SIZE[0], _BAND), self._limits, colormap()

@@ -58,7 +58,7 @@ class Slices:
         self._section = len(root_section(model_mesh.mesh).nodes)
         self._stack: Stack = repeated(model_mesh, (2 if model_mesh.mesh.half else 1) * _PITCHES)
         moved = [self._stack.snapshot(model_mesh, state) for state in snapshots]
-        self._side_by_side = SideBySide(self._stack.model_mesh, moved, 5, renderer, True)
+        self._side_by_side = SideBySide(self._stack.model_mesh, moved, 5, renderer, True, scenery)
 
     def bulge(self, target: Target) -> None:
         """Every state in space, coloured by how far its surface lies outside its own mean.

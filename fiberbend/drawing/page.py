@@ -29,10 +29,17 @@ COLORS = {
     "fabric": "#2e7d4f",
 }
 """Colour of each region, of the fibers and of fabric."""
+FAMILIES = ("#1a1a1a", "#c2185b", "#6a3d9a", "#b8860b", "#8b0000", "#00606b")
+"""Colours of the families of threads, in turn; they show on all regions and on strain."""
 
 SMEARED = "winding spread over its surface"
 """Also of a calibrated one: there are no single turns to draw."""
-NAMES = {"layer": "strain-limiting layer", "fiber": "fibers", "winding": SMEARED}
+NAMES = {
+    "layer": "strain-limiting layer",
+    "fiber": "fibers",
+    "winding": SMEARED,
+    "fabric": "strip of fabric",
+}
 """Names in a legend that are not those of the regions."""
 _OTHER = "#999999"
 """Colour of a region that has none."""

@@ -16,6 +16,7 @@ from fiberbend.drawing.renderer import (
     View,
     frame,
 )
+from fiberbend.drawing.space.obstacles import Scenery
 from fiberbend.drawing.space.page import Page
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.drawing.tessellation import Tessellation
@@ -36,6 +37,7 @@ class SideBySide:
         level: pieces along an element's edge.
         renderer: draws.
         open_ends: the viewer sees the chamber through the ends.
+        scenery: has strips of fabric.
 
     Attributes:
         skin: the surface that is drawn.
@@ -49,9 +51,10 @@ class SideBySide:
         level: int,
         renderer: Renderer,
         open_ends: bool = False,
+        scenery: Scenery | None = None,
     ) -> None:
         self._mesh, self._states, self._renderer = model_mesh.mesh, states, renderer
-        self._surfaces = BodySurfaces(model_mesh)
+        self._surfaces = BodySurfaces(model_mesh, scenery)
         self.skin = Tessellation(
             model_mesh.mesh, self._surfaces.outside(self._surfaces.bare, open_ends), level
         )
@@ -92,6 +95,7 @@ class SideBySide:
             surface = self._surfaces.surface(self.skin, state, self._mesh.half)
             surface["value"] = np.tile(value, 2 if self._mesh.half else 1)
             layers = [Drawable(surface, scalars="value"), *self._surfaces.fiber_tubes(state)]
+            layers += self._surfaces.fabric(state)
             images.append(self._renderer.draw(layers, view, size, limits, colors or colormap()))
         if is_alone:
             state = self._states[0]

@@ -11,12 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fiberbend.drawing.page import COLORS, SMEARED, color_of
+from fiberbend.drawing.page import COLORS, FAMILIES, SMEARED, color_of
 from fiberbend.drawing.renderer import Drawable
+from fiberbend.drawing.space.obstacles import Scenery
 from fiberbend.drawing.tessellation import Tessellation, boundary_facets, on_mirror
 from fiberbend.states.fiber_lines import fiber_lines
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.mesh.data import Floats, Ints
+from geometry.winding.outline import arc_length
 from geometry.winding.segments import EmbeddedFibers
 
 FIBER_RADIUS = 0.2
@@ -24,6 +26,8 @@ FIBER_RADIUS = 0.2
 _ON_PLANE = 1e-9
 """Part of its width by which a body may miss the plane x = 0."""
 _MIRROR = np.array([-1.0, 1.0, 1.0])
+_OFF = 0.1
+"""By so much fabric is drawn off its surface, mm."""
 _TO_VIEWER = np.array([0.1, 0.0, 0.0])
 """So far a line stands out of the cut in which it lies, mm."""
 
@@ -35,6 +39,7 @@ class BodySurfaces:
 
     Args:
         model_mesh: mesh and fibers.
+        scenery: has the strips of fabric.
 
     Attributes:
         mesh: the mesh.
@@ -44,11 +49,17 @@ class BodySurfaces:
         bare: True for the cells that do not hide the fibers: all but the sheath, (m,).
         peeled: the same where a winding is smeared, whose surface the sheath hides.
         smeared: the winding is smeared over its surface.
-        names: the regions, and "fiber" where there are lines, "winding" where they are smeared.
+        names: the regions, and "fiber" where there are lines, or the families where they are told
+            apart, "winding" where they are smeared.
+        family_colors: of each family that is told apart, by its name.
+        image_colors: by the place of a family among those, the place of its mirror image's.
+        line_colors: the colours by the number of the family of a segment.
     """
 
-    def __init__(self, model_mesh: ModelMesh) -> None:
+    def __init__(self, model_mesh: ModelMesh, scenery: Scenery | None = None) -> None:
+        self._scenery = scenery or Scenery()
         self.mesh = model_mesh.mesh
+        self._images = model_mesh.images
         self.fibers = None if model_mesh.lines is None else _one_line_each(model_mesh.lines)
         self.middle: Floats = self.mesh.nodes[self.mesh.cells].mean(axis=1)
         everything = np.ones(len(self.mesh.cells), dtype=bool)
@@ -56,15 +67,28 @@ class BodySurfaces:
         self.bare: Mask = everything if self.fibers is None else ~self.sheathed
         self.smeared = model_mesh.smeared
         self.peeled: Mask = ~self.sheathed if self.smeared else self.bare
+        looks = () if self.fibers is None else model_mesh.families
+        numbers = list(dict.fromkeys(look.name for look in looks))
+        self.family_colors = {
+            name: FAMILIES[number % len(FAMILIES)] for number, name in enumerate(numbers)
+        }
+        image = {look.name: numbers.index(looks[look.image].name) for look in looks}
+        self.image_colors = [image[name] for name in numbers]
+        self.line_colors = [self.family_colors[look.name] for look in looks]
         wound = ["winding"] if self.smeared else ["fiber"] if self.fibers is not None else []
-        self.names = [*self.mesh.regions, *wound]
+        self.names = [*self.mesh.regions, *(self.family_colors or wound)]
+        self.names += ["fabric"] if self._scenery.strips else []
 
     @property
     def remark(self) -> str:
         """What a colour bar has to say of winding and sheath, after a comma; may be empty."""
+        said = "" if self.bare.all() else ", sheath not drawn"
         if self.smeared:
-            return f", {SMEARED}"
-        return "" if self.bare.all() else ", sheath not drawn"
+            said = f", {SMEARED}"
+        if not self._scenery.strips:
+            return said
+        covered = self.bare.all() and self.sheathed.any()
+        return f"{said}, fabric {'under the sheath' if covered else 'green'}"
 
     def points(self, state: Snapshot | None) -> Floats:
         """Nodes of the body, also of a half's mirror image, mm, (n, 3).
@@ -74,6 +98,13 @@ class BodySurfaces:
         """
         nodes = self.mesh.nodes if state is None else self.mesh.nodes + state.displacement
         return np.concatenate([nodes, nodes * _MIRROR]) if self.mesh.half else nodes
+
+    def tip(self, state: Snapshot) -> Floats:
+        """The middle of the face at the far end, mm, (3,)."""
+        rest = self.points(None)[:, 2]
+        there = rest > rest.max() - _ON_PLANE * np.ptp(rest)
+        middle: Floats = self.points(state)[there].mean(axis=0)
+        return middle
 
     def outside(self, cells: Mask, chamber: bool = True) -> Ints:
         """Facets (cell, local facet) around some cells, without the mirror plane of a half.
@@ -171,6 +202,48 @@ class BodySurfaces:
         data.point_data.active_normals = normals
         return data
 
+    def fabric(
+        self,
+        state: Snapshot | None = None,
+        low: float = -np.inf,
+        high: float = np.inf,
+        near: float = np.inf,
+        opened: bool = False,
+    ) -> list[Drawable]:
+        """Strips of fabric, a little off the surface on which they lie.
+
+        Args:
+            state: the state; None: undeformed.
+            low: least z at rest, mm.
+            high: greatest z at rest, mm.
+            near: greatest z at rest of what is at x < 0, mm.
+            opened: draw x > 0 alone.
+        """
+        mesh, scenery = self.mesh, self._scenery
+        pairs = mesh.facets.get("winding", np.zeros((0, 2), dtype=np.int64))
+        if scenery.actuator is None or not scenery.strips or not len(pairs):
+            return []
+        actuator, perimeter = scenery.actuator, scenery.actuator.winding_perimeter
+        skin = Tessellation(mesh, pairs)
+        data = self.surface(skin, state, mesh.half)
+        data.points = data.points + _OFF * np.asarray(data.point_data.active_normals)
+        rest = np.asarray(self.surface(skin, None, mesh.half).points)
+        s = arc_length(actuator, rest[:, :2], rest[:, 0] < 0)
+        end = np.where(rest[:, 0] < 0, -np.inf if opened else near, high)
+        data["along"] = np.maximum(low - rest[:, 2], rest[:, 2] - np.minimum(end, high))
+        if np.isneginf(end).any():
+            data["along"] = np.where(np.isneginf(end), -rest[:, 0], data["along"])
+        found = []
+        for window in scenery.strips:
+            apart = np.abs((s - window.middle + perimeter / 2) % perimeter - perimeter / 2)
+            data["aside"] = apart - window.width / 2
+            part = data.clip_scalar(scalars="aside", value=0.0)
+            if part.n_points:
+                part = part.clip_scalar(scalars="along", value=0.0)
+            if part.n_cells:
+                found.append(Drawable(part, color=COLORS["fabric"]))
+        return found
+
     def fiber_tubes(
         self,
         state: Snapshot | None = None,
@@ -195,11 +268,32 @@ class BodySurfaces:
         moved = None if state is None else state.displacement
         if not mesh.half:
             kept &= (fibers.z < near) | (self.middle[fibers.cell, 0] > 0)
-        lines = [fiber_lines(mesh, _select(fibers, kept), moved)]
+        found = self._colored(_select(fibers, kept), fibers.family[kept], moved)
         if mesh.half and (kept & (fibers.z < near)).any():
-            image = fiber_lines(mesh, _select(fibers, kept & (fibers.z < near)), moved)
-            lines.append(image.reflect((1, 0, 0)))
-        return [Drawable(data, color=COLORS["fiber"], radius=FIBER_RADIUS) for data in lines]
+            shown = kept & (fibers.z < near)
+            images = self._images(fibers.family[shown])
+            found += [
+                dataclasses.replace(tube, data=tube.data.reflect((1, 0, 0)))
+                for tube in self._colored(_select(fibers, shown), images, moved)
+            ]
+        return found
+
+    def _colored(
+        self, fibers: EmbeddedFibers, family: Ints, moved: Floats | None
+    ) -> list[Drawable]:
+        """Tubes of some fibers, in the colour of a family each."""
+        colors = self.line_colors or [COLORS["fiber"]]
+        number = family if self.line_colors else np.zeros_like(family)
+        places = [(color, np.isin(number, _numbers(colors, color))) for color in {*colors}]
+        return [
+            Drawable(
+                fiber_lines(self.mesh, _select(fibers, own), moved),
+                color=color,
+                radius=FIBER_RADIUS,
+            )
+            for color, own in sorted(places, key=lambda place: place[0])
+            if own.any()
+        ]
 
     def _is_wound(self, pairs: Ints) -> Mask:
         """True for the facets over which a winding is smeared, (k,)."""
@@ -216,6 +310,11 @@ class BodySurfaces:
         number = self.mesh.regions.get(name, -1)
         found: Mask = self.mesh.cell_region == number
         return found
+
+
+def _numbers(colors: list[str], color: str) -> list[int]:
+    """Where a colour stands."""
+    return [number for number, other in enumerate(colors) if other == color]
 
 
 def _select(fibers: EmbeddedFibers, kept: Mask) -> EmbeddedFibers:

@@ -74,6 +74,7 @@ if TYPE_CHECKING:
     from fem.solver.newton import Settings
     from fiberbend.effects.wound.turns import Turns
     from fiberbend.states.obstacles import Shape
+    from fiberbend.states.snapshot import FamilyLook
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
     from geometry.sections.size import MeshSize, Strips
@@ -199,6 +200,10 @@ class Effect(Spec):
         """How its thread runs, a line for each family of it; may be empty."""
         return []
 
+    def looks(self, actuator: Actuator) -> list[FamilyLook]:
+        """Its families of threads as pictures tell them apart; may be empty."""
+        return []
+
     def fixes_circumference(self) -> bool:
         """Whether it fixes the circumference of the section, as the closed form assumes."""
         return False
@@ -239,6 +244,14 @@ class Effect(Spec):
         """Forces of its obstacles on the body, x, y and z in N, from a row of the history.
 
         Obstacles are named as in `obstacle_shapes`; those whose force is not known are left out.
+        """
+        return {}
+
+    def at_tip(self, row: Mapping[str, Any]) -> dict[str, tuple[float, float, float] | None]:
+        """What acts at the tip's outer face, by what pictures call it: its force in N.
+
+        Args:
+            row: of the history; None stands for a force whose direction is not known.
         """
         return {}
 

@@ -38,9 +38,10 @@ class PlaceSpec(Spec):
     """A place on the outline of wall and floor: by a name, an angle, or an arc length."""
 
     name: Literal["top", "right", "bottom", "left"] | None = None
-    """Written alone, `at: bottom`; right is toward +x."""
+    """Written alone, `at: bottom`; right and left are half-way up, right toward +x."""
     angle: AngleOtherThanZero | None = None
-    """From the top toward +x, about the point half-way up on x = 0."""
+    """Share of the outline, 360 deg for once around, from the top toward +x, as places of
+    threads."""
     arc: Coordinate | None = None
     """Arc length of the outline from the top toward +x."""
 
@@ -68,7 +69,7 @@ class PlaceSpec(Spec):
 
     @property
     def turned(self) -> float | None:
-        """Angle from the top toward +x, rad, from 0 to 2π; None where the arc length is given."""
+        """Name or share from the top toward +x, rad, from 0 to 2π; None of an arc length."""
         if self.name is not None:
             return PLACES[self.name]
         return None if self.angle is None else self.angle % (2 * math.pi)
@@ -77,11 +78,14 @@ class PlaceSpec(Spec):
         """Arc length from the top toward +x, mm, from 0 to the perimeter."""
         from geometry.winding.strip import arc_at
 
+        perimeter = actuator.winding_perimeter
         if self.arc is not None:
-            return self.arc % actuator.winding_perimeter
+            return self.arc % perimeter
         turned = self.turned
         assert turned is not None, "a place has a name, an angle or an arc"
-        return arc_at(actuator, turned)
+        if self.name is not None:
+            return arc_at(actuator, turned)
+        return turned / (2 * math.pi) * perimeter
 
     def __str__(self) -> str:
         if self.name is not None:

@@ -35,6 +35,7 @@ from geometry.winding.patterns import PATTERNS
 if TYPE_CHECKING:
     PatternName = str
     from fem.effects.effect import Effect as Term
+    from fiberbend.states.snapshot import FamilyLook
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
     from geometry.winding.helix import Winding
@@ -256,10 +257,9 @@ class WindingEffect(Effect):
 
     def turns(self, actuator: Actuator) -> Turns:
         """Of pattern or families."""
-        discrete = self.representation in (DISCRETE, None)
         return self._threads.turns(
             actuator,
-            discrete,
+            discrete := self.representation in (DISCRETE, None),
             spread=self.representation == SMEARED,
             bulges=self.representation == CALIBRATED,
             lines=(self.lines or DEFAULT_LINES) if discrete else 1,
@@ -276,6 +276,10 @@ class WindingEffect(Effect):
     def runs(self, actuator: Actuator) -> list[str]:
         """Every family by angle and pitch."""
         return self._threads.words(actuator.winding_perimeter)
+
+    def looks(self, actuator: Actuator) -> list[FamilyLook]:
+        """Angle and hand of each family."""
+        return self._threads.looks(actuator)
 
     def curves(self, actuator: Actuator) -> list[Floats]:
         """The axis of every fiber."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -106,7 +106,8 @@ def as_case(
 
 def _change(data: dict[str, Any], settings: Iterable[str] | Mapping[str, Any]) -> None:
     """Change values of a case that is not yet checked, or say all that is wrong with the paths."""
-    problems: list[Problem] = []
+    settings = settings if isinstance(settings, Mapping) else list(settings)
+    problems: list[Problem] = list(_lost(settings))
     pairs = settings.items() if isinstance(settings, Mapping) else [(s, None) for s in settings]
     for setting, value in pairs:
         try:
@@ -120,6 +121,16 @@ def _change(data: dict[str, Any], settings: Iterable[str] | Mapping[str, Any]) -
             problems += error.problems
     if problems:
         raise CaseError(problems)
+
+
+def _lost(settings: Iterable[Any]) -> Iterator[Problem]:
+    """Changes within a part that a later one replaces as a whole: nothing would be left of them."""
+    paths = [setting_path(setting) for setting in settings if isinstance(setting, str)]
+    for number, path in enumerate(paths):
+        for later in paths[number + 1 :]:
+            if path.startswith(f"{later}."):
+                yield Problem(path, f"no effect: {later} is set after it, expected it before")
+                break
 
 
 def parse_case(data: Mapping[str, Any]) -> Case:

@@ -298,9 +298,16 @@ class _Threads:
 
     def __init__(self, space: Space, places: Places) -> None:
         self._places = places
-        fibers, mesh = BodySurfaces(space.model_mesh).fibers, places.mesh
+        surfaces = BodySurfaces(space.model_mesh)
+        fibers, mesh = surfaces.fibers, places.mesh
         self._fibers: EmbeddedFibers | None = None
-        self.content: dict[str, Any] = {"points": 0, "segments": "", "radius": 0.0}
+        self.content: dict[str, Any] = {
+            "points": 0,
+            "segments": "",
+            "radius": 0.0,
+            "family": "",
+            "families": [],
+        }
         if fibers is None:
             return
         cells, self._cell = np.unique(fibers.cell, return_inverse=True)
@@ -327,6 +334,11 @@ class _Threads:
         self.content = {
             "points": int(lines.n_points),
             "segments": packed(np.column_stack([starts, starts + 1]).astype("<u4")),
+            "family": packed(_family(sizes, lines, surfaces).astype("u1")),
+            "families": [
+                {"name": name, "color": color, "image": surfaces.image_colors[number]}
+                for number, (name, color) in enumerate(surfaces.family_colors.items())
+            ],
         }
 
     def at(self, state: Snapshot) -> Floats:
@@ -341,6 +353,15 @@ class _Threads:
         if state is not None:
             moved = self._places.at(state, self._node) - self._mesh.nodes
         return fiber_lines(self._mesh, self._fibers, moved)
+
+
+def _family(sizes: list[int], lines: Any, surfaces: BodySurfaces) -> Ints:
+    """The place of the family of every piece of polylines among those that are told apart."""
+    names = list(surfaces.family_colors.values())
+    place = np.array([names.index(color) for color in surfaces.line_colors] or [0])
+    family = np.asarray(lines.cell_data["family"]) if surfaces.line_colors else np.zeros(len(sizes))
+    found: Ints = np.repeat(place[family.astype(np.int64)], np.array(sizes) - 1)
+    return found
 
 
 def _mirrored(points: Floats) -> Floats:

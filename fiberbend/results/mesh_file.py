@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
+from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.models.choice import MODELS, choose_model
 from fiberbend.models.model import MeshedModel
@@ -106,6 +107,7 @@ def mesh_of(case: Case, model: MeshedModel) -> ModelMesh:
         smeared=parts.smeared,
         title=case.title,
         uniform=model.repeats(case),
+        families=convert.looks(case),
     )
 
 

@@ -19,7 +19,7 @@ def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
         rows: of its history; none for a case that has not been run.
     """
     actuator = convert.dimensions(case.actuator)
-    forces, tips = {}, {}
+    forces, tips, at_tip = {}, {}, {}
     for row in rows:
         step = int(row[col.STEP])
         forces[step] = {
@@ -27,6 +27,7 @@ def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
             for effect in case.effects
             for name, force in effect.obstacle_forces(row).items()
         }
+        at_tip[step] = {k: v for effect in case.effects for k, v in effect.at_tip(row).items()}
         if case.straight and row.get(col.TIP_FORCE) is not None:
             tips[step] = float(row[col.TIP_FORCE])
     lengths = {
@@ -40,4 +41,5 @@ def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
         if thickness is not None:
             lengths[region] = thickness
     strips = tuple(window for effect in case.effects for window in effect.windows(actuator))
-    return Scenery(convert.obstacle_shapes(case), forces, tips, lengths, actuator, strips)
+    shapes = convert.obstacle_shapes(case)
+    return Scenery(shapes, forces, tips, lengths, actuator, strips, at_tip)

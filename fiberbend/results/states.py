@@ -50,7 +50,10 @@ def read_fibers(path: Path) -> tuple[EmbeddedFibers | None, bool]:
         return None, False
     with np.load(path / FIBERS) as file:
         names = [field.name for field in dataclasses.fields(EmbeddedFibers)]
-        return EmbeddedFibers(**{name: file[name] for name in names}), bool(file["smeared"])
+        found = {name: file[name] for name in names if name in file}
+        # runs of earlier versions do not tell families apart
+        found.setdefault("family", np.zeros_like(found["curve"]))
+        return EmbeddedFibers(**found), bool(file["smeared"])
 
 
 def write_snapshot(folder: RunFolder, shot: Snapshot) -> None:
@@ -171,6 +174,7 @@ class States:
             smeared=smeared,
             title=self._case.title,
             uniform=elements is not None and elements.repeats(self._case),
+            families=convert.looks(self._case),
         )
 
     def read(self, kept: Kept) -> Snapshot | None:

@@ -16,6 +16,7 @@ from fem.results.diagnosis import Diagnosis
 from fem.results.walls import Walls
 from fem.scene import Scene
 from fem.solver.newton import Newton, Settings
+from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.models.choice import meshed
 from fiberbend.models.model import MeshedModel, Observables
@@ -59,6 +60,7 @@ class Assembly:
             smeared=self.parts.smeared,
             title=case.title,
             uniform=meshed(case).repeats(case),
+            families=convert.looks(case),
         )
 
 

@@ -101,7 +101,7 @@ def draw_bent(
     from fiberbend.drawing.side_by_side import SideBySide
 
     moved = [space.snapshot(state) for state in snapshots]
-    side_by_side = SideBySide(space.model_mesh, moved, 3, renderer)
+    side_by_side = SideBySide(space.model_mesh, moved, 3, renderer, scenery=beside)
     strains = [space.at_cells(s, own) for s, own in zip(snapshots, fields, strict=True)]
     high = max(float(np.quantile(side_by_side.outside.interpolate(s), 0.998)) for s in strains)
     model = "section" if is_section(space.own) else "cell"

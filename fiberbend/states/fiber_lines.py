@@ -30,7 +30,7 @@ def fiber_lines(
     tension_N, the axial force of the line itself, the mean of both sides at a joint;
     fiber_tension_N, the same of a whole fiber, of which a ribbon's line is a part;
     displacement_mm where the lines are not moved: that of the body at the fiber's points. Cell
-    data: curve, its number.
+    data: curve, its number, and family, that of its threads.
 
     Args:
         mesh: the mesh.
@@ -56,6 +56,7 @@ def fiber_lines(
     if displacement is not None and not moved:
         data.point_data["displacement_mm"] = (points - rest).reshape(-1, 3)[kept]
     data.cell_data["curve"] = fibers.curve[fresh]
+    data.cell_data["family"] = fibers.family[fresh]
     if force is not None:
         for name, value in (("tension_N", force), ("fiber_tension_N", force / fibers.share)):
             start = np.where(fresh, value, (value + np.roll(value, 1)) / 2)

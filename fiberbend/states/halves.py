@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from fiberbend.states.recovery import NodalFields, SplitNodes, split_nodes
 from fiberbend.states.snapshot import ModelMesh, Snapshot
-from geometry.mesh.data import Ints, MeshData
+from geometry.mesh.data import Ints
 from geometry.mesh.mirror import (
     BothHalves,
     both_halves,
@@ -45,7 +45,7 @@ class Halves:
         self._segment: Ints | None = None
         fibers = None
         if half.lines is not None:
-            self._segment, fibers = _both_windings(half.lines, half.mesh)
+            self._segment, fibers = _both_windings(half, half.lines)
         self.model_mesh = dataclasses.replace(half, mesh=self._whole.mesh, fibers=fibers)
 
     def snapshot(self, state: Snapshot) -> Snapshot:
@@ -100,12 +100,13 @@ class Halves:
         return source
 
 
-def _both_windings(fibers: EmbeddedFibers, half: MeshData) -> tuple[Ints, EmbeddedFibers]:
+def _both_windings(model_mesh: ModelMesh, fibers: EmbeddedFibers) -> tuple[Ints, EmbeddedFibers]:
     """Segments of both halves, sorted by curve and z, and what each one is an image of.
 
     The image of a right-handed helix is left-handed: of a double helix, line j of helix h goes on
     as line j of helix 1 − h. The images of other windings get numbers of their own.
     """
+    half = model_mesh.mesh
     kind, count = half.cell_type, len(fibers.cell)
     lines = round(1 / float(fibers.share[0]))
     curves = int(fibers.curve.max()) + 1
@@ -119,6 +120,7 @@ def _both_windings(fibers: EmbeddedFibers, half: MeshData) -> tuple[Ints, Embedd
         tangents=reflected_vectors(kind, fibers.tangents),
         curve=other,
         s=-fibers.s,
+        family=model_mesh.images(fibers.family),
     )
     both = {
         field.name: np.concatenate([getattr(fibers, field.name), getattr(image, field.name)])

@@ -7,8 +7,10 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import IO
 
+import numpy as np
+
 from fiberbend.states.labels import short_number
-from geometry.mesh.data import Floats, MeshData
+from geometry.mesh.data import Floats, Ints, MeshData
 from geometry.winding.segments import EmbeddedFibers
 from materials.material import Material
 
@@ -17,6 +19,19 @@ Target = Path | IO[bytes]
 
 Write = Callable[[str, Callable[[IO[bytes]], object]], None]
 """Takes a name and a function that fills the file of that name, as `RunFolder.write` does."""
+
+
+@dataclasses.dataclass(frozen=True)
+class FamilyLook:
+    """How pictures tell a family of threads from others.
+
+    Attributes:
+        name: its angle and hand.
+        image: number of the family that its mirror image is; its own where there is none.
+    """
+
+    name: str
+    image: int
 
 
 @dataclasses.dataclass(frozen=True)
@@ -31,6 +46,8 @@ class ModelMesh:
         title: title of the case.
         uniform: the mesh is a section or a slice that goes on alike along the axis; its states are
             given in the turning frame.
+        families: of the winding, by the numbers that its segments have; empty where pictures do not
+            tell them apart.
 
     Raises:
         ValueError: a region without material, or a section that is taken for a solid.
@@ -42,6 +59,7 @@ class ModelMesh:
     smeared: bool
     title: str
     uniform: bool = False
+    families: tuple[FamilyLook, ...] = ()
 
     def __post_init__(self) -> None:
         if self.mesh.nodes.shape[1] != 3 and not self.uniform:
@@ -54,6 +72,13 @@ class ModelMesh:
     def lines(self) -> EmbeddedFibers | None:
         """The segments that form lines, or None."""
         return None if self.smeared else self.fibers
+
+    def images(self, family: Ints) -> Ints:
+        """Families of the mirror images of threads, by those of the threads, (n,)."""
+        if not self.families:
+            return family
+        found: Ints = np.array([look.image for look in self.families])[family]
+        return found
 
 
 @dataclasses.dataclass(frozen=True)

@@ -166,7 +166,7 @@ def repeated(model_mesh: ModelMesh, number: int) -> Stack:
     turned = slab.half & (tiles % 2 == 1)
     segment, fibers = None, None
     if model_mesh.lines is not None:
-        segment, fibers = _segments(model_mesh.lines, slab, quads, number)
+        segment, fibers = _segments(model_mesh, model_mesh.lines, quads, number)
     return Stack(
         model_mesh=_solid(model_mesh, mesh, fibers),
         node=plane * nodes + np.arange(len(mesh.nodes)) % nodes,
@@ -221,7 +221,7 @@ def _copy(slab: MeshData, quads: int, tile: Ints, cell: Ints) -> Ints:
 
 
 def _segments(
-    fibers: EmbeddedFibers, slab: MeshData, quads: int, number: int
+    model_mesh: ModelMesh, fibers: EmbeddedFibers, quads: int, number: int
 ) -> tuple[Ints, EmbeddedFibers]:
     """Fiber segments in all copies of a slice, sorted by curve and z, and what each stands for.
 
@@ -232,14 +232,15 @@ def _segments(
     line j of the m of a ribbon line m − 1 − j: curve h m + j becomes (1 − h) m + m − 1 − j.
 
     Args:
-        fibers: of the slice.
-        slab: its mesh.
+        model_mesh: of the slice.
+        fibers: its lines.
         quads: cells of a layer.
         number: copies.
 
     Returns:
         The segment of the slice that each one stands for, and the segments.
     """
+    slab = model_mesh.mesh
     count, extent = len(fibers.cell), float(slab.nodes[-1, 2])
     tile, segment = np.repeat(np.arange(number), count), np.tile(np.arange(count), number)
     flipped = slab.half & (tile % 2 == 1)
@@ -264,6 +265,7 @@ def _segments(
         weights=np.where(flipped[:, None], whole.weights[:, ::-1], whole.weights),
         curve=curve,
         z=z,
+        family=np.where(flipped, model_mesh.images(whole.family), whole.family),
     )
     order = np.lexsort((z, curve))
     return segment[order], EmbeddedFibers(

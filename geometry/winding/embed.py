@@ -221,5 +221,6 @@ def embed_families(
         curve=curve,
         z=middles[:, 1],
         s=middles[:, 0],
+        family=which,
     )
     return fibers, which

@@ -67,6 +67,7 @@ def through_section(
         curve=curve,
         z=np.zeros(count),
         s=at,
+        family=which,
     )
     return fibers, which
 

@@ -59,6 +59,7 @@ class EmbeddedFibers(Lines):
         curve: number of the curve (of the helix, when smeared), (n,).
         z: z in mm of the segment's middle, (n,); 0 on a section.
         s: arc length in mm on the outline of the segment's middle, (n,).
+        family: number of the family of threads, (n,).
     """
 
     length: Floats
@@ -66,6 +67,7 @@ class EmbeddedFibers(Lines):
     curve: Ints
     z: Floats
     s: Floats
+    family: Ints
 
 
 @dataclasses.dataclass(frozen=True)

@@ -76,6 +76,7 @@ def smear(mesh: MeshData, actuator: Actuator, winding: Wound) -> SmearedFibers:
             curve=np.full(len(cell), number),
             z=z,
             s=s,
+            family=np.full(len(cell), number),
             curvature=bent * family.sine**2,
             density=density,
         )

@@ -120,6 +120,7 @@ def lay(mesh: MeshData, actuator: Actuator, window: Window) -> EmbeddedFibers:
                 "curve": np.full(len(cell), number),
                 "z": developed[:, 1] if solid else np.zeros(len(cell)),
                 "s": developed[:, 0],
+                "family": np.full(len(cell), number),
             }
         )
     return EmbeddedFibers(

@@ -362,3 +362,14 @@ def test_json_schema_describes_every_effect_and_shows_defaults_with_units() -> N
     ]
     assert all(described)
     assert Case.__doc__
+
+
+def test_a_setting_that_a_later_one_replaces_is_refused() -> None:
+    whole = "actuator={section: hemicircle, radius: 8 mm, length: 160 mm, wall: 2 mm, floor: 2 mm}"
+    with pytest.raises(CaseError) as refused:
+        read_case(BASELINE, ["actuator.floor=3 mm", whole, "materials.sheath="])
+    (problem,) = refused.value.problems
+    assert problem.path == "actuator.floor"
+    assert problem.text == "no effect: actuator is set after it, expected it before"
+    case = read_case(BASELINE, [whole, "actuator.floor=3 mm", "materials.sheath="])
+    assert case.actuator.floor == 3

@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from fiberbend import run
+from fiberbend.case import convert
 from fiberbend.case.symmetry import Symmetry
+from fiberbend.effects.wound.family import FamilySpec
 from fiberbend.models.choice import MODELS
 from fiberbend.models.result import RunResult
 from fiberbend.plan.plan import make_plan
@@ -211,6 +213,28 @@ def test_a_single_helix_as_a_whole_section_is_what_half_of_it_is(
     assert whole.last("side_angle_deg") == pytest.approx(0, abs=1e-7)
     for column in ("angle_deg", "twist_deg", *ALIKE):
         assert whole.last(column) == pytest.approx(half.last(column), rel=1e-8), column
+
+
+@pytest.mark.parametrize("degrees", [40.0, 90.0, 140.0, 180.0, 260.0])
+def test_an_angle_is_the_share_of_the_outline_that_it_is_of_threads(degrees: float) -> None:
+    # no circle: a ray's angle would be another place
+    dimensions = {
+        "section": "hemicircle",
+        "radius": "8 mm",
+        "length": "100 mm",
+        "wall": "2 mm",
+        "floor": "2 mm",
+    }
+    rubber = {"wall": "elastosil-m4601", "floor": "elastosil-m4601"}
+    thread = {"angle_from_axis": "0 deg", "at": [f"{degrees} deg"]}
+    case = as_case(
+        _case(_strip({"angle": f"{degrees} deg"}), actuator=dimensions, materials=rubber)
+    )
+    actuator = convert.dimensions(case.actuator)
+    ((window,),) = (e.windows(actuator) for e in case.effects if e.several)
+    assert window.middle == pytest.approx(degrees / 360 * actuator.winding_perimeter)
+    family = FamilySpec.model_validate(thread, context=None).laid(actuator, "all")[0]
+    assert family.offset == pytest.approx(window.middle)
 
 
 # --- what is refused ----------------------------------------------------------------------------

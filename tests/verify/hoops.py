@@ -93,6 +93,7 @@ def _fibers(
         curve=np.zeros(number, dtype=np.int64),
         z=np.zeros(number),
         s=np.zeros(number),
+        family=np.zeros(number, dtype=np.int64),
     )
 
 

@@ -43,7 +43,7 @@ class Animation:
         self, model_mesh: ModelMesh, renderer: Renderer, scenery: Scenery | None = None
     ) -> None:
         self._title, self._mesh = model_mesh.title, model_mesh.mesh
-        self._surfaces, self._renderer = BodySurfaces(model_mesh), renderer
+        self._surfaces, self._renderer = BodySurfaces(model_mesh, scenery), renderer
         self._scenery = scenery or Scenery()
         self._skin = Tessellation(self._mesh, self._surfaces.outside(self._surfaces.bare, False), 2)
 
@@ -103,6 +103,7 @@ class Animation:
         surface = self._surfaces.surface(self._skin, state, self._mesh.half)
         surface["value"] = np.resize(value, surface.n_points)
         layers = [Drawable(surface, scalars="value"), *self._surfaces.fiber_tubes(state)]
+        layers += self._surfaces.fabric(state)
         layers += obstacles.behind(view)
         return self._renderer.draw(layers, view, (SIZE[0], _BAND), limits, colormap())
 

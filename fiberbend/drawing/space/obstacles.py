@@ -57,6 +57,8 @@ class Scenery:
             left out.
         actuator: on whose outline the strips lie; None without any.
         strips: of fabric, as parts of the outline.
+        at_tip: by the number of a load step, what acts at the tip's outer face, its force in N, or
+            None where it has no direction that is known.
     """
 
     shapes: Mapping[str, Shape] = dataclasses.field(default_factory=dict)
@@ -65,6 +67,7 @@ class Scenery:
     lengths: Mapping[str, float] = dataclasses.field(default_factory=dict)
     actuator: Actuator | None = None
     strips: tuple[Window, ...] = ()
+    at_tip: Mapping[int, Mapping[str, Force | None]] = dataclasses.field(default_factory=dict)
 
     def caption(self, state: Snapshot) -> str:
         """Pressure and angle of a state; where the body is kept straight its force comes first."""
@@ -77,7 +80,8 @@ class Scenery:
 
     def greatest(self) -> float:
         """Greatest force of an obstacle in any step, N."""
-        every = [np.linalg.norm(f) for step in self.forces.values() for f in step.values()]
+        known = [*self.forces.values(), *self.at_tip.values()]
+        every = [np.linalg.norm(f) for step in known for f in step.values() if f is not None]
         return float(max(every, default=0.0))
 
 
@@ -169,6 +173,7 @@ def write_forces(
     body: Floats,
     state: Snapshot | None = None,
     fontsize: float = 11,
+    tip: Floats | None = None,
 ) -> None:
     """Name each obstacle beside it, with its force on the body and an arrow where that is known.
 
@@ -178,6 +183,7 @@ def write_forces(
         body: points of the body in the state, (n, 3), mm.
         state: the state; None: names only.
         fontsize: in points.
+        tip: the middle of the tip's outer face in the state, (3,), mm; None: a body without one.
     """
     scenery = obstacles.scenery
     forces = {} if state is None else scenery.forces.get(state.step, {})
@@ -190,6 +196,34 @@ def write_forces(
             panel.force(text, obstacles.touch(name, body), force, greatest, fontsize)
         else:
             panel.name(text, np.asarray(solid.center), fontsize)
+    write_at_tip(panel, scenery, tip, state, fontsize)
+
+
+def write_at_tip(
+    panel: Panel,
+    scenery: Scenery,
+    tip: Floats | None,
+    state: Snapshot | None,
+    fontsize: float,
+) -> None:
+    """Name what acts at the tip's outer face, with an arrow where its direction is known.
+
+    Args:
+        panel: where.
+        scenery: has it.
+        tip: the middle of that face, (3,), mm; None: not drawn.
+        state: the state; None: at rest, nothing acts yet.
+        fontsize: in points.
+    """
+    if tip is None or state is None:
+        return
+    greatest = scenery.greatest()
+    for name, force in scenery.at_tip.get(state.step, {}).items():
+        size = 0.0 if force is None else float(np.linalg.norm(force))
+        if size > _NO_FORCE * greatest:
+            panel.force(f"{name} {short_number(size)} N", tip, np.array(force), greatest, fontsize)
+        else:
+            panel.name(name, tip, fontsize)
 
 
 def _solid(surface: Any) -> Any:

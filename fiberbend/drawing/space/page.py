@@ -35,6 +35,8 @@ from fiberbend.states.snapshot import Target
 
 _REMARK = 11.5
 _NARROW = 1200
+_IN_A_ROW = 4
+"""Names in a legend beside a scale."""
 _FLAT = 0.5
 """Height over width of images that stand in two columns at most."""
 
@@ -234,22 +236,31 @@ class Page:
         bar.ax.tick_params(labelsize=12)
         bar.set_label(label, fontsize=13)
 
-    def legend(self, names: Sequence[str], more: Mapping[str, str] | None = None) -> None:
+    def legend(
+        self,
+        names: Sequence[str],
+        more: Mapping[str, str] | None = None,
+        colors: Mapping[str, str] | None = None,
+    ) -> None:
         """Names of the colours, below the images.
 
         Args:
             names: regions, "fiber" or "winding".
             more: what is added to a name.
+            colors: of names that have none of their own.
         """
         from matplotlib.patches import Patch
 
         labels = {name: f"{name_of(name)} {(more or {}).get(name, '')}" for name in names}
+        own = colors or {}
         patches = [
-            Patch(facecolor=color_of(name), edgecolor="0.4", label=label.strip())
+            Patch(facecolor=own.get(name) or color_of(name), edgecolor="0.4", label=label.strip())
             for name, label in labels.items()
         ]
+        # beside the scale there is room for so many in a row
+        columns = len(patches) if len(patches) <= _IN_A_ROW else math.ceil(len(patches) / 2)
         self._figure.legend(
-            handles=patches, loc="lower center", ncols=len(patches), frameon=False, fontsize=13
+            handles=patches, loc="lower center", ncols=columns, frameon=False, fontsize=13
         )
 
     def pixels(self) -> Image:

@@ -35,12 +35,14 @@ class Rest:
         view: from where.
         names: the colours that it shows, as `Page.legend` takes them.
         lengths: the main dimensions: a text and its ends in mm, (2, 3).
+        colors: of names that have none of their own.
     """
 
     image: Image
     view: View
     names: list[str]
     lengths: list[tuple[str, Floats]]
+    colors: Mapping[str, str]
 
 
 def rest_image(
@@ -64,7 +66,7 @@ def rest_image(
     Raises:
         fiberbend.drawing.renderer.PictureError: nothing can be drawn on this machine.
     """
-    surfaces = BodySurfaces(model_mesh)
+    surfaces = BodySurfaces(model_mesh, scenery)
     points = surfaces.points(None)
     obstacles = Obstacles(scenery or Scenery(), points)
     right = View(_FROM, np.zeros(3), 1.0).axes[0]
@@ -80,7 +82,8 @@ def rest_image(
     size = (width, round(width * shape))
     layers = [*_layers(surfaces, threads), *obstacles.seen_through()]
     names = [*surfaces.names, *(["fiber"] if len(threads) else [])]
-    return Rest(renderer.draw(layers, view, size), view, names, lengths)
+    image = renderer.draw(layers, view, size)
+    return Rest(image, view, names, lengths, surfaces.family_colors)
 
 
 def draw_rest(
@@ -111,7 +114,9 @@ def draw_rest(
     write_on(panel, rest, model_mesh, scenery)
     lengths = {} if scenery is None else scenery.lengths
     page.legend(
-        rest.names, {name: f"{lengths[name]:.6g} mm" for name in rest.names if name in lengths}
+        rest.names,
+        {name: f"{lengths[name]:.6g} mm" for name in rest.names if name in lengths},
+        rest.colors,
     )
     page.scale(panel)
     page.save(target)
@@ -149,7 +154,8 @@ def _layers(surfaces: BodySurfaces, threads: Sequence[Floats]) -> list[Drawable]
     else:
         layers = surfaces.parts(shown & (~opened | (middle[:, 0] > 0)))
     layers += [line for thread in threads for line in _thread(thread, end)]
-    return layers + surfaces.winding_line() + surfaces.fiber_tubes(near=end)
+    layers += surfaces.winding_line() + surfaces.fiber_tubes(near=end)
+    return layers + surfaces.fabric(near=end)
 
 
 def _thread(points: Floats, near: float) -> list[Drawable]:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from geometry.mesh.data import MeshData
 
 _NONE = (0.0, 0.0, 0.0)
+_LOAD = "load_tip_load"
+"""The column of its part that is on."""
 
 
 class TipLoadEffect(Effect):
@@ -77,6 +79,14 @@ class TipLoadEffect(Effect):
                 f"tip-load: {kind} has no potential: no unstable modes are counted, and a body "
                 "that would buckle or flutter is passed unseen"
             )
+
+    def at_tip(self, row: Mapping[str, Any]) -> dict[str, tuple[float, float, float] | None]:
+        """As much of it as is on; one that follows has turned with the face."""
+        if not any(self.force):
+            return {"tip moment": None}
+        part = float(row.get(_LOAD) or 0.0)
+        x, y, z = (part * each for each in self.force)
+        return {"tip load": None if self.follows else (x, y, z)}
 
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
         """It grows from zero to the whole; with a potential where it has one."""

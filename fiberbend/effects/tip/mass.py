@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 from fiberbend.effects.effect import SPACE, Built, Draft, Effect, Requests, Site
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Mass
+from fiberbend.schema.units import show
 
 if TYPE_CHECKING:
     from geometry.mesh.data import MeshData
@@ -47,6 +48,10 @@ class TipMassEffect(Effect):
     def steps(self) -> int:
         """It is put on with gravity."""
         return 0
+
+    def at_tip(self, row: Mapping[str, Any]) -> dict[str, tuple[float, float, float] | None]:
+        """It hangs there."""
+        return {f"tip mass {show(self.mass, 'mass')}": None}
 
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
         """Its weight, scaled as gravity is."""

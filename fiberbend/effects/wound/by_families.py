@@ -24,6 +24,7 @@ from geometry.winding.symmetry import (
 )
 
 if TYPE_CHECKING:
+    from fiberbend.states.snapshot import FamilyLook
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats
     from geometry.winding.ribbons import Ribbons
@@ -145,8 +146,7 @@ class ByFamilies(Threads):
         """Every family that goes around, with what the case says of it."""
         left = iter(families)
         for spec in self.specs:
-            places = 1 if spec.at is None or spec.angle != 0 else len(spec.at)
-            found = [next(left) for _ in range(places)]
+            found = [next(left) for _ in range(_places(spec))]
             yield spec, found[0]
 
     def room(self, path: str, actuator: Actuator, width: float) -> Iterator[Problem]:
@@ -171,12 +171,45 @@ class ByFamilies(Threads):
         """Every line of every thread."""
         return self.ribbons(actuator, width, lines).curves(actuator, POINTS_A_TURN)
 
+    def looks(self, actuator: Actuator) -> list[FamilyLook]:
+        """Angle and hand; the mirror image has the other hand, and the same thread."""
+        from fiberbend.states.snapshot import FamilyLook
+
+        families = self._laid(actuator.winding_perimeter, actuator)
+        names = [_look(family) for family in families]
+        if len(set(names)) < len(self.specs):
+            # more than one at the same angle and hand: their places in the case
+            numbers = [n for n, spec in enumerate(self.specs) for _ in range(_places(spec))]
+            names = [f"{name} (families.{n})" for name, n in zip(names, numbers, strict=True)]
+        keys = [(round(f.angle, 9), f.hand, f.thread, round(f.spacing, 9)) for f in families]
+        return [
+            FamilyLook(name, next((k for k, other in enumerate(keys) if other == image), number))
+            for number, (name, (angle, hand, thread, apart)) in enumerate(
+                zip(names, keys, strict=True)
+            )
+            for image in [(angle, -hand, thread, apart)]
+        ]
+
     def words(self, perimeter: float) -> list[str]:
         """Angle, pitch, starts, spacing and hand of each."""
         return [
             f"families.{number}: {spec.words(perimeter, self.around)}"
             for number, spec in enumerate(self.specs)
         ]
+
+
+def _places(spec: FamilySpec) -> int:
+    """Families of the geometry that one of a case is: one for each place of a thread."""
+    return 1 if spec.at is None or spec.angle != 0 else len(spec.at)
+
+
+def _look(family: Family) -> str:
+    """Angle from the axis and hand."""
+    if not family.angle:
+        return "0° from the axis"
+    if not family.hand:
+        return "hoops"
+    return f"{math.degrees(family.angle):.4g}° {'right' if family.hand > 0 else 'left'}"
 
 
 def _finite(period: float) -> float:

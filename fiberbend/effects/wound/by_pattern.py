@@ -15,6 +15,7 @@ from fiberbend.schema.units import show
 from geometry.winding.patterns import PATTERNS, Pattern, least_pitch, turn_spacing
 
 if TYPE_CHECKING:
+    from fiberbend.states.snapshot import FamilyLook
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats
     from geometry.winding.ribbons import Ribbons
@@ -123,6 +124,10 @@ class ByPattern(Threads):
         helix = Winding(self.name, self.pitch, width, lines)
         count = math.ceil(actuator.length / self.pitch) * POINTS_A_TURN
         return [helix.points(actuator, curve, count)[0] for curve in range(helix.curves)]
+
+    def looks(self, actuator: Actuator) -> list[FamilyLook]:
+        """None: they are one thread's turns."""
+        return []
 
     def words(self, perimeter: float) -> list[str]:
         """The case says it."""

@@ -9,6 +9,7 @@ from fiberbend.effects.wound.turns import Turns
 from fiberbend.schema.problems import Problem
 
 if TYPE_CHECKING:
+    from fiberbend.states.snapshot import FamilyLook
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, Ints
     from geometry.winding.ribbons import Ribbons
@@ -72,6 +73,9 @@ class Threads(Protocol):
 
     def curves(self, actuator: Actuator, width: float | None, lines: int) -> list[Floats]:
         """Every line of the ribbons in space, (n, 3), mm; see `ribbons`."""
+
+    def looks(self, actuator: Actuator) -> list[FamilyLook]:
+        """By the number that a family has in `ribbons`; empty where none is told apart."""
 
     def words(self, perimeter: float) -> list[str]:
         """How they run, a line for each family, as a plan shows it; may be empty."""

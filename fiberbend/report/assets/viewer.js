@@ -61,6 +61,33 @@
     return texture;
   }
 
+  /** A colour "#rrggbb" as three.js mixes it: red, green and blue in linear light. */
+  function linear(color) {
+    return [1, 3, 5].map((at) => {
+      const part = parseInt(color.slice(at, at + 2), 16) / 255;
+      return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
+    });
+  }
+
+  /** The same lines, moved with them, that may have other colours. */
+  function imageOf(geometry) {
+    const image = new THREE.LineSegmentsGeometry();
+    image.setAttribute("instanceStart", geometry.attributes.instanceStart);
+    image.setAttribute("instanceEnd", geometry.attributes.instanceEnd);
+    image.instanceCount = geometry.instanceCount;
+    return image;
+  }
+
+  /** Give every piece of lines the colour of its family, at both ends. */
+  function paint(geometry, family, colors) {
+    const ends = new Float32Array(6 * family.length);
+    family.forEach((number, piece) => {
+      ends.set(colors[number], 6 * piece);
+      ends.set(colors[number], 6 * piece + 3);
+    });
+    geometry.setColors(ends);
+  }
+
   function regionColors(regions) {
     const bytes = new Uint8Array(3 * 256).fill(150);
     for (const region of regions) {
@@ -141,9 +168,19 @@
       const segments = await unpacked(data.fibers.segments, Uint32Array);
       const geometry = new THREE.LineSegmentsGeometry();
       geometry.setPositions(new Float32Array(3 * segments.length));
+      const families = data.fibers.families;
+      const family = families.length ? await unpacked(data.fibers.family, Uint8Array) : [];
+      const geometries = families.length && data.half ? [geometry, imageOf(geometry)] : [geometry];
+      if (families.length) {
+        paint(geometry, family, families.map(({ color }) => linear(color)));
+        const images = families.map(({ image }) => linear(families[image].color));
+        if (data.half) paint(geometries[1], family, images);
+      }
       const material = new THREE.LineMaterial({
-        color: 0x1a1a1a, linewidth: 1.4, side: THREE.DoubleSide,
+        color: families.length ? 0xffffff : 0x1a1a1a, vertexColors: families.length > 0,
+        linewidth: 1.4, side: THREE.DoubleSide,
       });
+      let made = 0;
       fibers = {
         segments,
         material,
@@ -151,7 +188,7 @@
         points: new Float32Array(3 * data.fibers.points),
         geometry,
         whole: both(() => {
-          const line = new THREE.LineSegments2(geometry, material);
+          const line = new THREE.LineSegments2(geometries[made++ % geometries.length], material);
           line.frustumCulled = false;
           return line;
         }),
