@@ -59,8 +59,7 @@ verify: setup ## run the slow convergence ladders against exact solutions
 
 hard: setup ## run the hard cases in every model and write docs/stability.md
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python bench/hard.py
-	$(BIN)/python -m pytest -m hard tests/hard/test_machinery.py tests/run/test_jumps.py \
-	    tests/run/test_restart.py
+	$(BIN)/python -m pytest -m hard tests/bench/test_families.py tests/run
 
 survive: setup ## kill runs at random moments and go on; damaged cases; writes docs/stability.md
 	$(BIN)/python bench/survive_kill.py

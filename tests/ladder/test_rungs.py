@@ -16,6 +16,7 @@ from fiberbend.ladder.rungs import BARE, ladder, representations
 from fiberbend.ladder.words import WINDINGS
 from fiberbend.models.choice import MODELS
 from fiberbend.reader.reader import read_case
+from fiberbend.schema.problems import CaseError
 from tests.conftest import ROOT
 from tests.ladder.parts import CASE, of_case
 
@@ -32,7 +33,19 @@ FAMILIES = {
 }
 
 
-@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+ZONED = [path for path in CASES if read_case(path).zones is not None]
+
+
+@pytest.mark.parametrize("path", ZONED, ids=lambda path: path.stem)
+def test_no_error_is_known_of_zones(path: Path) -> None:
+    with pytest.raises(CaseError, match="zones: no error is known of an actuator with zones"):
+        of_case(path)
+
+
+ALIKE = [path for path in CASES if path not in ZONED]
+
+
+@pytest.mark.parametrize("path", ALIKE, ids=lambda path: path.stem)
 def test_every_shipped_case_has_a_ladder(path: Path) -> None:
     found = of_case(path)
     names = [rung.name for rung in found.rungs]
