@@ -83,7 +83,7 @@ def test_what_a_step_lacks_is_the_unpredicted_force_along_the_turned_fibers(
     name: str, model: str
 ) -> None:
     # Σ ℓ (EA e − N)(b₀ − b₁), b = ∂e/∂x, for N = 0 and by differences of the strains
-    problem = _Bordered(_scene(name, model, True))
+    problem = _Bordered(_scene(name, model, "twisted"))
     scene: Scene = problem.scene
     (fibers,) = scene.discrete.values()
     before, now = problem.start(1), problem.start(2)
@@ -121,7 +121,7 @@ def test_what_a_step_lacks_is_the_unpredicted_force_along_the_turned_fibers(
 
 def test_a_prediction_is_by_the_last_tangent() -> None:
     # N = EA (e₁ + b₀·δ): what the step has solved for
-    problem = _Bordered(_scene("discrete", "cell", False))
+    problem = _Bordered(_scene("discrete", "cell", "in its plane"))
     (fibers,) = problem.scene.discrete.values()
     before, now = problem.start(1), problem.start(2)
     owned = problem.scene.body.owned
