@@ -215,6 +215,9 @@ def write_grid(data: Any, target: Target) -> None:
     writer.SetInputData(slim)
     writer.SetCompressorTypeToZLib()
     writer.SetCompressionLevel(1)
+    # numbers in their own element: meshio decodes all that is appended as one piece of base64, and
+    # Python no longer stops where the first array is padded
+    writer.SetDataModeToBinary()
     writer.WriteToOutputStringOn()
     writer.Write()
     _put(writer.GetOutputString().encode(), target)
