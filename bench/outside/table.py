@@ -10,12 +10,15 @@ from typing import Any
 
 HEAD = """# Validation
 
-Every row is a figure that this program computes beside one that no one here wrote: a measurement,
-another program, a textbook. `make validate` computes all of them in {minutes} of processor time and
-writes this page. Nothing is tuned but where a row says so.
+Every row is a figure that this program computes beside one from outside: a measurement, another
+program, theory from books and papers, which this project's own code evaluates where the sources say
+so. `make validate` computes all of them in {minutes} of processor time and writes this page.
+Nothing is tuned but where a row says so.
 
 *Off by* is the computed figure against the other one, unless the row names another measure; *asked*
-is how near it was to be, settled before it was computed; without one a row is printed as it is.
+is how near it was to be; without one a row is printed as it is. Beside a measurement or COMSOL what
+was asked was settled before the figure was computed; in all other rows it was chosen while the row
+was written, so that it guards what was reached and foretells nothing.
 Angles of fibers are measured from the axis. Where ends are held, F > 0 pushes on what holds them,
 and signs of angles and torques are the source's: a family above zero turns the ends by M > 0.
 """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from analytic.tube import Family, Tube
@@ -62,7 +62,11 @@ class Rubber:
 
 
 def section(
-    tube: Rubber, threads: Sequence[Threads], pressures: Sequence[float], refinement: int = 2
+    tube: Rubber,
+    threads: Sequence[Threads],
+    pressures: Sequence[float],
+    refinement: int = 2,
+    hold: Mapping[str, Any] | None = None,
 ) -> list[dict[str, Any]]:
     """Rows of the section model at some pressures.
 
@@ -71,6 +75,7 @@ def section(
         threads: around it.
         pressures: MPa, rising.
         refinement: elements through the wall.
+        hold: what is held, as in a case, before the pressure rises; None: the ends are free.
 
     Raises:
         RuntimeError: the run did not reach the last one.
@@ -86,6 +91,7 @@ def section(
             },
             "materials": {"wall": {"law": "neo-hooke", "mu": f"{tube.mu!r} MPa"}},
             "effects": [
+                *([] if hold is None else [{"hold": dict(hold)}]),
                 {"pressure": {"to": f"{pressures[-1]!r} MPa"}},
                 {"winding": {"families": [each.entry() for each in threads], "as": "smeared"}},
             ],

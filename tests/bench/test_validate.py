@@ -79,11 +79,26 @@ def test_other_samples_twist_as_if_wound_elsewhere() -> None:
 
 def test_tubes_whose_ends_are_held() -> None:
     for degrees, measured in held.MEASURED.items():
-        found = held.slopes(degrees)
-        assert np.sign(found).tolist() == np.sign(measured).tolist()
-        for name, ours, theirs in zip(("F/P", "M/P"), found, measured, strict=True):
-            error = kept(f"{degrees:+g}°: {name}", "Bruder 2018").error
-            assert error == pytest.approx(ours / theirs - 1, abs=1e-6)
+        exact, found = held.slopes(degrees), held.computed(degrees)
+        assert np.sign(exact).tolist() == np.sign(measured).tolist()
+        assert found == pytest.approx(exact, rel=held.NEAR)
+        for name, ours, theirs, asked in zip(
+            held.NAMES, found, measured, held.ASKED[degrees], strict=True
+        ):
+            other = held.both_measures(ours, theirs, asked)
+            row = kept(f"{degrees:+g}°: {name}{other}", "Bruder 2018")
+            assert row.error == pytest.approx(ours / theirs - 1, abs=1e-6)
+            assert bool(other) == (row.holds is False)
+
+
+def test_a_held_tube_that_is_longer_is_the_exact_one() -> None:
+    row = held.beside_theory(48.0)
+    old = kept(row.quantity, "theory")
+    assert row.error == pytest.approx(old.error, abs=1e-6)
+    assert row.asked == held.NEAR == 1e-3
+    for each in ROWS:
+        if each.subject == held.SUBJECT and each.source == "theory":
+            assert each.holds
 
 
 def test_what_is_exact_is_computed_again() -> None:
