@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from fiberbend.case.case import Case
+from fiberbend.drawing.page import COLORS
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.reader.reader import as_case
 from fiberbend.results.mesh_file import mesh_of
@@ -97,6 +98,16 @@ def test_families_have_a_colour_each_and_patterns_the_colour_of_fibers() -> None
     assert surfaces.names == ["wall", "30° left", "30° right"]
     assert len(set(surfaces.family_colors.values())) == 2
     assert {tube.color for tube in surfaces.fiber_tubes()} == {*surfaces.family_colors.values()}
+
+
+def test_helices_of_a_pattern_are_fibers_alike_each_with_its_own_number() -> None:
+    case = _case(families=None)
+    winding = {"pattern": "double-helix", "pitch": "6 mm", "fiber": "kevlar", "as": "discrete"}
+    case = as_case(case, {"effects.1.winding": winding})
+    surfaces = BodySurfaces(Space(case, _mesh(case)).model_mesh)
+    assert surfaces.names == ["wall", "fiber"]
+    assert {tube.color for tube in surfaces.fiber_tubes()} == {COLORS["fiber"]}
+    assert _slopes(Space(case, _mesh(case), both=True).model_mesh).tolist() == [[1.0], [-1.0]]
 
 
 def test_fabric_is_as_wide_as_its_strip_and_where_it_lies() -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fiberbend.states.snapshot import ModelMesh, Snapshot
+from fiberbend.states.snapshot import FamilyLook, ModelMesh, Snapshot
 from geometry.bodies.extrude import hexahedral_slice, section_quadrilaterals
 from geometry.mesh.data import Floats
 from geometry.sections.size import MeshSize
@@ -25,11 +25,17 @@ def section(half: bool = True) -> ModelMesh:
     return ModelMesh(mesh, MATERIALS, fibers, smeared=True, title="Section", uniform=True)
 
 
+HANDS = (FamilyLook("fiber", 1), FamilyLook("fiber", 0))
+"""Of a double helix."""
+
+
 def cell(half: bool = True, fineness: int = 1) -> ModelMesh:
     extent = PITCH / 2 if half else PITCH
     mesh = hexahedral_slice(SHORT, MeshSize(axial=PITCH, section=fineness, half=half), extent, 2)
     fibers = embed(mesh, SHORT, DOUBLE)
-    return ModelMesh(mesh, MATERIALS, fibers, smeared=False, title="Cell", uniform=True)
+    return ModelMesh(
+        mesh, MATERIALS, fibers, smeared=False, title="Cell", uniform=True, families=HANDS
+    )
 
 
 def state(

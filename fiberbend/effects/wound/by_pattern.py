@@ -126,8 +126,12 @@ class ByPattern(Threads):
         return [helix.points(actuator, curve, count)[0] for curve in range(helix.curves)]
 
     def looks(self, actuator: Actuator) -> list[FamilyLook]:
-        """None: they are one thread's turns."""
-        return []
+        """All of one name, as turns of a thread; a mirror image is that of the other hand."""
+        from fiberbend.states.snapshot import FamilyLook
+
+        hands = [helix.hand for helix in self._pattern.helices]
+        images = [hands.index(-h) if -h in hands else n for n, h in enumerate(hands)]
+        return [FamilyLook("fiber", image) for image in images]
 
     def words(self, perimeter: float) -> list[str]:
         """The case says it."""
