@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
-from pydantic import Field, model_serializer, model_validator
+from pydantic import Field
 
 from fiberbend.effects.effect import (
     SIDE,
@@ -21,7 +21,7 @@ from fiberbend.effects.effect import (
 )
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Angle as AngleOtherThanZero
-from fiberbend.schema.quantities import Coordinate, Length, Modulus, Spec
+from fiberbend.schema.quantities import Coordinate, Length, Modulus, Named
 from fiberbend.schema.units import show
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ PLACES = {"top": 0.0, "right": math.pi / 2, "bottom": math.pi, "left": 3 * math.
 _ROUNDING = 1e-9
 
 
-class PlaceSpec(Spec):
+class PlaceSpec(Named):
     """A place on the outline of wall and floor: by a name, an angle, or an arc length."""
 
     name: Literal["top", "right", "bottom", "left"] | None = None
@@ -44,15 +44,6 @@ class PlaceSpec(Spec):
     threads."""
     arc: Coordinate | None = None
     """Arc length of the outline from the top toward +x."""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_name(cls, data: Any) -> Any:
-        return {"name": data} if isinstance(data, str) else data
-
-    @model_serializer(mode="wrap")
-    def _to_name(self, write: Any) -> Any:
-        return self.name if self.name is not None else write(self)
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict[str, Any]:

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from pydantic import Field, model_serializer, model_validator
+from pydantic import Field
 
 from fiberbend.schema.problems import Problem, found, meant
-from fiberbend.schema.quantities import Length, Modulus, PenaltyStiffness, Spec
+from fiberbend.schema.quantities import Length, Modulus, Named, PenaltyStiffness, Spec
 
 if TYPE_CHECKING:
     from materials.bulging import Bulging
     from materials.fiber import Fiber
 
 
-class FiberSpec(Spec):
+class FiberSpec(Named):
     """The thread of a winding: a name, or modulus and diameter."""
 
     name: str | None = None
@@ -26,15 +26,6 @@ class FiberSpec(Spec):
     """Diameter of the thread."""
     radius_factor: float | None = Field(default=None, gt=0, le=1)
     """Part of the radius that carries; 0.5 where the paper halves it, 1 by default."""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _from_name(cls, data: Any) -> Any:
-        return {"name": data} if isinstance(data, str) else data
-
-    @model_serializer(mode="wrap")
-    def _to_name(self, write: Any) -> Any:
-        return self.name if self.name is not None else write(self)
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict[str, Any]:
