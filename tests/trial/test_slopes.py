@@ -30,7 +30,7 @@ FIELDS: dict[str, set[str]] = {
     "single helix": {"actuator.radius", "effects.1.winding.pitch"},
     "calibrated": {"actuator.wall", "effects.1.winding.bulging.stiffness"},
 }
-STEP = 1e-3
+STEP = 3e-4
 """Of whole solves, as a part of a number; its square is left in their differences."""
 
 
