@@ -67,7 +67,7 @@ def tangents(form: Form, shape: Numbers, strains: Floats) -> Floats:
     """
     moves = np.concatenate([_STEP * _PLANE, -_STEP * _PLANE])
     moved = np.exp(strains[:, None, :] + moves)
-    slopes = form.slopes(np.moveaxis(moved.reshape(-1, 3), 1, 0), shape)
+    slopes = form.slopes(list(moved.reshape(-1, 3).T), shape)
     # by modulus, state, move and direction on the plane
     on_plane = np.einsum("kin,ai->kna", slopes, _PLANE).reshape(len(slopes), -1, 4, 2)
     tangent = (on_plane[:, :, :2] - on_plane[:, :, 2:]) / (2 * _STEP)

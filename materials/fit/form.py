@@ -47,7 +47,7 @@ class Form:
         given = {p.name: float(v) for p, v in zip(self.parameters, values, strict=True)}
         return {name: given[name] for name in self.law.names if name in given}
 
-    def slopes(self, stretches: Sequence[Floats] | Floats, shape: Numbers) -> Floats:
+    def slopes(self, stretches: Sequence[Floats], shape: Numbers) -> Floats:
         """λi ∂W/∂λi of each modulus at 1 MPa by itself; NaN where the law has no value.
 
         Args:
@@ -66,7 +66,7 @@ class Form:
         along, _, free = np.moveaxis(self.slopes(mode.stretches(stretch), shape), 1, 0)
         return np.asarray((along - free) / stretch).T
 
-    def _slopes(self, stretches: Sequence[Floats] | Floats, moduli: Numbers, shape: Numbers) -> Floats:
+    def _slopes(self, stretches: Sequence[Floats], moduli: Numbers, shape: Numbers) -> Floats:
         values = self.law.complete(self.named(moduli, shape))
         used = {name: values[name] for name in self.law.used([values])}
         return np.stack(slopes(lambda *s: self.law.energy(Stretches(*s), **used), stretches))
