@@ -28,6 +28,7 @@ _PLACES = {
     "plan": "fiberbend.api.calls",
     "validate": "fiberbend.api.calls",
     "sweep": "fiberbend.api.calls",
+    "fit": "fiberbend.api.fitting",
     "Case": "fiberbend.case.case",
     "CaseError": "fiberbend.schema.problems",
     "Result": "fiberbend.api.result",
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
     from fiberbend.api.calls import run as run
     from fiberbend.api.calls import sweep as sweep
     from fiberbend.api.calls import validate as validate
+    from fiberbend.api.fitting import fit as fit
     from fiberbend.api.result import Result as Result
     from fiberbend.api.sweep import Sweep as Sweep
     from fiberbend.case.case import Case as Case
@@ -58,6 +60,7 @@ __all__ = [
     "Style",
     "Sweep",
     "__version__",
+    "fit",
     "load",
     "plan",
     "run",
@@ -67,7 +70,7 @@ __all__ = [
 
 
 class _Package(type(sys)):  # type: ignore[misc]
-    """This module, in which the folders plan/ and sweep/ do not hide the functions."""
+    """This module, in which the folders fit/, plan/ and sweep/ hide no functions."""
 
     def __setattr__(self, name: str, value: object) -> None:
         if not (name in __all__ and isinstance(value, type(sys))):

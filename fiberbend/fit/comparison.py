@@ -76,12 +76,12 @@ def compared(asked: Asked) -> Comparison:
     Raises:
         CaseError: a file or a law is wrong.
     """
-    from fiberbend.tensile.shipped import test_file
+    from fiberbend.tensile.shipped import file_of
     from materials.fit.fit import fit_law
 
     if not asked.files:
         raise CaseError([Problem("fiberbend fit", "no test, expected a file such as DATA.csv")])
-    reads = tuple(read_test(test_file(path), mode, asked.wanted) for mode, path in asked.files)
+    reads = tuple(read_test(file_of(path), mode, asked.wanted) for mode, path in asked.files)
     tests = [read.measurement for read in reads]
     fits, left_out = [], []
     for law in asked.laws or USUAL:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from fiberbend.fit.comparison import Comparison
     from materials.fit.fit import Fit
 
+HEADS = ("law", "rms error", "AIC", "stable to stretch", "parameters")
+"""Of the columns of `summary`."""
 _SMALL = 0.1
 """MPa below which moduli are shown in kPa."""
 
@@ -25,10 +27,7 @@ def lines(found: Comparison) -> Iterator[str]:
     for read in found.reads:
         yield read.said
     yield ""
-    yield from aligned(
-        ("law", "rms error", "AIC", "stable to stretch", "parameters"),
-        [summary(fit, found) for fit in found.fits],
-    )
+    yield from aligned(HEADS, [summary(fit, found) for fit in found.fits])
     remarks = list(remarks_of(found))
     if remarks:
         yield ""
