@@ -183,7 +183,7 @@ class Fitted:
             *(blocks.words(read.said) for read in self.found.reads),
             blocks.table(HEADS, [summary(fit, self.found) for fit in self.found.fits]),
             *(blocks.warning(text) for text in remarks_of(self.found)),
-            blocks.words(f"Stress in kPa at stretch {self.found.reach:.4g}; * mode not measured"),
+            blocks.words("Stress in kPa at the stretch in brackets; * mode not fitted"),
             blocks.table(heads, rows),
         )
 
@@ -205,6 +205,7 @@ def fit(
     upto: str = "",
     weights: Literal["plain", "relative"] = "plain",
     stable: bool = True,
+    only: Sequence[ModeName] = (),
 ) -> Fitted:
     """Fit laws of rubber to tests; as the command `fiberbend fit`, but nothing is written.
 
@@ -225,6 +226,7 @@ def fit(
         upto: greatest stretch, such as "strain 50 %".
         weights: points of a mode count alike, or by one over their stress.
         stable: ask that the law is stable up to the greatest stretch.
+        only: modes that are fitted, and the others compared; all by default.
 
     Raises:
         CaseError: a file, a law or an option is wrong.
@@ -250,7 +252,7 @@ def fit(
         raise CaseError([Problem("fit", str(error))]) from None
     files = tuple((mode, Path(path)) for mode, given in modes for path in _several(given))
     laws = law_names([law] if isinstance(law, str) else law)
-    return Fitted(compared(Asked(files, laws, wanted, weights, stable)))
+    return Fitted(compared(Asked(files, laws, wanted, weights, stable, tuple(only))))
 
 
 def _several(files: Files) -> Sequence[Path | str]:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from fiberbend.fit.comparison import Asked, Comparison
     from fiberbend.tensile.reading import ModeName
 
+ModeOption = Literal["uniaxial", "pure-shear", "equibiaxial"]
 _FILES = Parameter(consume_multiple=False, metavar="CSV")
 _LAW = (
     "Law, with all its terms or with a number of them such as yeoh-2; several between commas or "
@@ -47,6 +48,7 @@ def fit(
     decimal: Annotated[Literal[".", ","] | None, Parameter(metavar="MARK")] = None,
     weights: Literal["plain", "relative"] = "plain",
     unstable: bool = False,
+    only: Annotated[tuple[ModeOption, ...], Parameter(consume_multiple=False)] = (),
     density: str = "",
     case: Annotated[Path | None, Parameter(metavar="CASE")] = None,
     part: str = "wall",
@@ -79,6 +81,7 @@ def fit(
         upto: Greatest stretch that is fitted.
         decimal: Mark before decimals; found by default.
         weights: Points of a mode count alike, or by one over their stress.
+        only: Fit tests of this mode alone, and compare the others; repeatable.
         unstable: Do not ask that the law is stable up to the greatest stretch.
         density: Density for the material file, such as "1.07 g/cm^3".
         case: Case file of uniform bending whose pressure is told with its error.
@@ -114,6 +117,7 @@ def fit(
         ),
         weights,
         not unstable,
+        only,
     )
     _count("--refits", refits)
     _density(density)
