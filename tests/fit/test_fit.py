@@ -36,7 +36,7 @@ def test_a_fit_is_printed_and_written(
     assert "yeoh-2  0.67 %     +0.0" in printed
     assert "c1 90.4 ± 2.5 kPa, c2 9.08 ± 0.55 kPa" in printed
     assert "only uniaxial was measured" in printed
-    assert "pure-shear *  equibiaxial *" in printed
+    assert "pure-shear (2) *  equibiaxial (2) *" in printed
     assert "wall: {law: yeoh, c1: 0.0904126 MPa, c2: 0.00908234 MPa}" in printed
     written = yaml.safe_load((tmp_path / "my.yaml").read_text(encoding="utf-8"))
     assert written == {
