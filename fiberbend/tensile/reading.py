@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from fiberbend.schema.problems import CaseError, Problem
-from fiberbend.tensile.columns import Meant, strain_of, stress_of, stresses, stretches
+from fiberbend.tensile.columns import STRETCHES, Meant, strain_of, stress_of, stresses, stretches
 
 if TYPE_CHECKING:
     from materials.fit.modes import Measurement
@@ -97,8 +97,9 @@ def limit(text: str) -> float:
     except ValueError:
         raise ValueError('expected a limit such as "stretch 1.5" or "strain 50 %"') from None
     value = value if kind == "stretch" else 1 + value
-    if not 0 < value < 100:
-        raise ValueError(f"stretch {value:g}, expected a number above zero and below 100")
+    least, most = STRETCHES
+    if not least <= value <= most:
+        raise ValueError(f"stretch {value:g}, expected {least:g} to {most:g}")
     return value
 
 

@@ -139,7 +139,7 @@ REFUSED = {
     "no stretch": (
         lines("engineering strain,eng stress [MPa]", STRETCH - 2.5, STRESS),
         Wanted(),
-        "expected numbers above zero",
+        "expected 0.05 to 20",
     ),
     "nothing in the range": (
         FILES["stretch"],
