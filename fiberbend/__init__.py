@@ -29,11 +29,13 @@ _PLACES = {
     "validate": "fiberbend.api.calls",
     "sweep": "fiberbend.api.calls",
     "fit": "fiberbend.api.fitting",
+    "trial": "fiberbend.api.trial",
     "Case": "fiberbend.case.case",
     "CaseError": "fiberbend.schema.problems",
     "Result": "fiberbend.api.result",
     "Style": "fiberbend.drawing.style",
     "Sweep": "fiberbend.api.sweep",
+    "Trial": "fiberbend.api.trial",
     "__version__": "fiberbend.version",
 }
 """Public names, and the modules that are imported when they are asked for."""
@@ -48,6 +50,8 @@ if TYPE_CHECKING:
     from fiberbend.api.fitting import fit as fit
     from fiberbend.api.result import Result as Result
     from fiberbend.api.sweep import Sweep as Sweep
+    from fiberbend.api.trial import Trial as Trial
+    from fiberbend.api.trial import trial as trial
     from fiberbend.case.case import Case as Case
     from fiberbend.drawing.style import Style as Style
     from fiberbend.schema.problems import CaseError as CaseError
@@ -59,18 +63,20 @@ __all__ = [
     "Result",
     "Style",
     "Sweep",
+    "Trial",
     "__version__",
     "fit",
     "load",
     "plan",
     "run",
     "sweep",
+    "trial",
     "validate",
 ]
 
 
 class _Package(type(sys)):  # type: ignore[misc]
-    """This module, in which the folders fit/, plan/ and sweep/ hide no functions."""
+    """This module, in which the folders fit/, plan/, sweep/ and trial/ do not hide functions."""
 
     def __setattr__(self, name: str, value: object) -> None:
         if not (name in __all__ and isinstance(value, type(sys))):
