@@ -179,6 +179,19 @@ def _factor(column: Column, kind: str) -> float:
         raise ValueError(f"{column.name!r}: {error}") from None
 
 
+def others(names: Sequence[str], column: Column) -> list[Column]:
+    """Columns whose names say that they have the same quantity in another measure.
+
+    Args:
+        names: of all columns.
+        column: the one that is read.
+    """
+    kinds = ("stress",) if column.what == "stress" else ("stretch", "strain")
+    every = (_read(i, name) for i, name in enumerate(names))
+    known = [c for c in every if c.what in kinds and (c.what == "stretch" or c.meant)]
+    return [c for c in known if (c.what, c.meant) != (column.what, column.meant)]
+
+
 def _asked(names: Sequence[str], asked: str, what: Quantity, meant: Meant | None) -> Column:
     """The column that a user names, by its name or its number, with or without a unit."""
     bare, unit = _apart(asked)
