@@ -21,6 +21,8 @@ _THOUSANDS = re.compile(r"[+\-−]?[1-9]\d{0,2}(?:,\d{3})")
 """A number whose comma may stand before decimals or between thousands."""
 _WORD = re.compile(r'"[^"]*"|[^\s"\[(]+(?:\s*(?:\[[^\]]*\]|\([^)]*\)))?|\[[^\]]*\]|\([^)]*\)')
 """A name between spaces, with its unit in brackets behind it."""
+_NUMBERS = re.compile(r'(?:[\s.,;|:+\-−eE"]|nan|inf)*\d(?:[\s\d.,;|:+\-−eE"]|nan|inf)*', re.I)
+"""A line of numbers."""
 _LISTED = 8
 
 
@@ -117,8 +119,32 @@ def read_table(path: Path, delimiter: str | None = None, decimal: str | None = N
             begins with the file's name.
         OSError: the file cannot be read.
     """
+    return _table(path, delimiter, decimal, False)
+
+
+def read_below_preface(
+    path: Path, delimiter: str | None = None, decimal: str | None = None
+) -> Table:
+    """Read a file of columns as `read_table` does, with lines of other things above the names.
+
+    The names are those in the line above the first numbers, with units in brackets in a line of
+    their own or not. A file of numbers alone has the columns 1, 2, ….
+
+    Args:
+        path: as of `read_table`.
+        delimiter: as there.
+        decimal: as there.
+
+    Raises:
+        ValueError: as there.
+        OSError: the file cannot be read.
+    """
+    return _table(path, delimiter, decimal, True)
+
+
+def _table(path: Path, delimiter: str | None, decimal: str | None, preface: bool) -> Table:
     name = path.name
-    head, lines, said = _lines(name, _text(path))
+    head, lines, said = _lines(name, _text(path), preface)
     delimiter = delimiter or said
     every = [delimiter] if delimiter is not None else list(DELIMITERS)
     try:
@@ -186,7 +212,7 @@ def _text(path: Path) -> str:
     raise ValueError(f"{path.name}: not a CSV file")
 
 
-def _lines(name: str, text: str) -> tuple[str, list[tuple[int, str]], str | None]:
+def _lines(name: str, text: str, preface: bool) -> tuple[str, list[tuple[int, str]], str | None]:
     """The line of names, the numbered lines below it, and the delimiter that a line `sep=` says."""
     comment, said = "", None
     lines: list[tuple[int, str]] = []
@@ -204,12 +230,38 @@ def _lines(name: str, text: str) -> tuple[str, list[tuple[int, str]], str | None
         raise ValueError(f"{name}: sep={said}, expected one of {', '.join(DELIMITERS.values())}")
     if not lines:
         raise ValueError(f"{name}: no rows, expected a line of names and lines of numbers")
+    if preface:
+        head, lines = _below_preface(comment, lines)
+        return head, lines, said
     if re.fullmatch(r'[\s\d.,;|:+\-−eE"]+', lines[0][1]):
         if not comment:
             shown = lines[0][1][:40]
             raise ValueError(f"{name}, line {lines[0][0]}: {shown!r}, expected names of columns")
         return comment, lines, said
     return lines[0][1], lines[1:], said
+
+
+def _below_preface(comment: str, lines: list[tuple[int, str]]) -> tuple[str, list[tuple[int, str]]]:
+    """The line of names above the first two lines of numbers, and these."""
+    numeric = [_NUMBERS.fullmatch(line) is not None for _, line in lines]
+    pairs = zip(numeric, [*numeric[1:], True], strict=True)
+    first = next((i for i, pair in enumerate(pairs) if all(pair)), len(lines))
+    if first == 0 and not comment:
+        # of any delimiter as many as there are
+        mark = max("\t;,|", key=lambda m: lines[0][1].count(m))
+        mark = mark if mark in lines[0][1] else " "
+        count = len(_cells(mark, lines[0][1]))
+        return mark.join(str(i + 1) for i in range(count)), lines
+    if first == 0:
+        return comment, lines
+    head = lines[first - 1][1]
+    marks = [m for m in "\t;,|" if m in head]
+    if first > 1 and marks:
+        mark = max(marks, key=head.count)
+        names, units = (_cells(mark, lines[i][1]) for i in (first - 2, first - 1))
+        if len(names) == len(units) and all(re.fullmatch(r"([\[(].*[\])])?", u) for u in units):
+            head = mark.join(f"{n} {u}".strip() for n, u in zip(names, units, strict=True))
+    return head, lines[first:]
 
 
 def _split(delimiter: str, head: str, lines: Sequence[tuple[int, str]]) -> _Split:

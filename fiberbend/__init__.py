@@ -28,6 +28,7 @@ _PLACES = {
     "plan": "fiberbend.api.calls",
     "validate": "fiberbend.api.calls",
     "sweep": "fiberbend.api.calls",
+    "fit": "fiberbend.api.fitting",
     "trial": "fiberbend.api.trial",
     "Case": "fiberbend.case.case",
     "CaseError": "fiberbend.schema.problems",
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from fiberbend.api.calls import run as run
     from fiberbend.api.calls import sweep as sweep
     from fiberbend.api.calls import validate as validate
+    from fiberbend.api.fitting import fit as fit
     from fiberbend.api.result import Result as Result
     from fiberbend.api.sweep import Sweep as Sweep
     from fiberbend.api.trial import Trial as Trial
@@ -63,6 +65,7 @@ __all__ = [
     "Sweep",
     "Trial",
     "__version__",
+    "fit",
     "load",
     "plan",
     "run",
@@ -73,7 +76,7 @@ __all__ = [
 
 
 class _Package(type(sys)):  # type: ignore[misc]
-    """This module, in which the folders plan/, sweep/ and trial/ do not hide the functions."""
+    """This module, in which the folders fit/, plan/, sweep/ and trial/ do not hide functions."""
 
     def __setattr__(self, name: str, value: object) -> None:
         if not (name in __all__ and isinstance(value, type(sys))):
