@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from pathlib import Path
 from typing import Any, Literal
 
 from materials.fiber import Fiber
@@ -11,6 +12,8 @@ from materials.material import Material
 
 Kind = Literal["rubber", "thread", "fabric", "paper"]
 KINDS: tuple[Kind, ...] = ("rubber", "thread", "fabric", "paper")
+DATA = Path(__file__).resolve().parent.parent / "data"
+"""Tests that come with the program."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -47,19 +50,23 @@ class Fitted:
     """Which tests coefficients are fitted to, so that they can be fitted again.
 
     Attributes:
-        tests: files of the tests by the way in which a specimen is loaded, "uniaxial",
-            "pure-shear" or "equibiaxial"; names of `materials.named.tests`.
+        tests: the way in which a specimen is loaded, a key of `materials.fit.modes.MODES`, and the
+            file of the test, of every test.
         law: a law, or a law with the number of its terms, "yeoh-2".
         upto: greatest stretch that the fit sees.
         rms: root mean square of what it misses, over the greatest stress.
-        digits: significant digits of the coefficients in the table.
     """
 
     tests: tuple[tuple[str, str], ...]
     law: str
     upto: float
     rms: float
-    digits: int = 4
+
+    @property
+    def shipped(self) -> tuple[tuple[str, Path], ...] | None:
+        """Way and path of every test that comes with the program; None where one does not."""
+        paths = [(way, DATA / file.lower().replace(" ", "-")) for way, file in self.tests]
+        return tuple(paths) if all(path.exists() for _, path in paths) else None
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)

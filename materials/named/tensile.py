@@ -35,7 +35,7 @@ def _tension(
     Args:
         name: in a case.
         product: what it is, and who makes it.
-        file: its test there.
+        file: its test there; those in materials/data have hyphens and small letters.
         law: a law with the number of its terms.
         coefficients: of the law.
         rms: of the fit, over the greatest stress.
@@ -73,13 +73,13 @@ def _classic(
         name: in a case.
         product: what it is.
         paper: who measured it.
-        stem: of the names of its tests.
+        stem: of the names of its tests in materials/data.
         law: a law with the number of its terms.
         coefficients: of the law.
         rms: of the fit, over the greatest stress of each way.
         stretches: least and greatest stretch.
     """
-    ways = (("uniaxial", "UT"), ("pure-shear", "PS"), ("equibiaxial", "ET"))
+    ways = ("uniaxial", "pure-shear", "equibiaxial")
     return Rubber(
         name=name,
         product=product,
@@ -88,9 +88,7 @@ def _classic(
         law=law.rpartition("-")[0] if law[-1].isdigit() else law,
         coefficients=coefficients,
         stretches=stretches,
-        fitted=Fitted(
-            tuple((way, f"{stem}_{short}.txt") for way, short in ways), law, stretches[1], rms
-        ),
+        fitted=Fitted(tuple((way, f"{stem}-{way}.csv") for way in ways), law, stretches[1], rms),
     )
 
 
@@ -259,7 +257,7 @@ TENSILE = (
         "natural-rubber-treloar",
         "vulcanised rubber, Treloar",
         "Treloar 1944, Trans. Faraday Soc. 40",
-        "Treloar_1944",
+        "treloar-1944",
         "ogden",
         {
             "mu1": 0.004414,
@@ -276,7 +274,7 @@ TENSILE = (
         "isoprene-rubber-kawabata",
         "isoprene rubber, Kawabata",
         "Kawabata et al. 1981, Macromolecules 14",
-        "Kawabata_1981",
+        "kawabata-1981",
         "ogden-2",
         {"mu1": 0.02245, "alpha1": -1.394, "mu2": 0.365, "alpha2": 1.704},
         0.011,
@@ -286,7 +284,7 @@ TENSILE = (
         "silicone-meunier",
         "unfilled silicone rubber, Meunier",
         "Meunier et al. 2008, Polymer Testing 27",
-        "Meunier_2008",
+        "meunier-2008",
         "ogden",
         {
             "mu1": 0.006459,
