@@ -147,10 +147,8 @@ class Rubber(Entry):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.stretches is not None:
-            least, most = self.stretches
-            if not 0 < least <= 1 < most:
-                raise ValueError(f"{self.name}: stretches {least} to {most}, expected 1 within")
+        # a law, coefficients or stretches that nobody could use
+        _ = self.material
 
     @property
     def kind(self) -> Kind:
@@ -160,7 +158,9 @@ class Rubber(Entry):
     @property
     def material(self) -> Material:
         """As the program takes it."""
-        return Material(self.law, self.coefficients, self.density, source=self.says)
+        return Material(
+            self.law, self.coefficients, self.density, source=self.says, tested=self.stretches
+        )
 
     @property
     def stiffness(self) -> float:
