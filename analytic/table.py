@@ -21,6 +21,8 @@ _THOUSANDS = re.compile(r"[+\-−]?[1-9]\d{0,2}(?:,\d{3})")
 """A number whose comma may stand before decimals or between thousands."""
 _WORD = re.compile(r'"[^"]*"|[^\s"\[(]+(?:\s*(?:\[[^\]]*\]|\([^)]*\)))?|\[[^\]]*\]|\([^)]*\)')
 """A name between spaces, with its unit in brackets behind it."""
+_NUMBERS = re.compile(r'(?:[\s.,;|:+\-−eE"]|nan|inf)*\d(?:[\s\d.,;|:+\-−eE"]|nan|inf)*', re.I)
+"""A line of numbers."""
 _LISTED = 8
 
 
@@ -102,7 +104,12 @@ class Table:
         raise ValueError(f"{self.source}, line {line}: {name!r} is {shown}, expected a number")
 
 
-def read_table(path: Path, delimiter: str | None = None, decimal: str | None = None) -> Table:
+def read_table(
+    path: Path,
+    delimiter: str | None = None,
+    decimal: str | None = None,
+    preface: bool = False,
+) -> Table:
     """Read a file of columns; empty lines and comments (#, %, //) are passed over.
 
     The first line has the names of the columns; where it has numbers, the comment above it does.
@@ -111,6 +118,9 @@ def read_table(path: Path, delimiter: str | None = None, decimal: str | None = N
         path: text in UTF-8, UTF-16 with its mark, or Windows' Western code page.
         delimiter: a key of `DELIMITERS`; found from the lines unless given.
         decimal: "." or ","; found from the numbers unless given.
+        preface: lines of other things may stand above the names, which are those in the line above
+            the first numbers, with units in brackets in a line of their own; a file of numbers
+            alone has the columns 1, 2, ….
 
     Raises:
         ValueError: no text, no names, no rows, or rows of another number of cells than the names;
@@ -118,7 +128,7 @@ def read_table(path: Path, delimiter: str | None = None, decimal: str | None = N
         OSError: the file cannot be read.
     """
     name = path.name
-    head, lines, said = _lines(name, _text(path))
+    head, lines, said = _lines(name, _text(path), preface)
     delimiter = delimiter or said
     every = [delimiter] if delimiter is not None else list(DELIMITERS)
     try:
@@ -186,7 +196,7 @@ def _text(path: Path) -> str:
     raise ValueError(f"{path.name}: not a CSV file")
 
 
-def _lines(name: str, text: str) -> tuple[str, list[tuple[int, str]], str | None]:
+def _lines(name: str, text: str, preface: bool) -> tuple[str, list[tuple[int, str]], str | None]:
     """The line of names, the numbered lines below it, and the delimiter that a line `sep=` says."""
     comment, said = "", None
     lines: list[tuple[int, str]] = []
@@ -204,12 +214,38 @@ def _lines(name: str, text: str) -> tuple[str, list[tuple[int, str]], str | None
         raise ValueError(f"{name}: sep={said}, expected one of {', '.join(DELIMITERS.values())}")
     if not lines:
         raise ValueError(f"{name}: no rows, expected a line of names and lines of numbers")
+    if preface:
+        head, lines = _below_preface(comment, lines)
+        return head, lines, said
     if re.fullmatch(r'[\s\d.,;|:+\-−eE"]+', lines[0][1]):
         if not comment:
             shown = lines[0][1][:40]
             raise ValueError(f"{name}, line {lines[0][0]}: {shown!r}, expected names of columns")
         return comment, lines, said
     return lines[0][1], lines[1:], said
+
+
+def _below_preface(comment: str, lines: list[tuple[int, str]]) -> tuple[str, list[tuple[int, str]]]:
+    """The line of names above the first two lines of numbers, and these."""
+    numeric = [_NUMBERS.fullmatch(line) is not None for _, line in lines]
+    pairs = zip(numeric, [*numeric[1:], True], strict=True)
+    first = next((i for i, pair in enumerate(pairs) if all(pair)), len(lines))
+    if first == 0 and not comment:
+        # of any delimiter as many as there are
+        mark = max("\t;,|", key=lambda m: lines[0][1].count(m))
+        mark = mark if mark in lines[0][1] else " "
+        count = len(_cells(mark, lines[0][1]))
+        return mark.join(str(i + 1) for i in range(count)), lines
+    if first == 0:
+        return comment, lines
+    head = lines[first - 1][1]
+    marks = [m for m in "\t;,|" if m in head]
+    if first > 1 and marks:
+        mark = max(marks, key=head.count)
+        names, units = (_cells(mark, lines[i][1]) for i in (first - 2, first - 1))
+        if len(names) == len(units) and all(re.fullmatch(r"([\[(].*[\])])?", u) for u in units):
+            head = mark.join(f"{n} {u}".strip() for n, u in zip(names, units, strict=True))
+    return head, lines[first:]
 
 
 def _split(delimiter: str, head: str, lines: Sequence[tuple[int, str]]) -> _Split:

@@ -23,8 +23,8 @@ TOLERANCE = 1e-8
 """Of Newton's method."""
 _NOT_OF_A_SECTION = {"length", "cap"}
 _CODE = (
-    *("fem/effects", "fem/kinematics", "fiberbend/calibration", "geometry/sections"),
-    *("geometry/winding", "materials", "materials/laws"),
+    *("fem/effects", "fem/kinematics", "fiberbend/calibration", "fiberbend/uniform"),
+    *("geometry/sections", "geometry/winding", "materials", "materials/laws"),
 )
 """Folders whose files say what a number means; of solver and march only round-off hangs on."""
 _DIGITS = 16

@@ -14,9 +14,9 @@ from fem.march.records import State
 from fiberbend.calibration import cases
 from fiberbend.calibration.reach import Reach, height
 from fiberbend.calibration.record import Calibration
-from fiberbend.calibration.solving import Reading, Small
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.uniform.small import Reading, Small
 from materials.bulging import Bulging
 
 Floats = npt.NDArray[np.float64]

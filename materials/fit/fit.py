@@ -103,8 +103,8 @@ class Fit:
         rest = [self.residuals(t) / most[t.mode.name] for t in self.tests]
         return float(np.sqrt(np.mean(np.concatenate(rest) ** 2)))
 
-    def resampled(self, source: np.random.Generator) -> Fit:
-        """The fit to another draw of the tests: the law's stresses with residuals of this noise."""
+    def resampled(self, source: np.random.Generator) -> Floats:
+        """Values fitted to another draw of the tests: the law's stresses with such residuals."""
         lengths = [len(t.stretch) for t in self.tests]
         weights = _weights(self.tests, self.weights)
         drawn = np.split(self.noise.draw(source), np.cumsum(lengths)[:-1])
@@ -112,7 +112,9 @@ class Fit:
             dataclasses.replace(t, stress=self.stress(t.mode, t.stretch) + e / w)
             for t, e, w in zip(self.tests, drawn, weights, strict=True)
         ]
-        return _fitted(self.form, tests, self.weights, self.reach, weights, [self.shape])
+        starts = [self.shape] if len(self.shape) else None
+        _, _, found = _nearest(self.form, tests, weights, self.reach, starts)
+        return np.concatenate([found.moduli, found.shape])
 
     def _split(self, values: Floats) -> tuple[Floats, Floats]:
         return values[: len(self.moduli)], values[len(self.moduli) :]
@@ -153,26 +155,31 @@ def fit_law(
     if not any(np.abs(test.stress).max() > 0 for test in ordered):
         raise ValueError("all stresses are zero")
     limit = max(reach or 1.0, *(test.greatest for test in ordered), 1.0 + 1e-6)
-    every = _weights(ordered, weights)
-    return _fitted(form, ordered, weights, limit if stable else None, every, None)
+    return _fitted(form, ordered, weights, limit if stable else None)
 
 
-def _fitted(
+def _nearest(
     form: Form,
     tests: Sequence[Measurement],
-    kind: Weights,
-    reach: float | None,
     weights: Sequence[Floats],
+    reach: float | None,
     starts: Sequence[Floats] | None,
-) -> Fit:
+) -> tuple[Problem, Found, Found]:
+    """The nearest numbers of all, and where these are not stable the nearest of the stable ones."""
     problem = Problem(form, tests, weights, None)
-    free = found = search(problem, starts)
-    if reach is not None:
-        bounded = Problem(form, tests, weights, reach)
-        # what is nearest of all, where that is stable; else what is nearest of the stable
-        answer = bounded.solve(free.shape)
-        if answer is None or len(answer.active):
-            problem, found = bounded, search(bounded, starts)
+    free = search(problem, starts)
+    if reach is None:
+        return problem, free, free
+    bounded = Problem(form, tests, weights, reach)
+    answer = bounded.solve(free.shape)
+    if answer is not None and not len(answer.active):
+        return problem, free, free
+    return bounded, free, search(bounded, starts)
+
+
+def _fitted(form: Form, tests: Sequence[Measurement], kind: Weights, reach: float | None) -> Fit:
+    weights = _weights(tests, kind)
+    problem, free, found = _nearest(form, tests, weights, reach, None)
     jacobian = np.concatenate(
         [
             w[:, None] * _slopes(form, found.moduli, found.shape, t.mode, t.stretch)

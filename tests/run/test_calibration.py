@@ -16,10 +16,10 @@ from fiberbend.calibration import calibrate as calibrating
 from fiberbend.calibration import cases, fit
 from fiberbend.calibration.calibrate import calibrate
 from fiberbend.calibration.reach import Reach, height
-from fiberbend.calibration.solving import Small
 from fiberbend.calibration.store import FOLDER, Store
 from fiberbend.reader.reader import parse_case
 from fiberbend.schema.problems import CaseError
+from fiberbend.uniform.small import Small
 from tests.conftest import MpiRun
 from tests.run.conftest import small, write_case
 

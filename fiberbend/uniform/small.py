@@ -1,4 +1,4 @@
-"""Small scenes of uniform bending, marched to the states that a calibration compares."""
+"""A small scene of uniform bending on one rank, marched to the states that are asked for."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from fem.kinematics.domain import Domain
 from fem.kinematics.uniform import CURVATURE, STRETCH
 from fem.march.hooks import AfterStep
 from fem.march.march import March
-from fem.march.records import Report, Rules, State
+from fem.march.records import Report, Rules, State, measure
 from fem.scene import Scene
 from fem.solver.bordered import SideCondition
 from fem.solver.newton import Newton, Outcome, Settings
@@ -33,7 +33,7 @@ _FIRST, _GROW = math.radians(45), 3.0
 
 @dataclasses.dataclass(frozen=True)
 class Reading:
-    """What is compared of a state.
+    """What a section and a cell have in common.
 
     Attributes:
         pressure: MPa.
@@ -65,11 +65,13 @@ class Small:
     def __init__(self, case: Case, like: Small | None = None) -> None:
         model = meshed(case)
         self._case, mesh = case, model.mesh(case) if like is None else like.scene.domain.data
-        parts = build(case, mesh, model)
+        self.parts = parts = build(case, mesh, model)
         self._held = {k: v for term in parts.effects for k, v in term.fixed_scalars().items()}
         if like is None:
             self.scene = Scene(Domain(mesh, MPI.COMM_SELF), parts.effects, model.kinematics(case))
             settings = Settings(tolerance=case.solver.tolerance)
+            for effect in case.acting:
+                settings = effect.settings(settings)
             self._newton = Newton(self.scene, MPI.COMM_SELF, settings)
         else:
             self.scene, self._newton = like.scene, like._newton
@@ -77,26 +79,48 @@ class Small:
             self.scene.predict(None)
             self.scene.hold(self._held)
         self._ramps = parts.ramps(self.scene.body.symmetry_factor)
-        self._control: Functional = model.observables(case, self.scene).control
+        self.observables = model.observables(case, self.scene)
+        self._control: Functional = self.observables.control
         turn = model.largest_turn(case)
-        rules = Rules(turn=turn, first_turn=min(turn, _FIRST), memory=model.memory, grow=_GROW)
+        rules = Rules(
+            cutbacks=case.solver.max_cutbacks,
+            turn=turn,
+            first_turn=min(turn, _FIRST),
+            memory=model.memory,
+            grow=_GROW,
+        )
+        for effect in case.acting:
+            rules = effect.rules(rules, case.straight)
         self._march = March(self.scene, self._newton, rules, control=self._control)
+
+    @property
+    def rest(self) -> State:
+        """The state at rest."""
+        return self._march.rest
 
     def march(self) -> tuple[list[State], Report]:
         """States that the case asks for by angle or pressure, in their order, and how it ended.
 
         It begins where it was made, at rest: before another that shares its scene is made.
         """
-        found: list[State] = []
-        asked = (*self._case.output.at_angles, *self._case.output.at_pressures)
+        found: dict[tuple[str, float], State] = {}
+        output, slack = self._case.output, 2 * self._case.solver.tolerance
+        asked = [("control", goal) for goal in output.at_angles]
+        asked += [(measure("value", PRESSURE), goal) for goal in output.at_pressures]
 
         def keep(state: State, _outcome: Outcome) -> None:
-            key = "value pressure" if self._case.straight else "control"
-            if any(math.isclose(state.measures[key], goal, rel_tol=_SAME) for goal in asked):
-                found.append(state)
+            for key, goal in asked:
+                near = slack if key == "control" else 0.0
+                if math.isclose(state.measures[key], goal, rel_tol=_SAME, abs_tol=near):
+                    found.setdefault((key, goal), state)
 
         report = self._march.run(self._ramps, [AfterStep(keep)])
-        return found, report
+        return [found[one] for one in asked if one in found], report
+
+    def put(self, state: State) -> None:
+        """Put the scene to a state that was found."""
+        self.scene.hold(self._held)
+        self._march.equilibrium.restore(state)
 
     def read(self, state: State) -> Reading:
         """What is compared of a state."""
@@ -153,8 +177,7 @@ class Small:
     def _back(self, state: State) -> tuple[list[str], list[SideCondition]]:
         """Put the scene to a state; the scalars that are found there, by which conditions."""
         scene = self.scene
-        scene.hold(self._held)
-        self._march.equilibrium.restore(state)
+        self.put(state)
         scene.predict(None)
         unknown = list(scene.natural)
         conditions: list[SideCondition] = [Stationary(scene, name) for name in unknown]

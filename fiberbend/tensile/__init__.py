@@ -1,0 +1,1 @@
+"""Files of tests of rubber: their columns, units and cycles."""

@@ -1,0 +1,191 @@
+"""Which column of a test is what, by its name and unit; nothing is guessed."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal
+
+from fiberbend.schema.units import factor
+
+if TYPE_CHECKING:
+    from materials.stretches import Floats
+
+Meant = Literal["engineering", "true"]
+"""What a strain or a stress is whose column does not say it."""
+Quantity = Literal["stretch", "strain", "stress"]
+_BRACKETS = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*")
+_TRUE = ("true", "cauchy", "logarithmic", "log", "hencky")
+_ENGINEERING = ("engineering", "eng", "nominal", "pk1", "1pk")
+_OTHER = ("second", "2nd", "pk2", "2pk", "green", "lagrange", "almansi", "biot")
+"""Words of measures that are not known: such columns are none of a strain or a stress."""
+_WORDS: dict[Quantity, tuple[str, ...]] = {
+    "stretch": ("stretch", "lambda", "λ"),
+    "strain": ("strain", "ε", "epsilon"),
+    "stress": ("stress", "σ", "sigma", "pk1", "1pk"),
+}
+_NO_UNIT = ("", "1", "-", "mm/mm", "m/m")
+_IMPLAUSIBLE = 20.0
+"""A strain from which on a column without a unit is rather in percent."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Column:
+    """A column that may be meant.
+
+    Attributes:
+        place: among the columns of the table.
+        name: as the file has it, with its unit.
+        what: the quantity; None: the name does not say.
+        meant: engineering or true; None: the name does not say, or it is a stretch.
+        unit: of its name; empty: none.
+    """
+
+    place: int
+    name: str
+    what: Quantity | None
+    meant: Meant | None
+    unit: str
+
+    @property
+    def rank(self) -> int:
+        """Stretches come first, then engineering strains and stresses, then true ones."""
+        return 0 if self.what == "stretch" else {"engineering": 1, "true": 2, None: 3}[self.meant]
+
+
+def strain_of(names: Sequence[str], stretch: str, strain: str, meant: Meant | None) -> Column:
+    """The column of stretches or strains.
+
+    Args:
+        names: of all columns.
+        stretch: what the user calls a column of stretches: its name, with a unit or not, or its
+            number; or empty.
+        strain: likewise of strains.
+        meant: what a strain is whose name does not say.
+
+    Raises:
+        ValueError: there is none, or more than one may be meant.
+    """
+    if stretch and strain:
+        raise ValueError("--stretch and --strain together, expected one of them")
+    if stretch:
+        return _asked(names, stretch, "stretch", meant)
+    if strain:
+        return _asked(names, strain, "strain", meant)
+    return _named(names, ("stretch", "strain"), meant)
+
+
+def stress_of(names: Sequence[str], stress: str, meant: Meant | None) -> Column:
+    """The column of stresses, likewise."""
+    if stress:
+        return _asked(names, stress, "stress", meant)
+    return _named(names, ("stress",), meant)
+
+
+def stretches(column: Column, values: Floats) -> Floats:
+    """Stretches of a column's values.
+
+    Raises:
+        ValueError: its unit is none of a strain, or values that are no stretches.
+    """
+    import numpy as np
+
+    if column.unit == "%":
+        values = values / 100
+    elif column.unit not in _NO_UNIT:
+        raise ValueError(f"{column.name!r} in {column.unit!r}, expected % or a pure number")
+    elif not column.unit and column.what == "strain" and np.abs(values).max() > _IMPLAUSIBLE:
+        raise ValueError(
+            f"{column.name!r} goes to {values.max():g} and has no unit, expected [%] or [1]"
+        )
+    if column.what == "stretch":
+        found = values
+    else:
+        found = np.exp(values) if column.meant == "true" else 1 + values
+    if not (found > 0).all():
+        raise ValueError(f"{column.name!r}: stretch {found.min():g}, expected numbers above zero")
+    return np.asarray(found, dtype=float)
+
+
+def stresses(column: Column, values: Floats, stretch: Floats) -> Floats:
+    """Nominal stresses in MPa of a column's values, at these stretches.
+
+    Raises:
+        ValueError: no unit, or one of no stress.
+    """
+    if not column.unit:
+        raise ValueError(f"{column.name!r} has no unit, expected one such as [MPa] or [kPa]")
+    try:
+        scale = factor(column.unit, "modulus")
+    except ValueError as error:
+        raise ValueError(f"{column.name!r}: {error}") from None
+    return values * scale / stretch if column.meant == "true" else values * scale
+
+
+def _asked(names: Sequence[str], asked: str, what: Quantity, meant: Meant | None) -> Column:
+    """The column that a user names, by its name or its number, with or without a unit."""
+    bare, unit = _apart(asked)
+    for wanted, own in ((asked, ""), (bare, unit)):
+        for i, name in enumerate(names):
+            if wanted.casefold() in (name.casefold(), _apart(name)[0].casefold(), str(i + 1)):
+                column = _read(i, name)
+                if column.what not in (None, what):
+                    raise ValueError(f"{name!r} is a {column.what}, found under --{what}")
+                column = dataclasses.replace(column, what=what, unit=own or column.unit)
+                return _settled(column, meant)
+    raise ValueError(f"no column {asked!r}, found {_listed(names)}")
+
+
+def _named(names: Sequence[str], kinds: Sequence[Quantity], meant: Meant | None) -> Column:
+    """The column whose name says that it is of a kind."""
+    there = [c for c in (_read(i, name) for i, name in enumerate(names)) if c.what in kinds]
+    if not there:
+        options = " or ".join(f"--{kind} COLUMN" for kind in kinds)
+        raise ValueError(
+            f"no column of {' or '.join(kinds)}, found {_listed(names)}, expected {options}"
+        )
+    best = [column for column in there if column.rank == min(c.rank for c in there)]
+    if len(best) > 1:
+        text = " or ".join(repr(column.name) for column in best)
+        raise ValueError(f"{text}, expected --{best[0].what} with one of them")
+    return _settled(best[0], meant)
+
+
+def _settled(column: Column, meant: Meant | None) -> Column:
+    """The column with what it is meant to be.
+
+    Raises:
+        ValueError: nobody says it.
+    """
+    if column.what != "stretch" and (column.meant or meant) is None:
+        raise ValueError(
+            f"{column.name!r} is an engineering or a true {column.what}, expected --as engineering "
+            "or --as true"
+        )
+    return dataclasses.replace(column, meant=column.meant or meant)
+
+
+def _listed(names: Sequence[str]) -> str:
+    more = f" and {len(names) - 8} more" if len(names) > 8 else ""
+    return ", ".join(map(repr, names[:8])) + more
+
+
+def _read(place: int, name: str) -> Column:
+    bare, unit = _apart(name)
+    words = set(re.sub(r"[^\w]+|_", " ", bare.casefold()).split())
+    meant: Meant | None = "engineering" if words & set(_ENGINEERING) else None
+    meant = "true" if words & set(_TRUE) else meant
+    what = next((kind for kind, known in _WORDS.items() if words & set(known)), None)
+    if words & set(_OTHER):
+        what = None
+    return Column(place, name, what, meant, unit)
+
+
+def _apart(name: str) -> tuple[str, str]:
+    """A name and its unit: in brackets, or behind a mark as in stress_MPa or stress / MPa."""
+    match = _BRACKETS.fullmatch(name)
+    if match:
+        return match[1].strip(), match[2].strip()
+    match = re.fullmatch(r"(.+?)\s*[_/,\s]\s*(%|[kMG]?Pa|psi|bar|N/mm\^?2|N/mm²)", name)
+    return (match[1].strip(), match[2]) if match else (name.strip(), "")

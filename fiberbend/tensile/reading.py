@@ -1,0 +1,132 @@
+"""A test of rubber from a file: the points of a loading within a range, as nominal stresses."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.tensile.columns import Meant, strain_of, stress_of, stresses, stretches
+
+if TYPE_CHECKING:
+    from materials.fit.modes import Measurement
+
+ModeName = Literal["uniaxial", "pure-shear", "equibiaxial"]
+_LIMIT = re.compile(r"(stretch|strain)\s+([+-]?[\d.]+(?:[eE][+-]?\d+)?)\s*(%?)")
+
+
+@dataclasses.dataclass(frozen=True)
+class Wanted:
+    """What is read of a file.
+
+    Attributes:
+        stretch: column of stretches, by name or number, with or without a unit in brackets; empty:
+            the one whose name says it.
+        strain: column of strains, likewise; one of both at most.
+        stress: column of stresses, likewise.
+        meant: what a strain or a stress is whose name does not say; None: such names are refused.
+        cycle: which loading, from 1 on; 0: all rows.
+        least: least stretch, or None.
+        most: greatest of all principal stretches, or None.
+        delimiter: a key of `analytic.table.DELIMITERS`, or None: found.
+        decimal: "." or ",", or None: found.
+    """
+
+    stretch: str = ""
+    strain: str = ""
+    stress: str = ""
+    meant: Meant | None = None
+    cycle: int = 1
+    least: float | None = None
+    most: float | None = None
+    delimiter: str | None = None
+    decimal: str | None = None
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Read:
+    """A test that was read.
+
+    Attributes:
+        measurement: its points.
+        said: what was read, in one line.
+    """
+
+    measurement: Measurement
+    said: str
+
+
+def read_test(path: Path, mode: ModeName = "uniaxial", wanted: Wanted | None = None) -> Read:
+    """Read a test of rubber.
+
+    Args:
+        path: a file of columns; lines above the names of the columns are passed over.
+        mode: how the specimen was loaded.
+        wanted: what to read of it.
+
+    Raises:
+        CaseError: the file cannot be read, or what it says is not clear; one line.
+    """
+    try:
+        return _read(path, mode, wanted or Wanted())
+    except OSError as error:
+        raise CaseError([Problem(str(path), f"{error.strerror}, expected a file")]) from None
+    except ValueError as error:
+        text = str(error).removeprefix(path.name).removeprefix(":").strip(" ,")
+        raise CaseError([Problem(str(path), text)]) from None
+
+
+def limit(text: str) -> float:
+    """A stretch from what a user calls a limit, such as "stretch 1.5" or "strain 50 %".
+
+    Raises:
+        ValueError: it is none.
+    """
+    match = _LIMIT.fullmatch(text.strip())
+    if match is None:
+        raise ValueError('expected a limit such as "stretch 1.5" or "strain 50 %"')
+    kind, number, percent = match.groups()
+    try:
+        value = float(number) / (100 if percent else 1)
+    except ValueError:
+        raise ValueError('expected a limit such as "stretch 1.5" or "strain 50 %"') from None
+    value = value if kind == "stretch" else 1 + value
+    if not 0 < value < 100:
+        raise ValueError(f"stretch {value:g}, expected a number above zero and below 100")
+    return value
+
+
+def _read(path: Path, mode: ModeName, wanted: Wanted) -> Read:
+    import numpy as np
+
+    from analytic.table import read_table
+    from fiberbend.tensile.cycles import loading
+    from materials.fit.modes import MODES, Measurement
+
+    table = read_table(path, wanted.delimiter, wanted.decimal, preface=True)
+    strain = strain_of(table.columns, wanted.stretch, wanted.strain, wanted.meant)
+    stress = stress_of(table.columns, wanted.stress, wanted.meant)
+    numbers = np.array(table.values([strain.place, stress.place]))
+    stretch = stretches(strain, numbers[:, 0])
+    nominal = stresses(stress, numbers[:, 1], stretch)
+    if wanted.cycle:
+        rows = loading(stretch, wanted.cycle)
+        stretch, nominal = stretch[rows], nominal[rows]
+    kind = MODES[mode]
+    inside = np.ones(len(stretch), dtype=bool)
+    if wanted.most is not None:
+        greatest = np.max(kind.stretches(stretch), axis=0)
+        inside &= greatest <= wanted.most * (1 + 1e-12)
+    if wanted.least is not None:
+        inside &= stretch >= wanted.least * (1 - 1e-12)
+    if not inside.any():
+        raise ValueError("no points in the range asked for")
+    measurement = Measurement(kind, stretch[inside], nominal[inside], path.name)
+    said = (
+        f"{path.name}: {mode}, {inside.sum()} of {len(numbers)} points, stretch "
+        f"{measurement.stretch.min():.4g} to {measurement.stretch.max():.4g}, from "
+        f"{strain.name!r} and {stress.name!r}"
+    )
+    return Read(measurement, said)

@@ -1,0 +1,1 @@
+"""Cases of uniform bending solved in this process, many of them, without a run folder."""

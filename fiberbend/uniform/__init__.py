@@ -1,0 +1,1 @@
+"""Scenes of uniform bending in this process: small, marched quickly, used again."""

@@ -1,0 +1,117 @@
+"""A trial gives what a run of the same case gives."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from fiberbend import columns as col
+from fiberbend.columns import Row
+from fiberbend.schema.problems import CaseError
+from fiberbend.trial.solve import solve
+from fiberbend.trial.wanted import Point, Wanted
+from tests.trial.cases import Data, checked, radians, run, shipped, under, wound
+
+FAMILIES = [
+    {"angle_from_axis": "60 deg", "hand": "left", "starts": 6},
+    {"angle_from_axis": "75 deg", "hand": "right", "starts": 4},
+]
+"""Threads that are not balanced: what they wind twists, and bends to the side."""
+
+BENT: dict[str, Data] = {
+    "hemicircle": shipped("section"),
+    "cell": shipped("cell"),
+    "circle": shipped("circle"),
+    "rectangle": shipped("rectangle"),
+    "single helix": shipped("single_helix"),
+    "families": wound(shipped("circle"), families=FAMILIES, fiber="kevlar"),
+    "calibrated": wound(
+        shipped("section"),
+        **{"pattern": "double-helix", "pitch": "3 mm", "fiber": "kevlar", "as": "calibrated"},
+        bulging={"stiffness": "0.6 MPa/mm", "linear": 1.0, "quadratic": 5.0},
+    ),
+}
+
+
+def agree(point: Point, row: Row, rel: float = 1e-9) -> None:
+    """A point is a row of a history."""
+    zero = 1e-3 * rel
+    told = {
+        col.PRESSURE: 1e3 * point.pressure,
+        col.ANGLE: math.degrees(point.angle),
+        col.SIDE_ANGLE: math.degrees(point.side_angle),
+        col.TWIST: math.degrees(point.twist),
+        col.AXIS_STRETCH: point.stretch,
+        col.VOLUME: point.volume,
+        col.STORED: point.work,
+        col.FIBER_MIN: point.fiber_low,
+        col.FIBER_MAX: point.fiber_high,
+        col.TIP_FORCE: point.tip_force,
+        col.MOMENT: point.moment,
+    }
+    for name, value in told.items():
+        size = point.fiber_high if name == col.FIBER_MIN else 1.0
+        assert value == pytest.approx(row.get(name, 0.0), rel=rel, abs=rel * size + zero), name
+
+
+def nearest(rows: Sequence[Row], column: str, value: float) -> Row:
+    """The row whose value of a column is nearest."""
+    return min(rows, key=lambda row: abs(row[column] - value))
+
+
+@pytest.mark.parametrize("name", BENT)
+def test_bent_to_angles(name: str) -> None:
+    data = under(BENT[name], angle="100 deg")
+    answer = solve(checked(data), Wanted(angles=radians(100, 40)))
+    assert answer.converged, answer.reason
+    assert [point.angle for point in answer.free] == pytest.approx(radians(100, 40), rel=1e-9)
+    result = run(data, at_angles=["40 deg", "100 deg"])
+    assert result.status == "converged", result.reason
+    for point in answer.free:
+        agree(point, nearest(result.rows, col.ANGLE, math.degrees(point.angle)))
+        rest = result.rows[0][col.VOLUME]
+        assert point.volume_at_rest == pytest.approx(rest, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["hemicircle", "cell", "families"])
+def test_under_pressures_and_kept_straight(name: str) -> None:
+    data = under(BENT[name], to="60 kPa")
+    answer = solve(checked(data), Wanted(pressures=(0.03, 0.06), straight=(0.06,)))
+    rows = run(data, at_pressures=["30 kPa", "60 kPa"]).rows
+    for point in answer.free:
+        agree(point, nearest(rows, col.PRESSURE, 1e3 * point.pressure))
+    if name == "families":
+        assert not answer.converged
+        assert "hand" in answer.reason
+        assert answer.straight == ()
+        return
+    assert answer.converged, answer.reason
+    kept = run(under(data, {"straight": {}}, to="60 kPa")).rows
+    agree(answer.straight[0], kept[-1])
+    assert answer.straight[0].moment > 0
+
+
+def test_strain_is_that_of_run_json(tmp_path: Path) -> None:
+    data = under(BENT["hemicircle"], angle="100 deg")
+    (point,) = solve(checked(data), Wanted(angles=radians(100))).free
+    found = run(data, states=tmp_path).run["greatest_strain"]["logarithmic"]
+    assert point.strain == pytest.approx(found, rel=1e-9)
+
+
+def test_a_body_is_refused() -> None:
+    data = under(BENT["hemicircle"], to="60 kPa") | {"model": "body", "mesh": {}}
+    with pytest.raises(CaseError, match="expected section or cell"):
+        solve(checked(data), Wanted(angles=(1.0,)))
+
+
+def test_what_is_beyond_reach_is_said() -> None:
+    """Its rubber is at its limiting stretch before."""
+    data = under(BENT["hemicircle"], angle="100 deg")
+    data["materials"] = data["materials"] | {"wall": {"law": "gent", "mu": "0.3 MPa", "jm": 0.3}}
+    answer = solve(checked(data), Wanted(angles=radians(40, 4000)))
+    assert not answer.converged
+    assert answer.reason
+    assert [point.angle for point in answer.free] == pytest.approx(radians(40), rel=1e-9)
