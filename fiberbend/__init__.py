@@ -28,6 +28,7 @@ _PLACES = {
     "plan": "fiberbend.api.calls",
     "validate": "fiberbend.api.calls",
     "sweep": "fiberbend.api.calls",
+    "materials": "fiberbend.api.materials",
     "Case": "fiberbend.case.case",
     "CaseError": "fiberbend.schema.problems",
     "Result": "fiberbend.api.result",
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
     from fiberbend.api.calls import run as run
     from fiberbend.api.calls import sweep as sweep
     from fiberbend.api.calls import validate as validate
+    from fiberbend.api.materials import materials as materials
     from fiberbend.api.result import Result as Result
     from fiberbend.api.sweep import Sweep as Sweep
     from fiberbend.case.case import Case as Case
@@ -59,6 +61,7 @@ __all__ = [
     "Sweep",
     "__version__",
     "load",
+    "materials",
     "plan",
     "run",
     "sweep",

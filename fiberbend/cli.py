@@ -62,6 +62,13 @@ app.command(
 )
 
 app.command(
+    "fiberbend.commands.materials:materials",
+    name="materials",
+    help="List named rubbers, threads, fabrics and papers, each with its source.",
+    help_epilogue=EXAMPLES["materials"],
+)
+
+app.command(
     "fiberbend.commands.show:show",
     name="show",
     help="Draw the actuator of a case at rest, with its dimensions; nothing is solved.",

@@ -12,8 +12,10 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from fiberbend.effects.table import EFFECTS
 from fiberbend.reader.yaml_file import read_yaml
 from fiberbend.schema.problems import CaseError, Problem, found
+from fiberbend.schema.units import parse
 
 _ENDINGS = (".yaml", ".yml")
 _PARTS = ("wall", "floor", "sheath", "layer")
@@ -118,10 +120,11 @@ def inlined(data: Mapping[str, Any]) -> Inlined:
     whole = copy.deepcopy(dict(data))
     files: dict[str, tuple[str, Mapping[str, int]]] = {}
     problems: list[Problem] = []
+    weighs = _weighs(whole)
     for place in list(places(whole)):
         try:
             if _names_file(place.value):
-                files |= _write(place)
+                files |= _write(place, weighs)
             if isinstance(place.value, dict) and place.value.get("data") is not None:
                 place.holder[place.key] = _fitted(place.value, place.path)
         except CaseError as error:
@@ -190,8 +193,19 @@ def _root_tests(value: dict[str, Any], folder: Path) -> None:
                 data[way] = str(folder.resolve() / file)
 
 
-def _write(place: Place) -> dict[str, tuple[str, Mapping[str, int]]]:
+def _weighs(data: Mapping[str, Any]) -> bool:
+    """Whether an effect of a case needs densities."""
+    names = {name for name, effect in EFFECTS.items() if effect.needs_density}
+    entries = (e for e in _list(data.get("effects")) if isinstance(e, dict))
+    return any(not names.isdisjoint(entry) for entry in entries)
+
+
+def _write(place: Place, weighs: bool) -> dict[str, tuple[str, Mapping[str, int]]]:
     """Write what a file says in the place of its name.
+
+    Args:
+        place: that names it.
+        weighs: densities count.
 
     Returns:
         As `Inlined.files`.
@@ -215,6 +229,9 @@ def _write(place: Place) -> dict[str, tuple[str, Mapping[str, int]]]:
         text = f"{path.name}: {found(said['name'])}, expected no file within a file"
         raise CaseError([Problem(place.path, text)])
     _root_tests(said, path.parent)
+    if not weighs and not _refused(said.get("density")):
+        # a rubber has its density also where nothing weighs it
+        said.pop("density", None)
     known = said.get("source")
     said["source"] = f"{path.name}: {known}" if isinstance(known, str) else path.name
     if place.written:
@@ -231,6 +248,14 @@ def _write(place: Place) -> dict[str, tuple[str, Mapping[str, int]]]:
         return files
     place.holder[place.key] = said
     return {place.path: (path.name, content.lines)}
+
+
+def _refused(density: Any) -> bool:
+    """Whether a density is none."""
+    try:
+        return parse(density, "density") < 0
+    except ValueError:
+        return True
 
 
 def _fitted(value: dict[str, Any], path: str) -> dict[str, Any]:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import dataclasses
 import math
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 from materials.fiber import Fiber
+from materials.laws.table import LAWS
 from materials.material import Material
 
 Kind = Literal["rubber", "thread", "fabric", "paper"]
-KINDS: tuple[Kind, ...] = ("rubber", "thread", "fabric", "paper")
 DATA = Path(__file__).resolve().parent.parent / "data"
 """Tests that come with the program."""
 
@@ -117,9 +117,9 @@ class Entry:
         raise NotImplementedError
 
     @property
-    def numbers(self) -> dict[str, Any]:
-        """What a case would say in place of the name, numbers in MPa and mm."""
-        raise NotImplementedError
+    def licence(self) -> str:
+        """Of the numbers, or of the tests that they are fitted to."""
+        return self.source.licence
 
     @property
     def says(self) -> str:
@@ -168,9 +168,10 @@ class Rubber(Entry):
         return 3 * self.material.initial_shear_modulus
 
     @property
-    def numbers(self) -> dict[str, Any]:
-        """The law with its coefficients."""
-        return {"law": self.law, **self.coefficients}
+    def units(self) -> dict[str, str]:
+        """What stands behind each number, " MPa" or nothing."""
+        parameters = LAWS[self.law].parameters
+        return {p.name: "" if p.unit == "1" else f" {p.unit}" for p in parameters}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -200,12 +201,6 @@ class Thread(Entry):
     def stiffness(self) -> float:
         """That of what carries."""
         return self.modulus
-
-    @property
-    def numbers(self) -> dict[str, Any]:
-        """Modulus, diameter and the part that carries."""
-        known = {"modulus": self.modulus, "diameter": self.diameter}
-        return {**known, "radius_factor": self.radius_factor}
 
     def fiber(self, diameter: float | None = None) -> Fiber:
         """As the program takes it.
@@ -251,11 +246,6 @@ class Sheet(Entry):
     def stiffness(self) -> float:
         """Along it."""
         return self.modulus
-
-    @property
-    def numbers(self) -> dict[str, Any]:
-        """Modulus and thickness."""
-        return {"modulus": self.modulus, "thickness": self.thickness}
 
     @property
     def material(self) -> Material:
