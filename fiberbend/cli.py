@@ -90,6 +90,13 @@ app.command(
 )
 
 app.command(
+    "fiberbend.commands.fit:fit",
+    name="fit",
+    help="Fit laws of rubber to tests, with errors, stability and what they do to P(θ).",
+    help_epilogue=EXAMPLES["fit"],
+)
+
+app.command(
     "fiberbend.commands.report:report",
     name="report",
     help="Write report.html of a run or a sweep again.",

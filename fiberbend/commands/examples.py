@@ -43,6 +43,13 @@ EXAMPLES = {
   fiberbend accuracy cases/free_bending.yaml --within 30s
   fiberbend accuracy cases/section.yaml --only section --only cell
 """,
+    "fit": """Examples:
+  fiberbend fit dragon-skin-30 --upto "stretch 2"
+  fiberbend fit tensile.csv --law yeoh-2,ogden-1 --as engineering --out my-rubber.yaml
+  fiberbend fit tensile.csv --strain 1 --stress "2 [kPa]" --as true --cycle 3
+  fiberbend fit --uniaxial a.csv --pure-shear b.csv --equibiaxial c.csv --law ogden
+  fiberbend fit dragon-skin-30 --upto "stretch 2" --case cases/section.yaml --part wall
+""",
     "report": """Examples:
   fiberbend report runs/section --open
   fiberbend report runs/section --out section.html

@@ -103,6 +103,19 @@ class Fit:
         rest = [self.residuals(t) / most[t.mode.name] for t in self.tests]
         return float(np.sqrt(np.mean(np.concatenate(rest) ** 2)))
 
+    @property
+    def criterion(self) -> float:
+        """Akaike's, corrected for few points, of correlated residuals; less is better.
+
+        It compares laws fitted to the same tests: what a parameter gains against what it costs.
+        """
+        points = sum(len(test.stretch) for test in self.tests)
+        modes = len({test.mode.name for test in self.tests})
+        # φ and the variance of each mode are fitted too
+        count = len(self.values) + 1 + modes
+        few = 2 * count * (count + 1) / (points - count - 1) if points > count + 1 else np.inf
+        return float(self.noise.deviance + 2 * count + few)
+
     def resampled(self, source: np.random.Generator) -> Floats:
         """Values fitted to another draw of the tests: the law's stresses with such residuals."""
         lengths = [len(t.stretch) for t in self.tests]

@@ -37,6 +37,8 @@ class Noise:
         factors: of each what standard deviations are multiplied with, (m,).
         size: root mean square of the residuals of a point's mode, (n,).
         lengths: points of each test.
+        deviance: −2 log of the greatest likelihood of the residuals but for a constant, with φ and
+            the variances as they are most likely.
     """
 
     correlations: Floats
@@ -44,6 +46,7 @@ class Noise:
     factors: Floats
     size: Floats
     lengths: tuple[int, ...]
+    deviance: float
 
     @property
     def correlation(self) -> float:
@@ -97,6 +100,7 @@ def noise_of(
     rank = int(np.linalg.matrix_rank(free))
     freedom = max(len(rest) - rank, 1)
     likely, factors = np.empty(len(_CORRELATIONS)), np.empty(len(_CORRELATIONS))
+    deviance = np.inf
     for i, phi in enumerate(_CORRELATIONS):
         white = np.concatenate([_whitened(part, phi) for part in _parts(rest[:, None], lengths)])
         seen = np.concatenate([_whitened(part, phi) for part in _parts(free, lengths)])
@@ -105,10 +109,13 @@ def noise_of(
         variance = max(float(left @ left) / freedom, 1e-300)
         bent = 2 * float(np.log(np.maximum(values[:rank], 1e-300)).sum())
         points = sum(n - 1 for n in lengths) * np.log1p(-(phi**2))
+        plain = max(float(np.mean(white**2)), 1e-300)
+        deviance = min(deviance, points + len(rest) * np.log(plain) + 2 * np.log(size).sum())
         likely[i] = -(points + bent + freedom * np.log(variance)) / 2
         factors[i] = np.sqrt(variance) * stdtrit(freedom, 0.975) / NORMAL
     chances = np.exp(likely - likely.max()) * (1 - _CORRELATIONS**2)
-    return Noise(_CORRELATIONS, chances / chances.sum(), factors, size, tuple(lengths))
+    chances = chances / chances.sum()
+    return Noise(_CORRELATIONS, chances, factors, size, tuple(lengths), float(deviance))
 
 
 def _parts(values: Floats, lengths: Sequence[int]) -> list[Floats]:

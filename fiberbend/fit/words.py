@@ -1,0 +1,156 @@
+"""Fits in words and tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from materials.fit.drucker import MOST
+from materials.fit.modes import MODES
+
+if TYPE_CHECKING:
+    from fiberbend.fit.comparison import Comparison
+    from materials.fit.fit import Fit
+
+_SMALL = 0.1
+"""MPa below which moduli are shown in kPa."""
+
+
+def lines(found: Comparison) -> Iterator[str]:
+    """What was read, the laws beside each other, what has to be said of them, and other modes."""
+    for read in found.reads:
+        yield read.said
+    yield ""
+    yield from aligned(
+        ("law", "rms error", "AIC", "stable to stretch", "parameters"),
+        [summary(fit, found) for fit in found.fits],
+    )
+    remarks = list(remarks_of(found))
+    if remarks:
+        yield ""
+        yield from remarks
+    yield ""
+    yield f"stress in kPa at stretch {found.reach:.4g}, ± its standard error; * mode not measured"
+    heads, rows = modes(found)
+    yield from aligned(heads, rows)
+
+
+def summary(fit: Fit, found: Comparison) -> tuple[str, ...]:
+    """A law as a row: name, error, criterion above the least one, stability, parameters."""
+    least = min(other.criterion for other in found.fits)
+    above = fit.criterion - least
+    stable = fit.stability
+    reach = f"{MOST:g} and more" if stable.across is None else f"{stable.stretch:.3g}"
+    return (
+        fit.form.name,
+        percent(fit.rms),
+        f"+{above:.1f}" if math.isfinite(above) else "too few points",
+        f"{reach}{', ' * bool(stable.where)}{stable.where}",
+        parameters(fit),
+    )
+
+
+def parameters(fit: Fit) -> str:
+    """Parameters with their errors and units."""
+    units = {p.name: p.unit for p in fit.form.parameters}
+    texts = []
+    for name, value in fit.parameters.items():
+        error, scale, unit = fit.errors[name], 1.0, ""
+        if units[name] == "MPa":
+            kilo = max(abs(v) for v in fit.moduli) < _SMALL
+            scale, unit = (1e3, " kPa") if kilo else (1.0, " MPa")
+        texts.append(f"{name} {with_error(scale * value, scale * error)}{unit}")
+    return ", ".join(texts)
+
+
+def with_error(value: float, error: float) -> str:
+    """A value with as many digits as its error says, of two digits: 90.4 ± 2.5."""
+    if not math.isfinite(error) or error > 100 * abs(value):
+        return f"{value:.3g} (not settled)"
+    if error <= 1e-9 * abs(value):
+        return f"{value:.6g}"
+    digits = max(0, 1 - math.floor(math.log10(error)))
+    return f"{value:.{digits}f} ± {error:.{digits}f}"
+
+
+def remarks_of(found: Comparison) -> Iterator[str]:
+    """What has to be said of the fits, a line each."""
+    for fit in found.fits:
+        name = fit.form.name
+        if fit.held:
+            free = fit.rms * fit.free_rms
+            yield (
+                f"{name}: held back so that it is stable up to stretch {fit.reach:.4g}; what fits "
+                f"best is not, with an rms error of about {percent(free)}"
+            )
+        if fit.reach is None and fit.stability.stretch < found.reach:
+            yield (
+                f"{name}: not stable beyond stretch {fit.stability.stretch:.3g} "
+                f"({fit.stability.where}), within its tests: a run there may fail"
+            )
+        if fit.unsettled:
+            what = ", ".join(fit.unsettled)
+            yield f"{name}: the tests do not settle {what}; a law with less terms says as much"
+    for text in found.left_out:
+        yield f"left out: {text}"
+    if len(found.measured) == 1:
+        yield f"only {found.measured[0]} was measured: below is how far laws differ in other modes"
+
+
+def modes(found: Comparison) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Names and rows of the stresses at the greatest stretch in every mode, by laws."""
+    heads = ["law", *(m if m in found.measured else f"{m} *" for m in MODES)]
+    stretch, rows, columns = np.array([found.reach]), [], []
+    for fit in found.fits:
+        row = [fit.form.name]
+        values = []
+        for mode in MODES.values():
+            stress = 1e3 * float(fit.stress(mode, stretch)[0])
+            error = 1e3 * float(fit.stress_error(mode, stretch)[0])
+            beyond = not math.isfinite(stress)
+            row.append("beyond its limit" if beyond else with_error(stress, error))
+            values.append(stress)
+        rows.append(tuple(row))
+        if not fit.unsettled:
+            columns.append(values)
+    if len(columns) > 1:
+        rows.append(("greatest over least", *(_ratio(column) for column in np.array(columns).T)))
+    return tuple(heads), rows
+
+
+def percent(part: float) -> str:
+    """A part in percent with two digits."""
+    return f"{100 * part:#.2g}".rstrip(".") + " %"
+
+
+def case_lines(fit: Fit, part: str, file: Path) -> Iterator[str]:
+    """Lines of a case, each of which has the law with its numbers."""
+    yield f"  {part}: {file.name}"
+    yield f"  {part}: {{law: {fit.form.law.name}, {', '.join(coefficients(fit))}}}"
+
+
+def coefficients(fit: Fit) -> list[str]:
+    """The law's parameters as a case has them, "c1: 0.0904 MPa"."""
+    units = {p.name: p.unit for p in fit.form.parameters}
+    return [
+        f"{name}: {value:.6g}{' MPa' if units[name] == 'MPa' else ''}"
+        for name, value in fit.parameters.items()
+    ]
+
+
+def _ratio(values: Sequence[float]) -> str:
+    there = [v for v in values if math.isfinite(v)]
+    if len(there) < 2 or min(there) <= 0:
+        return "-"
+    return f"{max(there) / min(there):.2f}"
+
+
+def aligned(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]:
+    """Columns under their names; the last one ends where it ends."""
+    widths = [max(len(row[i]) for row in [heads, *rows]) for i in range(len(heads))]
+    for row in [heads, *rows]:
+        yield "  ".join(text.ljust(w) for text, w in zip(row, widths, strict=True)).rstrip()
