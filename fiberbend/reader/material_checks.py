@@ -20,7 +20,8 @@ def material_problems(path: str, material: MaterialSpec) -> Iterator[Problem]:
     from materials.named.table import SOLIDS, hint
 
     given = material.coefficients
-    own = {"law": material.law, "young": material.young, "poisson": material.poisson, **given}
+    own: dict[str, object] = {"law": material.law, "young": material.young, **given}
+    own["poisson"] = material.poisson
     if material.name is not None:
         if material.name not in SOLIDS:
             wanted = f"expected {hint(material.name, SOLIDS)}, or a law"

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fiberbend.case.materials import MaterialSpec, TestFiles
 from fiberbend.schema.paths import keys
 from fiberbend.schema.problems import CaseError, Problem, found
 from fiberbend.schema.units import show
 from materials.laws.table import LAWS
+
+if TYPE_CHECKING:
+    from fiberbend.tensile.reading import ModeName
 
 _WAYS = tuple(keys(TestFiles))
 _FITTED = ("data", "law", "upto")
@@ -39,7 +42,7 @@ def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
     except ValueError as error:
         raise CaseError([Problem(f"{path}.upto", f"{found(upto)}, {error}")]) from None
     data = value["data"]
-    files = {"uniaxial": data} if isinstance(data, str) else data
+    files: dict[ModeName, str] = {"uniaxial": data} if isinstance(data, str) else data
     tests = []
     for way, file in files.items():
         try:

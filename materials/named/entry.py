@@ -12,6 +12,8 @@ from materials.laws.table import LAWS
 from materials.material import Material
 
 Kind = Literal["rubber", "thread", "fabric", "paper"]
+Way = Literal["uniaxial", "pure-shear", "equibiaxial"]
+"""To load a specimen; the keys of `materials.fit.modes.MODES`."""
 DATA = Path(__file__).resolve().parent.parent / "data"
 """Tests that come with the program."""
 
@@ -50,20 +52,19 @@ class Fitted:
     """Which tests coefficients are fitted to, so that they can be fitted again.
 
     Attributes:
-        tests: the way in which a specimen is loaded, a key of `materials.fit.modes.MODES`, and the
-            file of the test, of every test.
+        tests: how the specimen was loaded, and the file, of every test.
         law: a law, or a law with the number of its terms, "yeoh-2".
         upto: greatest stretch that the fit sees.
         rms: root mean square of what it misses, over the greatest stress.
     """
 
-    tests: tuple[tuple[str, str], ...]
+    tests: tuple[tuple[Way, str], ...]
     law: str
     upto: float
     rms: float
 
     @property
-    def shipped(self) -> tuple[tuple[str, Path], ...] | None:
+    def shipped(self) -> tuple[tuple[Way, Path], ...] | None:
         """Way and path of every test that comes with the program; None where one does not."""
         paths = [(way, DATA / file.lower().replace(" ", "-")) for way, file in self.tests]
         return tuple(paths) if all(path.exists() for _, path in paths) else None

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from materials.named.entry import Fitted, Rubber, Source
+from materials.named.entry import Fitted, Rubber, Source, Way
 
 DATABASE = Source(
     "fitted to tests of Marechal et al. 2021, Soft Robotics 8(3), first loading",
@@ -79,7 +79,7 @@ def _classic(
         rms: of the fit, over the greatest stress of each way.
         stretches: least and greatest stretch.
     """
-    ways = ("uniaxial", "pure-shear", "equibiaxial")
+    ways: tuple[Way, ...] = ("uniaxial", "pure-shear", "equibiaxial")
     return Rubber(
         name=name,
         product=product,
@@ -226,8 +226,8 @@ TENSILE = (
         "RTV615.csv",
         "yeoh",
         {"c1": 0.1636, "c2": 0.01366, "c3": 0.0009626},
-        0.0019,
-        stretch=2.93,
+        0.0017,
+        stretch=2.91,
     ),
     _tension(
         "soloplast-150318",
