@@ -29,6 +29,7 @@ _PLACES = {
     "validate": "fiberbend.api.calls",
     "sweep": "fiberbend.api.calls",
     "materials": "fiberbend.api.materials",
+    "fit": "fiberbend.api.fitting",
     "Case": "fiberbend.case.case",
     "CaseError": "fiberbend.schema.problems",
     "Result": "fiberbend.api.result",
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
     from fiberbend.api.calls import run as run
     from fiberbend.api.calls import sweep as sweep
     from fiberbend.api.calls import validate as validate
+    from fiberbend.api.fitting import fit as fit
     from fiberbend.api.materials import materials as materials
     from fiberbend.api.result import Result as Result
     from fiberbend.api.sweep import Sweep as Sweep
@@ -60,6 +62,7 @@ __all__ = [
     "Style",
     "Sweep",
     "__version__",
+    "fit",
     "load",
     "materials",
     "plan",
@@ -70,7 +73,7 @@ __all__ = [
 
 
 class _Package(type(sys)):  # type: ignore[misc]
-    """This module, in which the folders plan/ and sweep/ do not hide the functions."""
+    """This module, in which the folders fit/, plan/ and sweep/ hide no functions."""
 
     def __setattr__(self, name: str, value: object) -> None:
         if not (name in __all__ and isinstance(value, type(sys))):

@@ -11,9 +11,11 @@ from fiberbend.running.launch import say, settle_folders
 from fiberbend.schema.problems import CaseError, Problem
 
 if TYPE_CHECKING:
+    from fiberbend.case.case import Case
     from fiberbend.fit.comparison import Asked, Comparison
     from fiberbend.tensile.reading import ModeName
 
+ModeOption = Literal["uniaxial", "pure-shear", "equibiaxial"]
 _FILES = Parameter(consume_multiple=False, metavar="CSV")
 _LAW = (
     "Law, with all its terms or with a number of them such as yeoh-2; several between commas or "
@@ -37,12 +39,16 @@ def fit(
     meant: Annotated[
         Literal["engineering", "true"] | None, Parameter(name="--as", help=_AS)
     ] = None,
+    gauge: Annotated[str, Parameter(metavar="LENGTH")] = "",
+    width: Annotated[str, Parameter(metavar="LENGTH")] = "",
+    thickness: Annotated[str, Parameter(metavar="LENGTH")] = "",
     cycle: Annotated[int, Parameter(metavar="N", help=_CYCLE)] = 1,
     since: Annotated[str, Parameter(name="--from", metavar="LIMIT")] = "",
     upto: Annotated[str, Parameter(metavar="LIMIT", help=_UPTO)] = "",
     decimal: Annotated[Literal[".", ","] | None, Parameter(metavar="MARK")] = None,
     weights: Literal["plain", "relative"] = "plain",
     unstable: bool = False,
+    only: Annotated[tuple[ModeOption, ...], Parameter(consume_multiple=False)] = (),
     density: str = "",
     case: Annotated[Path | None, Parameter(metavar="CASE")] = None,
     part: str = "wall",
@@ -67,11 +73,15 @@ def fit(
         strain: Column of strains, such as "elongation [%]".
         stress: Column of stresses, such as "true stress [MPa]".
         meant: What strains and stresses are.
+        gauge: Length at rest of what is pulled; displacements are read, --strain names them.
+        width: Width at rest; forces are read with --thickness, --stress names them.
+        thickness: Thickness at rest.
         cycle: Loading.
         since: Least stretch that is fitted.
         upto: Greatest stretch that is fitted.
         decimal: Mark before decimals; found by default.
         weights: Points of a mode count alike, or by one over their stress.
+        only: Fit tests of this mode alone, and compare the others; repeatable.
         unstable: Do not ask that the law is stable up to the greatest stretch.
         density: Density for the material file, such as "1.07 g/cm^3".
         case: Case file of uniform bending whose pressure is told with its error.
@@ -98,6 +108,8 @@ def fit(
             strain=strain,
             stress=stress,
             meant=meant,
+            gauge=_length("--gauge", gauge),
+            area=_area(width, thickness),
             cycle=_count("--cycle", cycle),
             least=_limit("--from", since),
             most=_limit("--upto", upto),
@@ -105,17 +117,19 @@ def fit(
         ),
         weights,
         not unstable,
+        only,
     )
     _count("--refits", refits)
     _density(density)
     files = _targets(asked, out, case is not None, overwrite)
     settle_folders()
+    checked = None if case is None else _case(case, part)
     found = compared(asked)
     for line in lines(found):
         say(line)
-    if case is not None:
+    if checked is not None:
         say("")
-        _band(found, case, part, refits, files[2])
+        _band(found, checked, part, refits, files[2])
     _write(found, files[0], files[1], density)
     say("")
     say(f"material of {found.best.form.name}: {files[0]}; in a case one of")
@@ -129,15 +143,28 @@ def fit(
     return 0
 
 
-def _band(found: Comparison, path: Path, part: str, refits: int, target: Path) -> None:
+def _case(path: Path, part: str) -> Case:
+    """The case, which has the part.
+
+    Raises:
+        CaseError: it is wrong, or has no such part.
+    """
+    from fiberbend.reader.reader import read_case
+
+    case = read_case(path)
+    there = [name for name, spec in case.materials if spec is not None]
+    if part not in there:
+        raise CaseError([Problem("--part", f"{part!r}, expected one of {', '.join(there)}")])
+    return case
+
+
+def _band(found: Comparison, case: Case, part: str, refits: int, target: Path) -> None:
     """Solve a case, print its pressures with their errors, and draw them."""
     from fiberbend.fit.band import band_of, pressures
     from fiberbend.fit.band_words import band_lines
     from fiberbend.fit.picture import draw_band
-    from fiberbend.reader.reader import read_case
     from fiberbend.running import launch
 
-    case = read_case(path)
     launch.start_mpi()
     band = band_of(case, part, found.best, refits)
     others = {
@@ -200,6 +227,28 @@ def _limit(option: str, text: str) -> float | None:
         return limit(text)
     except ValueError as error:
         raise CaseError([Problem(option, f'"{text}", {error}')]) from None
+
+
+def _length(option: str, text: str) -> float | None:
+    from fiberbend.schema.units import parse
+
+    if not text:
+        return None
+    try:
+        value = parse(text, "length")
+    except ValueError as error:
+        raise CaseError([Problem(option, f'"{text}", {error}')]) from None
+    if not value > 0:
+        raise CaseError([Problem(option, f'"{text}", expected a length above zero')])
+    return value
+
+
+def _area(width: str, thickness: str) -> float | None:
+    """The cross-section in mm²."""
+    across, through = _length("--width", width), _length("--thickness", thickness)
+    if (across is None) != (through is None):
+        raise CaseError([Problem("--width", "expected --width and --thickness together")])
+    return None if across is None or through is None else across * through
 
 
 def _count(option: str, number: int) -> int:

@@ -27,6 +27,7 @@ class Asked:
         wanted: what is read of the files.
         weights: how points of a mode weigh.
         stable: stability is asked for, up to the greatest stretch.
+        only: modes that are fitted; tests of others are only compared. None: all.
     """
 
     files: tuple[tuple[ModeName, Path], ...]
@@ -34,6 +35,7 @@ class Asked:
     wanted: Wanted = dataclasses.field(default_factory=Wanted)
     weights: Weights = "plain"
     stable: bool = True
+    only: tuple[ModeName, ...] = ()
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -42,14 +44,16 @@ class Comparison:
 
     Attributes:
         reads: the tests.
-        fits: the laws, the best one first: those whose numbers the tests settle before others, and
-            of these by Akaike's criterion.
+        fits: the laws, the best one by Akaike's criterion first; of few points, which have none,
+            that with the fewest parameters.
         left_out: laws that could not be fitted, and why.
+        beside: tests that were not fitted.
     """
 
     reads: tuple[Read, ...]
     fits: tuple[Fit, ...]
     left_out: tuple[str, ...] = ()
+    beside: tuple[Read, ...] = ()
 
     @property
     def best(self) -> Fit:
@@ -64,9 +68,15 @@ class Comparison:
             *(read.measurement.greatest for read in self.reads),
         )
 
+    def end(self, mode: str) -> float:
+        """Greatest stretch of a mode's tests, or of all tests where it was not measured."""
+        tests = [read.measurement for read in (*self.reads, *self.beside)]
+        ends = [float(t.stretch.max()) for t in tests if t.mode.name == mode]
+        return max(ends, default=self.reach)
+
     @property
     def measured(self) -> tuple[str, ...]:
-        """Names of the modes that were measured."""
+        """Names of the modes that were fitted."""
         return tuple(dict.fromkeys(read.measurement.mode.name for read in self.reads))
 
 
@@ -76,12 +86,16 @@ def compared(asked: Asked) -> Comparison:
     Raises:
         CaseError: a file or a law is wrong.
     """
-    from fiberbend.tensile.shipped import test_file
+    from fiberbend.tensile.shipped import file_of
     from materials.fit.fit import fit_law
 
     if not asked.files:
         raise CaseError([Problem("fiberbend fit", "no test, expected a file such as DATA.csv")])
-    reads = tuple(read_test(test_file(path), mode, asked.wanted) for mode, path in asked.files)
+    every = [(mode, read_test(file_of(path), mode, asked.wanted)) for mode, path in asked.files]
+    reads = tuple(read for mode, read in every if not asked.only or mode in asked.only)
+    beside = tuple(read for mode, read in every if asked.only and mode not in asked.only)
+    if not reads:
+        raise CaseError([Problem("--only", f"no test in {' or '.join(asked.only)}, expected one")])
     tests = [read.measurement for read in reads]
     fits, left_out = [], []
     for law in asked.laws or USUAL:
@@ -93,8 +107,8 @@ def compared(asked: Asked) -> Comparison:
             left_out.append(f"{law}: {error}")
     if not fits:
         raise CaseError([Problem("fiberbend fit", left_out[0])])
-    fits.sort(key=lambda fit: (bool(fit.unsettled), fit.criterion))
-    return Comparison(reads, tuple(fits), tuple(left_out))
+    fits.sort(key=lambda fit: (fit.criterion, len(fit.values), fit.rms))
+    return Comparison(reads, tuple(fits), tuple(left_out), beside)
 
 
 def law_names(given: Sequence[str]) -> tuple[str, ...]:

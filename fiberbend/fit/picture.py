@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,10 +16,14 @@ if TYPE_CHECKING:
 
     from fiberbend.fit.band import Band
     from fiberbend.fit.comparison import Comparison
+    from fiberbend.tensile.reading import Read
+    from materials.fit.modes import Measurement
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f")
 """Told apart by all eyes, after M. Okabe and K. Ito."""
 STYLE = Style(width=280.0, height=150.0, font_size=11.0)
+_ASTRAY = 2.5
+"""Times what is measured, or what most laws say, up to where stresses are shown."""
 _PART = 0.3
 """Of the height of curves that residuals have."""
 
@@ -63,47 +68,60 @@ def draw(found: Comparison, style: Style = STYLE) -> Figure:
 
 
 def _curves(axes: Any, found: Comparison, mode: str, style: Style) -> None:
-    measured = mode in found.measured
-    tests = [read.measurement for read in found.reads if read.measurement.mode.name == mode]
-    low = min([1.0, *(float(test.stretch.min()) for test in tests)])
-    stretch = np.linspace(low, found.reach, 201)
-    axes.set_title(mode if measured else f"{mode}, not measured", fontsize=style.font_size)
+    fitted = mode in found.measured
+    tests, others = _tests(found.reads, mode), _tests(found.beside, mode)
+    low = min([1.0, *(float(test.stretch.min()) for test in (*tests, *others))])
+    stretch = np.linspace(low, found.end(mode), 201)
+    note = "" if fitted else (", not fitted" if others else ", not measured")
+    axes.set_title(f"{mode}{note}", fontsize=style.font_size)
     for test in tests:
         dots = {"markersize": 3.5, "color": "black", "markerfacecolor": "none", "zorder": 2}
         axes.plot(test.stretch, 1e3 * test.stress, "o", **dots)
+    for test in others:
+        axes.plot(test.stretch, 1e3 * test.stress, "x", markersize=4, color="0.3", zorder=2)
+    ends = []
     for index, fit in enumerate(found.fits):
         color, stress = COLORS[index % len(COLORS)], 1e3 * fit.stress(MODES[mode], stretch)
         error = 1.96e3 * fit.stress_error(MODES[mode], stretch)
         label = literal(fit.form.name)
-        axes.plot(stretch, stress, "-" if measured else "--", color=color, lw=1.5, label=label)
-        if not fit.unsettled:
-            axes.fill_between(
-                stretch, stress - error, stress + error, color=color, alpha=0.12, lw=0
-            )
-    shown = [1e3 * fit.stress(MODES[mode], stretch) for fit in found.fits if not fit.unsettled]
-    shown = shown or [1e3 * fit.stress(MODES[mode], stretch) for fit in found.fits]
-    values = np.concatenate([*shown, *(1e3 * test.stress for test in tests)])
-    values = values[np.isfinite(values)]
-    # a law near its limit, or one that is not settled, hides no other
-    top = min(values.max(), 3 * float(np.median([np.nanmax(s) for s in shown])))
-    axes.set_ylim(min(values.min(), 0.0) * 1.05, 1.08 * top)
+        axes.plot(stretch, stress, "-" if fitted else "--", color=color, lw=1.5, label=label)
+        within = {"color": color, "alpha": 0.12, "lw": 0}
+        axes.fill_between(stretch, stress - error, stress + error, **within)
+        ends.append(float(np.nanmax(stress)))
+    known = [1e3 * test.stress for test in (*tests, *others)]
+    # a law that goes astray, or near its limit, hides no other
+    most = float(np.concatenate(known).max()) if known else float(np.median(ends))
+    least = min([0.0, *(float(values.min()) for values in known)])
+    axes.set_ylim(1.05 * least, 1.08 * min(max(ends), _ASTRAY * most))
 
 
 def _residuals(axes: Any, found: Comparison, mode: str, style: Style) -> None:
-    tests = [read.measurement for read in found.reads if read.measurement.mode.name == mode]
+    fitted = mode in found.measured
+    tests = _tests(found.reads, mode) or _tests(found.beside, mode)
     if not tests:
         axes.set_ylim(-1, 1)
         axes.set_yticks([])
-        axes.text(0.5, 0.5, "no test", transform=axes.transAxes, ha="center", va="center",
-                  fontsize=style.font_size * 0.85, color="0.4")  # fmt: skip
+        where = {"transform": axes.transAxes, "ha": "center", "va": "center"}
+        axes.text(0.5, 0.5, "no test", fontsize=style.font_size * 0.85, color="0.4", **where)
         return
     most = max(float(np.abs(test.stress).max()) for test in tests) or 1.0
     axes.axhline(0.0, color="0.5", lw=0.8)
+    greatest = []
     for index, fit in enumerate(found.fits):
+        color = COLORS[index % len(COLORS)]
         for test in tests:
             ordered = test.sorted()
             rest = 100 * fit.residuals(ordered) / most
-            axes.plot(ordered.stretch, rest, "-", color=COLORS[index % len(COLORS)], lw=1.2)
+            axes.plot(ordered.stretch, rest, "-" if fitted else "--", color=color, lw=1.2)
+            greatest.append(float(np.nanmax(np.abs(rest))))
+    if max(greatest) > 3 * float(np.median(greatest)):
+        edge = 3 * float(np.median(greatest))
+        axes.set_ylim(-edge, edge)
+
+
+def _tests(reads: Sequence[Read], mode: str) -> list[Measurement]:
+    """Those of a mode."""
+    return [read.measurement for read in reads if read.measurement.mode.name == mode]
 
 
 def draw_band(band: Band, others: dict[str, np.ndarray], style: Style | None = None) -> Figure:

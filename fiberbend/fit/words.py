@@ -16,8 +16,10 @@ if TYPE_CHECKING:
     from fiberbend.fit.comparison import Comparison
     from materials.fit.fit import Fit
 
+HEADS = ("law", "rms error", "AIC", "stable to stretch", "parameters")
+"""Of the columns of `summary`."""
 _SMALL = 0.1
-"""MPa below which moduli are shown in kPa."""
+"""MPa below which the moduli of a law are shown in kPa."""
 
 
 def lines(found: Comparison) -> Iterator[str]:
@@ -25,18 +27,20 @@ def lines(found: Comparison) -> Iterator[str]:
     for read in found.reads:
         yield read.said
     yield ""
-    yield from aligned(
-        ("law", "rms error", "AIC", "stable to stretch", "parameters"),
-        [summary(fit, found) for fit in found.fits],
-    )
+    yield from aligned(HEADS, [summary(fit, found) for fit in found.fits])
     remarks = list(remarks_of(found))
     if remarks:
         yield ""
         yield from remarks
     yield ""
-    yield f"stress in kPa at stretch {found.reach:.4g}, ± its standard error; * mode not measured"
+    what = "fitted" if found.beside else "measured"
+    yield f"stress in kPa, ± its standard error, at the stretch in brackets; * mode not {what}"
     heads, rows = modes(found)
     yield from aligned(heads, rows)
+    if found.beside:
+        yield ""
+        yield "tests that were not fitted: how far a law is off at most, and at their end"
+        yield from aligned(*beside(found))
 
 
 def summary(fit: Fit, found: Comparison) -> tuple[str, ...]:
@@ -61,7 +65,7 @@ def parameters(fit: Fit) -> str:
     for name, value in fit.parameters.items():
         error, scale, unit = fit.errors[name], 1.0, ""
         if units[name] == "MPa":
-            kilo = max(abs(v) for v in fit.moduli) < _SMALL
+            kilo = min(abs(v) for v in fit.moduli) < _SMALL
             scale, unit = (1e3, " kPa") if kilo else (1.0, " MPa")
         texts.append(f"{name} {with_error(scale * value, scale * error)}{unit}")
     return ", ".join(texts)
@@ -93,30 +97,45 @@ def remarks_of(found: Comparison) -> Iterator[str]:
                 f"({fit.stability.where}), within its tests: a run there may fail"
             )
         if fit.unsettled:
-            what = ", ".join(fit.unsettled)
-            yield f"{name}: the tests do not settle {what}; a law with less terms says as much"
+            yield from _unsettled(fit)
     for text in found.left_out:
         yield f"left out: {text}"
     if len(found.measured) == 1:
-        yield f"only {found.measured[0]} was measured: below is how far laws differ in other modes"
+        what = "fitted" if found.beside else "measured"
+        yield f"only {found.measured[0]} was {what}: below is how far laws differ in other modes"
+
+
+def _unsettled(fit: Fit) -> Iterator[str]:
+    """What is said of parameters that tests do not settle."""
+    gone = [name for name in fit.unsettled if fit.errors[name] == 0]
+    wide = [name for name in fit.unsettled if name not in gone]
+    if wide:
+        many = "their errors are above their values" if len(wide) > 1 else "its error is above it"
+        yield f"{fit.form.name}: the tests do not settle {', '.join(wide)}, {many}"
+    if gone:
+        what = ", ".join(f"{name} {fit.parameters[name]:g}" for name in gone)
+        yield f"{fit.form.name}: {what} is at the end of what is searched: the law does without it"
 
 
 def modes(found: Comparison) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """Names and rows of the stresses at the greatest stretch in every mode, by laws."""
-    heads = ["law", *(m if m in found.measured else f"{m} *" for m in MODES)]
-    stretch, rows, columns = np.array([found.reach]), [], []
+    """Names and rows of the stresses at the end of every mode, by laws."""
+    heads = ["law"]
+    for name in MODES:
+        mark = "" if name in found.measured else " *"
+        heads.append(f"{name} ({found.end(name):.4g}){mark}")
+    rows, columns = [], []
     for fit in found.fits:
         row = [fit.form.name]
         values = []
         for mode in MODES.values():
+            stretch = np.array([found.end(mode.name)])
             stress = 1e3 * float(fit.stress(mode, stretch)[0])
             error = 1e3 * float(fit.stress_error(mode, stretch)[0])
             beyond = not math.isfinite(stress)
             row.append("beyond its limit" if beyond else with_error(stress, error))
             values.append(stress)
         rows.append(tuple(row))
-        if not fit.unsettled:
-            columns.append(values)
+        columns.append(values)
     if len(columns) > 1:
         rows.append(("greatest over least", *(_ratio(column) for column in np.array(columns).T)))
     return tuple(heads), rows
@@ -125,6 +144,31 @@ def modes(found: Comparison) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
 def percent(part: float) -> str:
     """A part in percent with two digits."""
     return f"{100 * part:#.2g}".rstrip(".") + " %"
+
+
+def beside(found: Comparison) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Names and rows of the errors of laws beside tests that they were not fitted to.
+
+    Errors are in parts of the measured stress, from a tenth of the greatest one on.
+    """
+    tests = [read.measurement.sorted() for read in found.beside]
+    heads = ["law"]
+    for test in tests:
+        heads += [f"{test.name}, {test.mode.name}", f"at {test.stretch[-1]:.4g}"]
+    rows = []
+    for fit in found.fits:
+        row = [fit.form.name]
+        for test in tests:
+            far = np.abs(test.stress) > 0.1 * np.abs(test.stress).max()
+            off = fit.residuals(test)[far] / test.stress[far]
+            worst = off[np.argmax(np.abs(off))] if np.isfinite(off).all() else np.nan
+            row += [_signed(float(worst)), _signed(float(off[-1]))]
+        rows.append(tuple(row))
+    return tuple(heads), rows
+
+
+def _signed(part: float) -> str:
+    return f"{100 * part:+.1f} %" if math.isfinite(part) else "beyond its limit"
 
 
 def case_lines(fit: Fit, part: str, file: Path) -> Iterator[str]:

@@ -7,14 +7,14 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
-from fiberbend.schema.units import factor
+from fiberbend.schema.units import KINDS, factor
 
 if TYPE_CHECKING:
     from materials.stretches import Floats
 
 Meant = Literal["engineering", "true"]
 """What a strain or a stress is whose column does not say it."""
-Quantity = Literal["stretch", "strain", "stress"]
+Quantity = Literal["stretch", "strain", "stress", "displacement", "force"]
 _BRACKETS = re.compile(r"(.*?)\s*[\[(]([^\[\]()]*)[\])]\s*")
 _TRUE = ("true", "cauchy", "logarithmic", "log", "hencky")
 _ENGINEERING = ("engineering", "eng", "nominal", "pk1", "1pk")
@@ -24,7 +24,13 @@ _WORDS: dict[Quantity, tuple[str, ...]] = {
     "stretch": ("stretch", "lambda", "λ"),
     "strain": ("strain", "ε", "epsilon"),
     "stress": ("stress", "σ", "sigma", "pk1", "1pk"),
+    "displacement": ("displacement", "extension", "elongation", "crosshead"),
+    "force": ("force", "load"),
 }
+_MEASURES = ("strain", "stress")
+"""What is engineering or true; stretches, displacements and forces need no such word."""
+_OPTIONS: dict[Quantity, str] = {"displacement": "strain", "force": "stress"}
+"""Options that name such columns."""
 _NO_UNIT = ("", "1", "-", "mm/mm", "m/m")
 _IMPLAUSIBLE = 20.0
 """A strain from which on a column without a unit is rather in percent."""
@@ -51,11 +57,14 @@ class Column:
     @property
     def rank(self) -> int:
         """Stretches come first, then engineering strains and stresses, then true ones."""
-        return 0 if self.what == "stretch" else {"engineering": 1, "true": 2, None: 3}[self.meant]
+        known = {"engineering": 1, "true": 2, None: 3}
+        return known[self.meant] if self.what in _MEASURES else 0
 
 
-def strain_of(names: Sequence[str], stretch: str, strain: str, meant: Meant | None) -> Column:
-    """The column of stretches or strains.
+def strain_of(
+    names: Sequence[str], stretch: str, strain: str, meant: Meant | None, gauge: float | None
+) -> Column:
+    """The column of stretches or strains, or of displacements where the gauge is known.
 
     Args:
         names: of all columns.
@@ -63,10 +72,17 @@ def strain_of(names: Sequence[str], stretch: str, strain: str, meant: Meant | No
             number; or empty.
         strain: likewise of strains.
         meant: what a strain is whose name does not say.
+        gauge: length at rest of what is pulled, mm: the column has displacements.
 
     Raises:
         ValueError: there is none, or more than one may be meant.
     """
+    if gauge is not None:
+        if stretch:
+            raise ValueError("--stretch and --gauge together, expected one of them")
+        if strain:
+            return _asked(names, strain, "displacement", meant)
+        return _named(names, ("displacement",), meant)
     if stretch and strain:
         raise ValueError("--stretch and --strain together, expected one of them")
     if stretch:
@@ -76,22 +92,33 @@ def strain_of(names: Sequence[str], stretch: str, strain: str, meant: Meant | No
     return _named(names, ("stretch", "strain"), meant)
 
 
-def stress_of(names: Sequence[str], stress: str, meant: Meant | None) -> Column:
-    """The column of stresses, likewise."""
+def stress_of(names: Sequence[str], stress: str, meant: Meant | None, area: float | None) -> Column:
+    """The column of stresses, or of forces where the area at rest is known, likewise."""
+    if area is not None:
+        if stress:
+            return _asked(names, stress, "force", meant)
+        return _named(names, ("force",), meant)
     if stress:
         return _asked(names, stress, "stress", meant)
     return _named(names, ("stress",), meant)
 
 
-def stretches(column: Column, values: Floats) -> Floats:
+def stretches(column: Column, values: Floats, gauge: float | None) -> Floats:
     """Stretches of a column's values.
+
+    Args:
+        column: the column.
+        values: its values.
+        gauge: length at rest of what a displacement has pulled, mm.
 
     Raises:
         ValueError: its unit is none of a strain, or values that are no stretches.
     """
     import numpy as np
 
-    if column.unit == "%":
+    if column.what == "displacement" and gauge is not None:
+        values = values * _factor(column, "length") / gauge
+    elif column.unit == "%":
         values = values / 100
     elif column.unit not in _NO_UNIT:
         raise ValueError(f"{column.name!r} in {column.unit!r}, expected % or a pure number")
@@ -108,19 +135,33 @@ def stretches(column: Column, values: Floats) -> Floats:
     return np.asarray(found, dtype=float)
 
 
-def stresses(column: Column, values: Floats, stretch: Floats) -> Floats:
-    """Nominal stresses in MPa of a column's values, at these stretches.
+def stresses(column: Column, values: Floats, stretch: Floats, area: float | None) -> Floats:
+    """Nominal stresses in MPa of a column's values.
+
+    Args:
+        column: the column.
+        values: its values.
+        stretch: stretches of the same rows.
+        area: area at rest on which a force acts, mm².
 
     Raises:
-        ValueError: no unit, or one of no stress.
+        ValueError: no unit, or one of no stress or force.
     """
+    if column.what == "force" and area is not None:
+        return values * _factor(column, "force") / area
+    values = values * _factor(column, "modulus")
+    return values / stretch if column.meant == "true" else values
+
+
+def _factor(column: Column, kind: str) -> float:
+    """What one of a column's unit is within the program."""
     if not column.unit:
-        raise ValueError(f"{column.name!r} has no unit, expected one such as [MPa] or [kPa]")
+        shown = KINDS[kind].shown
+        raise ValueError(f"{column.name!r} has no unit, expected one such as [{shown}]")
     try:
-        scale = factor(column.unit, "modulus")
+        return factor(column.unit, kind)
     except ValueError as error:
         raise ValueError(f"{column.name!r}: {error}") from None
-    return values * scale / stretch if column.meant == "true" else values * scale
 
 
 def _asked(names: Sequence[str], asked: str, what: Quantity, meant: Meant | None) -> Column:
@@ -139,16 +180,23 @@ def _asked(names: Sequence[str], asked: str, what: Quantity, meant: Meant | None
 
 def _named(names: Sequence[str], kinds: Sequence[Quantity], meant: Meant | None) -> Column:
     """The column whose name says that it is of a kind."""
-    there = [c for c in (_read(i, name) for i, name in enumerate(names)) if c.what in kinds]
+    every = [_read(i, name) for i, name in enumerate(names)]
+    there = [column for column in every if column.what in kinds]
     if not there:
-        options = " or ".join(f"--{kind} COLUMN" for kind in kinds)
+        spare = next((c for c in every if _OPTIONS.get(c.what or "stretch") in kinds), None)
+        if spare is not None:
+            length = spare.what == "displacement"
+            need = "--gauge, the length" if length else "--width and --thickness"
+            raise ValueError(f"{spare.name!r} is a {spare.what}, expected {need} at rest")
+        options = " or ".join(f"--{_OPTIONS.get(kind, kind)} COLUMN" for kind in kinds)
         raise ValueError(
             f"no column of {' or '.join(kinds)}, found {_listed(names)}, expected {options}"
         )
     best = [column for column in there if column.rank == min(c.rank for c in there)]
     if len(best) > 1:
         text = " or ".join(repr(column.name) for column in best)
-        raise ValueError(f"{text}, expected --{best[0].what} with one of them")
+        option = _OPTIONS.get(kinds[0], best[0].what)
+        raise ValueError(f"{text}, expected --{option} with one of them")
     return _settled(best[0], meant)
 
 
@@ -158,7 +206,7 @@ def _settled(column: Column, meant: Meant | None) -> Column:
     Raises:
         ValueError: nobody says it.
     """
-    if column.what != "stretch" and (column.meant or meant) is None:
+    if column.what in _MEASURES and (column.meant or meant) is None:
         raise ValueError(
             f"{column.name!r} is an engineering or a true {column.what}, expected --as engineering "
             "or --as true"
@@ -179,6 +227,9 @@ def _read(place: int, name: str) -> Column:
     what = next((kind for kind, known in _WORDS.items() if words & set(known)), None)
     if words & set(_OTHER):
         what = None
+    if what == "displacement" and unit in ("%", "mm/mm", "m/m"):
+        # a part of the length at rest
+        what, meant = "strain", "engineering"
     return Column(place, name, what, meant, unit)
 
 
@@ -187,5 +238,5 @@ def _apart(name: str) -> tuple[str, str]:
     match = _BRACKETS.fullmatch(name)
     if match:
         return match[1].strip(), match[2].strip()
-    match = re.fullmatch(r"(.+?)\s*[_/,\s]\s*(%|[kMG]?Pa|psi|bar|N/mm\^?2|N/mm²)", name)
+    match = re.fullmatch(r"(.+?)\s*[_/,\s]\s*(%|[kMG]?Pa|psi|bar|N/mm\^?2|N/mm²|[mcµ]?m|m?N)", name)
     return (match[1].strip(), match[2]) if match else (name.strip(), "")

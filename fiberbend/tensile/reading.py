@@ -27,6 +27,8 @@ class Wanted:
         strain: column of strains, likewise; one of both at most.
         stress: column of stresses, likewise.
         meant: what a strain or a stress is whose name does not say; None: such names are refused.
+        gauge: length at rest of what is pulled, mm: displacements are read in place of strains.
+        area: cross-section at rest, mm²: forces are read in place of stresses.
         cycle: which loading, from 1 on; 0: all rows.
         least: least stretch, or None.
         most: greatest of all principal stretches, or None.
@@ -38,6 +40,8 @@ class Wanted:
     strain: str = ""
     stress: str = ""
     meant: Meant | None = None
+    gauge: float | None = None
+    area: float | None = None
     cycle: int = 1
     least: float | None = None
     most: float | None = None
@@ -106,11 +110,11 @@ def _read(path: Path, mode: ModeName, wanted: Wanted) -> Read:
     from materials.fit.modes import MODES, Measurement
 
     table = read_table(path, wanted.delimiter, wanted.decimal, preface=True)
-    strain = strain_of(table.columns, wanted.stretch, wanted.strain, wanted.meant)
-    stress = stress_of(table.columns, wanted.stress, wanted.meant)
+    strain = strain_of(table.columns, wanted.stretch, wanted.strain, wanted.meant, wanted.gauge)
+    stress = stress_of(table.columns, wanted.stress, wanted.meant, wanted.area)
     numbers = np.array(table.values([strain.place, stress.place]))
-    stretch = stretches(strain, numbers[:, 0])
-    nominal = stresses(stress, numbers[:, 1], stretch)
+    stretch = stretches(strain, numbers[:, 0], wanted.gauge)
+    nominal = stresses(stress, numbers[:, 1], stretch, wanted.area)
     if wanted.cycle:
         rows = loading(stretch, wanted.cycle)
         stretch, nominal = stretch[rows], nominal[rows]

@@ -17,7 +17,7 @@ def names() -> list[str]:
     return sorted(path.stem for path in folder().glob("*.csv"))
 
 
-def test_file(path: Path) -> Path:
+def file_of(path: Path) -> Path:
     """A user's file; where there is none, the test of this name that comes with the program.
 
     Args:

@@ -127,7 +127,7 @@ def _stable(found: Fit, reach: float) -> bool:
     a = moved[1, 0] + moved[-1, 0] - 2 * here
     b = moved[0, 1] + moved[0, -1] - 2 * here
     c = (moved[1, 1] + moved[-1, -1] - moved[1, -1] - moved[-1, 1]) / 4
-    return bool((a > 0).all() and (a * b - c * c > 0).all())
+    return bool(np.all(a > 0) and np.all(a * b - c * c > 0))
 
 
 @pytest.mark.parametrize("law", ["mooney-rivlin", "yeoh-2", "ogden-2"])
