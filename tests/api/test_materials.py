@@ -42,13 +42,13 @@ def test_the_command_lists_and_shows(capsys: pytest.CaptureFixture[str]) -> None
     assert main(["materials"]) == 0
     told = capsys.readouterr().out
     assert all(f"{name}  (" in told for name in ENTRIES)
-    assert "sources disagree: dragon-skin-10-beam is 2.1 times as stiff at rest" in told
+    assert "sources disagree: dragon-skin-10-beam is 2 times as stiff at rest" in told
     assert all(len(line) <= 100 for line in told.splitlines())
     assert main(["materials", "--kind", "paper"]) == 0
     assert "dragon-skin-10" not in capsys.readouterr().out
     assert main(["materials", "dragon-skin-10"]) == 0
     told = capsys.readouterr().out
-    assert "ogden: mu1 = 0.04234 MPa" in told
+    assert "yeoh: c1 = 0.02185 MPa" in told
     assert "materials: {wall: dragon-skin-10}" in told
 
 
@@ -79,4 +79,4 @@ def test_the_picture_of_a_rubber(
     assert f"picture: {target}" in capsys.readouterr().out
     with Image.open(target) as picture:
         assert min(picture.size) > 300
-        assert len(set(picture.convert("RGB").getdata())) > 20
+        assert len(picture.convert("RGB").getcolors(1 << 20) or []) > 20

@@ -95,7 +95,10 @@ def test_what_is_stored_is_what_a_fit_gives() -> None:
 def test_a_rubber_is_that_of_its_test(name: str) -> None:
     entry = RUBBERS[name]
     assert entry.fitted is not None
-    stretch, stress = np.array(MEASURED[name]).T
+    # as far as it is fitted
+    points = [point for point in MEASURED[name] if point[0] <= 1.001 * entry.fitted.upto]
+    stretch, stress = np.array(points).T
+    assert len(points) >= 3
     found = 1e3 * uniaxial_stress(entry.material, stretch)
     # the last one is near the greatest
     assert np.abs(found - stress).max() < 4 * entry.fitted.rms * stress[-1]
@@ -104,8 +107,8 @@ def test_a_rubber_is_that_of_its_test(name: str) -> None:
 def test_sources_that_disagree_are_both_there_and_say_so() -> None:
     beam, bar = RUBBERS["dragon-skin-10-beam"], RUBBERS["dragon-skin-10"]
     assert beam.stiffness / bar.stiffness == pytest.approx(2.0, abs=0.1)
-    assert any("dragon-skin-10-beam is 2.1 times as stiff" in t for t in disagreements(bar))
-    assert any("dragon-skin-10 is 2.1 times as soft" in t for t in disagreements(beam))
+    assert any("dragon-skin-10-beam is 2 times as stiff" in t for t in disagreements(bar))
+    assert any("dragon-skin-10 is 2 times as soft" in t for t in disagreements(beam))
     assert not list(disagreements(RUBBERS["rtv615"]))
 
 
