@@ -35,8 +35,8 @@ a CSV file beside the case with columns such as `strain [%]` and `engineering st
 the stretch 2. Further tests of the same rubber go beside it: `data: {uniaxial: bar.csv,
 pure-shear: sheet.csv, equibiaxial: bubble.csv}`. The law is one of the laws of [the case
 file](case_file.md), or one with a number of its terms. Coefficients are fitted when the case is
-read, such that the law is stable as far as the tests go; a run keeps them in its case.yaml with a
-line on where they come from.
+read, such that the law is stable as far as the tests go; a run keeps them in its
+case.resolved.yaml with a line on where they come from.
 
 **A file of your own** has the keys of a material of a case, and is seen from the case file:
 

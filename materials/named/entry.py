@@ -146,11 +146,6 @@ class Rubber(Entry):
     stretches: tuple[float, float] | None
     fitted: Fitted | None = None
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        # a law, coefficients or stretches that nobody could use
-        _ = self.material
-
     @property
     def kind(self) -> Kind:
         """A rubber."""
@@ -158,7 +153,12 @@ class Rubber(Entry):
 
     @property
     def material(self) -> Material:
-        """As the program takes it."""
+        """As the program takes it.
+
+        Raises:
+            ValueError: a law, coefficients or stretches that nobody could use; a test asks every
+                entry, for at every start it would take a hundredth of a second.
+        """
         return Material(
             self.law, self.coefficients, self.density, source=self.says, tested=self.stretches
         )

@@ -165,7 +165,7 @@ def test_entries_that_nobody_could_use_are_refused() -> None:
         known: dict[str, Any] = {"name": "rope", "product": "rope", "source": SOURCE}
         known["tested"] = "pulled"
         with pytest.raises(ValueError, match=message):
-            Rubber(**known | more | change)
+            _ = Rubber(**known | more | change).material
 
 
 def test_an_entry_says_what_it_is() -> None:
