@@ -21,9 +21,14 @@ materials:
   sheath: my-rubber.yaml
 ```
 
-`fiberbend materials` prints the names below, `fiberbend materials dragon-skin-30` one of them
-whole, with `--plot dragon-skin-30.png` its stress over its stretch beside the tests. In Python it
-is `fiberbend.materials()`. An editor suggests the names where the case file names its schema.
+`fiberbend materials` prints the names below, with a name one material whole, and its stress over
+its stretch beside the tests. In Python it is `fiberbend.materials()`. An editor suggests the names
+where the case file names its schema.
+
+```console
+$ fiberbend materials --kind thread
+$ fiberbend materials dragon-skin-10 --plot dragon-skin-10.png
+```
 
 **Young's modulus.** `{young: 1 MPa, poisson: 0.5}` is a neo-Hookean rubber that keeps its volume,
 of the shear modulus young/3. With a smaller Poisson's ratio ν it has the shear modulus young/(2
@@ -40,6 +45,7 @@ case.resolved.yaml with a line on where they come from.
 
 **A file of your own** has the keys of a material of a case, and is seen from the case file:
 
+<!-- file: my-rubber.yaml -->
 ```yaml
 law: ogden
 mu1: 0.0423 MPa
@@ -47,6 +53,10 @@ alpha1: 3.13
 density: 1070 kg/m^3
 tested: [1, 3]          # least and greatest stretch of the tests
 source: my tensile test of March
+```
+
+```console
+$ fiberbend validate cases/section.yaml --set materials.wall=my-rubber.yaml
 ```
 
 A thread is `modulus`, `diameter` and `radius_factor` (`fiber: my-thread.yaml`), a fabric
