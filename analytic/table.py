@@ -104,12 +104,7 @@ class Table:
         raise ValueError(f"{self.source}, line {line}: {name!r} is {shown}, expected a number")
 
 
-def read_table(
-    path: Path,
-    delimiter: str | None = None,
-    decimal: str | None = None,
-    preface: bool = False,
-) -> Table:
+def read_table(path: Path, delimiter: str | None = None, decimal: str | None = None) -> Table:
     """Read a file of columns; empty lines and comments (#, %, //) are passed over.
 
     The first line has the names of the columns; where it has numbers, the comment above it does.
@@ -118,15 +113,36 @@ def read_table(
         path: text in UTF-8, UTF-16 with its mark, or Windows' Western code page.
         delimiter: a key of `DELIMITERS`; found from the lines unless given.
         decimal: "." or ","; found from the numbers unless given.
-        preface: lines of other things may stand above the names, which are those in the line above
-            the first numbers, with units in brackets in a line of their own; a file of numbers
-            alone has the columns 1, 2, ….
 
     Raises:
         ValueError: no text, no names, no rows, or rows of another number of cells than the names;
             begins with the file's name.
         OSError: the file cannot be read.
     """
+    return _table(path, delimiter, decimal, False)
+
+
+def read_below_preface(
+    path: Path, delimiter: str | None = None, decimal: str | None = None
+) -> Table:
+    """Read a file of columns as `read_table` does, with lines of other things above the names.
+
+    The names are those in the line above the first numbers, with units in brackets in a line of
+    their own or not. A file of numbers alone has the columns 1, 2, ….
+
+    Args:
+        path: as of `read_table`.
+        delimiter: as there.
+        decimal: as there.
+
+    Raises:
+        ValueError: as there.
+        OSError: the file cannot be read.
+    """
+    return _table(path, delimiter, decimal, True)
+
+
+def _table(path: Path, delimiter: str | None, decimal: str | None, preface: bool) -> Table:
     name = path.name
     head, lines, said = _lines(name, _text(path), preface)
     delimiter = delimiter or said

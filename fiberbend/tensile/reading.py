@@ -105,11 +105,11 @@ def limit(text: str) -> float:
 def _read(path: Path, mode: ModeName, wanted: Wanted) -> Read:
     import numpy as np
 
-    from analytic.table import read_table
+    from analytic.table import read_below_preface
     from fiberbend.tensile.cycles import loading
     from materials.fit.modes import MODES, Measurement
 
-    table = read_table(path, wanted.delimiter, wanted.decimal, preface=True)
+    table = read_below_preface(path, wanted.delimiter, wanted.decimal)
     strain = strain_of(table.columns, wanted.stretch, wanted.strain, wanted.meant, wanted.gauge)
     stress = stress_of(table.columns, wanted.stress, wanted.meant, wanted.area)
     numbers = np.array(table.values([strain.place, stress.place]))

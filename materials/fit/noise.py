@@ -48,17 +48,6 @@ class Noise:
     lengths: tuple[int, ...]
     deviance: float
 
-    @property
-    def correlation(self) -> float:
-        """Mean of φ."""
-        return float(self.chances @ self.correlations)
-
-    @property
-    def independent(self) -> float:
-        """Number of independent points that say as much about a mean."""
-        share = float(self.chances @ ((1 - self.correlations) / (1 + self.correlations)))
-        return sum(max(1.0, n * share) for n in self.lengths)
-
     def spread(self, matrix: Floats) -> Floats:
         """Aᵀ Σ A of the residuals' covariance Σ.
 
