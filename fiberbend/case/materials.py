@@ -61,9 +61,11 @@ class MaterialSpec(_Coefficients):
     """Bulk modulus of a nearly incompressible material; exactly incompressible by default."""
     data: str | TestFiles | None = None
     """CSV file of a tensile test with columns stretch or strain and engineering stress, seen from
-    the case file, in place of coefficients: the law is fitted to it when the case is read."""
-    upto: Annotated[float, Field(gt=1)] | None = None
-    """Greatest stretch of the test that the fit sees; all of it by default."""
+    the case file, in place of coefficients: the law is fitted to it when the case is read. Tests
+    that come with the program go by their name, `data: dragon-skin-30`."""
+    upto: float | str | None = None
+    """Greatest stretch of the test that the fit sees, such as 2 or "strain 50 %"; all of it by
+    default."""
     tested: tuple[float, float] | None = Field(default=None, strict=False)
     """Least and greatest stretch of its tests; a run that goes beyond says so."""
     source: str | None = None

@@ -40,7 +40,10 @@ def materials(
     if not name:
         if plot is not None or open_it:
             raise CaseError([Problem("--plot", "no effect without NAME, expected a rubber")])
-        for entry in known.materials(kind):
+        found = known.materials(kind)
+        if not found:
+            say(f"no {kind} has a name so far: give modulus and thickness, or a file of your own")
+        for entry in found:
             for line in known.lines(entry):
                 # what is indented belongs to the name above it
                 inner = " " * (6 if line.startswith(" ") else 0)

@@ -20,6 +20,7 @@ def material_problems(path: str, material: MaterialSpec) -> Iterator[Problem]:
     from materials.named.table import SOLIDS, hint
 
     given = material.coefficients
+    yield from _idle(path, {"upto": material.upto}, "without data")
     own: dict[str, object] = {"law": material.law, "young": material.young, **given}
     own["poisson"] = material.poisson
     if material.name is not None:

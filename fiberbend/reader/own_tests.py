@@ -46,13 +46,10 @@ def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
     tests = []
     for way, file in files.items():
         try:
-            tests.append(read_test(Path(file), way, Wanted(most=most)).measurement)
+            tests.append(read_test(_there(Path(file)), way, Wanted(most=most)).measurement)
         except CaseError as error:
-            named = str(Path(file))
-            problems += (
-                Problem(f"{path}.data", f"{p.path.replace(named, Path(file).name)}: {p.text}")
-                for p in error.problems
-            )
+            name = Path(file).name
+            problems += (Problem(f"{path}.data", f"{name}: {p.text}") for p in error.problems)
     if problems:
         raise CaseError(problems)
     try:
@@ -76,6 +73,13 @@ def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
         "tested": [least, greatest],
         "source": f"{said}; {known}" if known else said,
     }
+
+
+def _there(path: Path) -> Path:
+    """A file, or where there is none the test of this name that comes with the program."""
+    from fiberbend.tensile.shipped import file_of
+
+    return path if path.exists() else file_of(Path(path.name))
 
 
 def _wrong(value: Mapping[str, Any], path: str) -> Iterator[Problem]:

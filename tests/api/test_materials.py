@@ -46,6 +46,8 @@ def test_the_command_lists_and_shows(capsys: pytest.CaptureFixture[str]) -> None
     assert all(len(line) <= 100 for line in told.splitlines())
     assert main(["materials", "--kind", "paper"]) == 0
     assert "dragon-skin-10" not in capsys.readouterr().out
+    assert main(["materials", "--kind", "fabric"]) == 0
+    assert "no fabric has a name so far" in capsys.readouterr().out
     assert main(["materials", "dragon-skin-10"]) == 0
     told = capsys.readouterr().out
     assert "yeoh: c1 = 0.02185 MPa" in told

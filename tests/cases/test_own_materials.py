@@ -116,6 +116,7 @@ def test_moduli_of_youngs_modulus_and_poissons_ratio() -> None:
         ({"name": "ecoflex-0030", "young": "1 MPa"}, "materials.wall.young: no effect on a named"),
         ({"name": "ecoflex-0030", "tested": [1, 2]}, "materials.wall.tested: no effect on a"),
         ({"poisson": 0.5}, "materials.wall: neither name nor law"),
+        ({"young": "1 MPa", "upto": 2}, "materials.wall.upto: no effect without data"),
         ({"law": "yeoh", "c1": "1 MPa", "tested": [2, 3]}, "materials.wall: tested 2 to 3"),
     ],
 )
@@ -250,6 +251,8 @@ def test_a_law_is_fitted_to_a_test(tmp_path: Path) -> None:
     assert "data" not in resolved
     assert resolved["source"].startswith("yeoh-2 fitted to tensile.csv from a stretch of 1 to 1.9")
     assert as_case(case.resolved()) == case
+    shipped = as_case(SECTION, {"materials.wall": data | {"data": "dragon-skin-30"}})
+    assert shipped.materials.wall.coefficients == fit.parameters
     (tmp_path / "my.yaml").write_text(yaml.safe_dump(data), encoding="utf-8")
     from_file = read_case(write_case(tmp_path, wall="my.yaml"))
     assert from_file.materials.wall.coefficients == case.materials.wall.coefficients
