@@ -30,11 +30,13 @@ _PLACES = {
     "sweep": "fiberbend.api.calls",
     "materials": "fiberbend.api.materials",
     "fit": "fiberbend.api.fitting",
+    "trial": "fiberbend.api.trial",
     "Case": "fiberbend.case.case",
     "CaseError": "fiberbend.schema.problems",
     "Result": "fiberbend.api.result",
     "Style": "fiberbend.drawing.style",
     "Sweep": "fiberbend.api.sweep",
+    "Trial": "fiberbend.api.trial",
     "__version__": "fiberbend.version",
 }
 """Public names, and the modules that are imported when they are asked for."""
@@ -50,6 +52,8 @@ if TYPE_CHECKING:
     from fiberbend.api.materials import materials as materials
     from fiberbend.api.result import Result as Result
     from fiberbend.api.sweep import Sweep as Sweep
+    from fiberbend.api.trial import Trial as Trial
+    from fiberbend.api.trial import trial as trial
     from fiberbend.case.case import Case as Case
     from fiberbend.drawing.style import Style as Style
     from fiberbend.schema.problems import CaseError as CaseError
@@ -61,6 +65,7 @@ __all__ = [
     "Result",
     "Style",
     "Sweep",
+    "Trial",
     "__version__",
     "fit",
     "load",
@@ -68,12 +73,13 @@ __all__ = [
     "plan",
     "run",
     "sweep",
+    "trial",
     "validate",
 ]
 
 
 class _Package(type(sys)):  # type: ignore[misc]
-    """This module, in which the folders fit/, plan/ and sweep/ hide no functions."""
+    """This module, in which the folders fit/, plan/, sweep/ and trial/ do not hide functions."""
 
     def __setattr__(self, name: str, value: object) -> None:
         if not (name in __all__ and isinstance(value, type(sys))):

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from fiberbend.api.calls import _TURN, AnyCase, Settings
+from fiberbend.api.calls import TURN, AnyCase, Settings
 from fiberbend.fit.comparison import Asked, Comparison, compared, law_names
 from fiberbend.notebook import blocks
 from fiberbend.reader.reader import as_case
@@ -161,7 +161,7 @@ class Fitted:
         from fiberbend.running import launch
 
         checked = as_case(case, settings)
-        with _TURN:
+        with TURN:
             launch.start_mpi()
             from fiberbend.fit.band import band_of
 

@@ -45,7 +45,7 @@ class Comparison:
     Attributes:
         reads: the tests.
         fits: the laws, the best one by Akaike's criterion first; of few points, which have none,
-            that with the fewest parameters.
+            that with the fewest parameters. Laws whose terms cancel come last.
         left_out: laws that could not be fitted, and why.
         beside: tests that were not fitted.
     """
@@ -107,7 +107,7 @@ def compared(asked: Asked) -> Comparison:
             left_out.append(f"{law}: {error}")
     if not fits:
         raise CaseError([Problem("fiberbend fit", left_out[0])])
-    fits.sort(key=lambda fit: (fit.criterion, len(fit.values), fit.rms))
+    fits.sort(key=lambda fit: (fit.loose, fit.criterion, len(fit.values), fit.rms))
     return Comparison(reads, tuple(fits), tuple(left_out), beside)
 
 

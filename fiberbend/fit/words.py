@@ -98,6 +98,8 @@ def remarks_of(found: Comparison) -> Iterator[str]:
             )
         if fit.unsettled:
             yield from _unsettled(fit)
+        if fit.loose:
+            yield f"{name}: its terms nearly cancel, so that it comes last"
     for text in found.left_out:
         yield f"left out: {text}"
     if len(found.measured) == 1:
@@ -132,7 +134,8 @@ def modes(found: Comparison) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
             stress = 1e3 * float(fit.stress(mode, stretch)[0])
             error = 1e3 * float(fit.stress_error(mode, stretch)[0])
             beyond = not math.isfinite(stress)
-            row.append("beyond its limit" if beyond else with_error(stress, error))
+            known = f"{stress:.4g}" if fit.loose else with_error(stress, error)
+            row.append("beyond its limit" if beyond else known)
             values.append(stress)
         rows.append(tuple(row))
         columns.append(values)
@@ -180,8 +183,10 @@ def case_lines(fit: Fit, part: str, file: Path) -> Iterator[str]:
 def coefficients(fit: Fit) -> list[str]:
     """The law's parameters as a case has them, "c1: 0.0904 MPa"."""
     units = {p.name: p.unit for p in fit.form.parameters}
+    # of terms that cancel the difference counts
+    digits = 6 + math.ceil(math.log10(fit.cancelling))
     return [
-        f"{name}: {value:.6g}{' MPa' if units[name] == 'MPa' else ''}"
+        f"{name}: {value:.{digits}g}{' MPa' if units[name] == 'MPa' else ''}"
         for name, value in fit.parameters.items()
     ]
 

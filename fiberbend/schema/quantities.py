@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+<<<<<<< HEAD
 from collections.abc import Iterable
 from typing import Annotated, Any, Literal
+=======
+from typing import Annotated, Any, Literal, Self
+>>>>>>> fit
 
 from pydantic import (
     BaseModel,
@@ -29,6 +33,10 @@ class Spec(BaseModel):
     model_config = ConfigDict(
         extra="forbid", frozen=True, strict=True, allow_inf_nan=False, defer_build=True
     )
+
+    def by_numbers(self) -> Self:
+        """The same in numbers alone, where it may be given by a name."""
+        return self
 
 
 class Named(Spec):

@@ -32,6 +32,10 @@ _MEASURES = ("strain", "stress")
 _OPTIONS: dict[Quantity, str] = {"displacement": "strain", "force": "stress"}
 """Options that name such columns."""
 _NO_UNIT = ("", "1", "-", "mm/mm", "m/m")
+STRETCHES = (0.05, 20.0)
+"""What a rubber can be stretched to."""
+_STRESSES = (1e-9, 1e6)
+"""Of the greatest stress of a test, MPa."""
 _IMPLAUSIBLE = 20.0
 """A strain from which on a column without a unit is rather in percent."""
 
@@ -130,8 +134,10 @@ def stretches(column: Column, values: Floats, gauge: float | None) -> Floats:
         found = values
     else:
         found = np.exp(values) if column.meant == "true" else 1 + values
-    if not (found > 0).all():
-        raise ValueError(f"{column.name!r}: stretch {found.min():g}, expected numbers above zero")
+    far = found[~((found >= STRETCHES[0]) & (found <= STRETCHES[1]))]
+    if far.size:
+        least, most = STRETCHES
+        raise ValueError(f"{column.name!r}: stretch {far[0]:g}, expected {least:g} to {most:g}")
     return np.asarray(found, dtype=float)
 
 
@@ -147,10 +153,19 @@ def stresses(column: Column, values: Floats, stretch: Floats, area: float | None
     Raises:
         ValueError: no unit, or one of no stress or force.
     """
+    import numpy as np
+
     if column.what == "force" and area is not None:
-        return values * _factor(column, "force") / area
-    values = values * _factor(column, "modulus")
-    return values / stretch if column.meant == "true" else values
+        found = values * _factor(column, "force") / area
+    else:
+        found = values * _factor(column, "modulus")
+        found = found / stretch if column.meant == "true" else found
+    greatest, (least, most) = float(np.abs(found).max()), _STRESSES
+    if not least <= greatest <= most:
+        raise ValueError(
+            f"{column.name!r} goes to {greatest:g} MPa, expected {least:g} to {most:g} MPa"
+        )
+    return np.asarray(found)
 
 
 def _factor(column: Column, kind: str) -> float:
@@ -162,6 +177,19 @@ def _factor(column: Column, kind: str) -> float:
         return factor(column.unit, kind)
     except ValueError as error:
         raise ValueError(f"{column.name!r}: {error}") from None
+
+
+def others(names: Sequence[str], column: Column) -> list[Column]:
+    """Columns whose names say that they have the same quantity in another measure.
+
+    Args:
+        names: of all columns.
+        column: the one that is read.
+    """
+    kinds = ("stress",) if column.what == "stress" else ("stretch", "strain")
+    every = (_read(i, name) for i, name in enumerate(names))
+    known = [c for c in every if c.what in kinds and (c.what == "stretch" or c.meant)]
+    return [c for c in known if (c.what, c.meant) != (column.what, column.meant)]
 
 
 def _asked(names: Sequence[str], asked: str, what: Quantity, meant: Meant | None) -> Column:

@@ -8,12 +8,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from fiberbend.schema.problems import CaseError, Problem
-from fiberbend.tensile.columns import Meant, strain_of, stress_of, stresses, stretches
+from fiberbend.tensile.columns import (
+    STRETCHES,
+    Column,
+    Meant,
+    others,
+    strain_of,
+    stress_of,
+    stresses,
+    stretches,
+)
 
 if TYPE_CHECKING:
     from materials.fit.modes import Measurement
+    from materials.stretches import Floats
 
 ModeName = Literal["uniaxial", "pure-shear", "equibiaxial"]
+_SAME = 0.02
+"""Part of the greatest value by which two columns of one quantity may differ."""
 _LIMIT = re.compile(r"(stretch|strain)\s+([+-]?[\d.]+(?:[eE][+-]?\d+)?)\s*(%?)")
 
 
@@ -97,9 +109,22 @@ def limit(text: str) -> float:
     except ValueError:
         raise ValueError('expected a limit such as "stretch 1.5" or "strain 50 %"') from None
     value = value if kind == "stretch" else 1 + value
-    if not 0 < value < 100:
-        raise ValueError(f"stretch {value:g}, expected a number above zero and below 100")
+    least, most = STRETCHES
+    if not least <= value <= most:
+        raise ValueError(f"stretch {value:g}, expected {least:g} to {most:g}")
     return value
+
+
+def _agree(column: Column, values: Floats, other: Column, again: Floats) -> None:
+    """Refuse two columns of one quantity that do not say the same, so that one is chosen."""
+    import numpy as np
+
+    off = float(np.abs(values - again).max() / max(np.abs(values).max(), 1e-300))
+    if off > _SAME:
+        raise ValueError(
+            f"{column.name!r} and {other.name!r} differ by {100 * off:.2g} % of the greatest, "
+            f"expected --{column.what} with one of them"
+        )
 
 
 def _read(path: Path, mode: ModeName, wanted: Wanted) -> Read:
@@ -115,6 +140,15 @@ def _read(path: Path, mode: ModeName, wanted: Wanted) -> Read:
     numbers = np.array(table.values([strain.place, stress.place]))
     stretch = stretches(strain, numbers[:, 0], wanted.gauge)
     nominal = stresses(stress, numbers[:, 1], stretch, wanted.area)
+    if not (wanted.stretch or wanted.strain or wanted.gauge):
+        for other in others(table.columns, strain):
+            again = stretches(other, np.array(table.values([other.place]))[:, 0], None)
+            _agree(strain, stretch - 1, other, again - 1)
+    if not (wanted.stress or wanted.area):
+        for other in others(table.columns, stress):
+            if other.unit:
+                values = np.array(table.values([other.place]))[:, 0]
+                _agree(stress, nominal, other, stresses(other, values, stretch, None))
     if wanted.cycle:
         rows = loading(stretch, wanted.cycle)
         stretch, nominal = stretch[rows], nominal[rows]

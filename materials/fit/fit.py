@@ -17,6 +17,7 @@ from materials.material import Material
 from materials.stretches import Floats
 
 Weights = Literal["plain", "relative"]
+_LOOSE = 10.0
 _FLOOR = 0.05
 """Part of a mode's greatest stress below which relative errors are not asked for."""
 
@@ -104,12 +105,27 @@ class Fit:
         return float(np.sqrt(np.mean(np.concatenate(rest) ** 2)))
 
     @property
+    def cancelling(self) -> float:
+        """How many times the stiffness at rest its terms are, whose signs then differ; 1 or more.
+
+        Where two terms have become nearly one, their difference alone is settled by tests.
+        """
+        rest = drucker.tangents(self.form, self.shape, np.zeros((1, 3)))[:, 0, 0, 0] * self.moduli
+        return float(np.abs(rest).sum() / max(abs(rest.sum()), 1e-300))
+
+    @property
+    def loose(self) -> bool:
+        """Whether its numbers say little: terms that cancel, or errors ten times a number."""
+        wide = np.sqrt(np.diag(self.covariance)) > _LOOSE * np.abs(self.values)
+        return self.cancelling > _LOOSE or bool(wide.any())
+
+    @property
     def criterion(self) -> float:
         """Akaike's, corrected for few points, of correlated residuals; less is better.
 
         It compares laws fitted to the same tests: what a parameter gains against what it costs.
         """
-        points = sum(len(test.stretch) for test in self.tests)
+        points = sum(self.noise.lengths)
         modes = len({test.mode.name for test in self.tests})
         # φ and the variance of each mode are fitted too
         count = len(self.values) + 1 + modes

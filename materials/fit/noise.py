@@ -9,6 +9,9 @@ the mean over it, and as much wider as Student's interval of 95 % is for so few 
 misfit of a law counts as correlated noise: the errors say how far numbers move where the same
 rubber's noise, or the same law's misfit, falls otherwise along the curve. What lies outside the
 tests they do not know: a mode that was not measured, another batch, another speed.
+
+A misfit is smoother than such a series, so that more points of the same curve would seem to say
+more. Points are therefore taken together, along each test to `PARTS` means at most.
 """
 
 from __future__ import annotations
@@ -17,12 +20,15 @@ import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from materials.stretches import Floats
 
 _CORRELATIONS = np.tanh(np.linspace(0.0, 3.0, 25))
 """φ that are weighed, all from 0 to 0.995 alike before the residuals are seen."""
+PARTS = 50
+"""Means of neighbours that a test is divided into where it has more points."""
 NORMAL = 1.959964
 """Half of an interval of 95 % in standard deviations."""
 
@@ -35,8 +41,9 @@ class Noise:
         correlations: φ that may be, (m,).
         chances: of each its probability, (m,).
         factors: of each what standard deviations are multiplied with, (m,).
-        size: root mean square of the residuals of a point's mode, (n,).
-        lengths: points of each test.
+        size: root mean square of the means of a mode, for each mean, (k,).
+        lengths: means of each test.
+        counts: points of each mean, (k,).
         deviance: −2 log of the greatest likelihood of the residuals but for a constant, with φ and
             the variances as they are most likely.
     """
@@ -46,6 +53,7 @@ class Noise:
     factors: Floats
     size: Floats
     lengths: tuple[int, ...]
+    counts: NDArray[np.int64]
     deviance: float
 
     def spread(self, matrix: Floats) -> Floats:
@@ -54,7 +62,8 @@ class Noise:
         Args:
             matrix: A, (n, p).
         """
-        scaled = matrix * self.size[:, None]
+        begins = np.cumsum(self.counts) - self.counts
+        scaled = np.add.reduceat(matrix, begins, axis=0) * self.size[:, None]
         total = np.zeros((matrix.shape[1],) * 2)
         for phi, chance, factor in zip(self.correlations, self.chances, self.factors, strict=True):
             for part in _parts(scaled, self.lengths):
@@ -66,7 +75,7 @@ class Noise:
         i = source.choice(len(self.chances), p=self.chances)
         phi = self.correlations[i]
         series = [_correlated(source.standard_normal(n), phi) for n in self.lengths]
-        return np.concatenate(series) * self.factors[i] * self.size
+        return np.repeat(np.concatenate(series) * self.factors[i] * self.size, self.counts)
 
 
 def noise_of(
@@ -80,6 +89,12 @@ def noise_of(
         groups: of each test a number; those of a group share a variance.
         lengths: points of each test.
     """
+    split = [np.array_split(np.arange(n), min(n, PARTS)) for n in lengths]
+    counts = np.array([len(part) for parts in split for part in parts])
+    begins = np.cumsum(counts) - counts
+    residuals = np.add.reduceat(residuals, begins) / counts
+    slopes = np.add.reduceat(slopes, begins, axis=0) / counts[:, None]
+    lengths = [len(parts) for parts in split]
     group = np.repeat(groups, lengths)
     size = np.zeros(len(residuals))
     for g in set(groups):
@@ -104,7 +119,7 @@ def noise_of(
         factors[i] = np.sqrt(variance) * stdtrit(freedom, 0.975) / NORMAL
     chances = np.exp(likely - likely.max()) * (1 - _CORRELATIONS**2)
     chances = chances / chances.sum()
-    return Noise(_CORRELATIONS, chances, factors, size, tuple(lengths), float(deviance))
+    return Noise(_CORRELATIONS, chances, factors, size, tuple(lengths), counts, float(deviance))
 
 
 def _parts(values: Floats, lengths: Sequence[int]) -> list[Floats]:

@@ -12,7 +12,7 @@ import pytest
 import fiberbend
 from tests.conftest import ROOT
 
-FUNCTIONS = ("fit", "load", "plan", "run", "sweep", "validate")
+FUNCTIONS = ("fit", "load", "plan", "run", "sweep", "trial", "validate")
 
 
 def test_names() -> None:

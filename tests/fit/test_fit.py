@@ -111,6 +111,9 @@ def test_the_usual_laws_are_compared() -> None:
     criteria = [fit.criterion for fit in found.fits]
     assert criteria == sorted(criteria)
     assert found.best.form.name == "ogden-1"
+    wide = compared(Asked((("uniaxial", Path(RUBBER)),), ("ogden-2", "ogden-1")))
+    assert [fit.form.name for fit in wide.fits] == ["ogden-1", "ogden-2"]
+    assert wide.fits[1].criterion < wide.fits[0].criterion
     few = compared(Asked((("uniaxial", Path("treloar-1944-uniaxial")),), wanted=Wanted(most=1.3)))
     assert [text.split(":")[0] for text in few.left_out] == ["yeoh", "ogden-2"]
 

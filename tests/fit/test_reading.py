@@ -136,10 +136,20 @@ REFUSED = {
         Wanted(),
         "'force [N]' is a force, expected --width and --thickness at rest",
     ),
+    "columns that do not agree": (
+        lines(
+            "engineering strain,true strain,eng stress [MPa]",
+            STRETCH - 1,
+            np.log(1 + 2 * (STRETCH - 1)),
+            STRESS,
+        ),
+        Wanted(),
+        "'engineering strain' and 'true strain' differ by 1e+02 % of the greatest, expected",
+    ),
     "no stretch": (
         lines("engineering strain,eng stress [MPa]", STRETCH - 2.5, STRESS),
         Wanted(),
-        "expected numbers above zero",
+        "expected 0.05 to 20",
     ),
     "nothing in the range": (
         FILES["stretch"],

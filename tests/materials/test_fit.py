@@ -195,11 +195,51 @@ def test_resampled_fits_spread_as_the_covariance_says() -> None:
     assert np.mean(draws, axis=0) == pytest.approx(found.values, rel=0.01)
 
 
+def test_more_points_of_one_curve_say_no_more() -> None:
+    test = published("dragon-skin-30.csv", "uniaxial", 2.0)
+    errors = []
+    for count in (50, 500, 5000):
+        stretch = np.linspace(test.stretch[0], test.stretch[-1], count)
+        curve = Measurement(UNIAXIAL, stretch, np.interp(stretch, test.stretch, test.stress))
+        errors.append(np.sqrt(np.diag(fit_law("yeoh-2", [curve]).covariance)))
+    assert errors[1] == pytest.approx(errors[0], rel=0.15)
+    assert errors[2] == pytest.approx(errors[1], rel=0.05)
+
+
+def test_terms_that_cancel_are_known() -> None:
+    # two terms of Ogden's become the derivative of one by its exponent
+    found = fit_law("ogden-2", [published("dragon-skin-30.csv", "uniaxial", 9.0)])
+    assert found.cancelling > 1000
+    assert found.loose
+    plain = fit_law("ogden-1", [published("dragon-skin-30.csv", "uniaxial", 9.0)])
+    assert plain.cancelling == pytest.approx(1.0)
+    assert not plain.loose
+
+
 def test_what_tests_do_not_settle_is_said() -> None:
     # a rubber without stiffening has no limit of Gent's
     found = fit_law("gent", measured(RUBBERS["neo-hooke"], UNIAXIAL))
     assert found.unsettled == ("jm",)
     assert found.parameters["mu"] == pytest.approx(0.3, rel=1e-3)
+
+
+def test_a_law_of_ones_own_is_fitted() -> None:
+    def energy(state: Deformation, scale: float, stiffening: float) -> object:
+        return scale * (state.exp(stiffening * (state.i1 - 3)) - 1)
+
+    own = Law(
+        "fung",
+        energy,  # Demiray's exponential
+        (
+            Parameter("scale", "a", allowed="above zero"),
+            Parameter("stiffening", "b", unit="1", allowed="above zero", elsewhere=0.0),
+        ),
+    )
+    stretch = np.linspace(0.8, 2.0, 30)
+    i1 = stretch**2 + 2 / stretch
+    stress = 2 * (stretch - stretch**-2.0) * 0.3 * 0.2 * np.exp(0.2 * (i1 - 3))
+    found = fit_law(form_of("fung", {"fung": own}), [Measurement(UNIAXIAL, stretch, stress)])
+    assert found.parameters == pytest.approx({"scale": 0.3, "stiffening": 0.2}, rel=1e-6)
 
 
 def test_refusals() -> None:
