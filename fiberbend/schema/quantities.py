@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-<<<<<<< HEAD
 from collections.abc import Iterable
-from typing import Annotated, Any, Literal
-=======
 from typing import Annotated, Any, Literal, Self
->>>>>>> fit
 
 from pydantic import (
     BaseModel,
