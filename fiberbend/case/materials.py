@@ -107,7 +107,7 @@ class MaterialSpec(_Coefficients):
         """Law, coefficients and bulk modulus of a named one."""
         if self.name is None:
             return self
-        from materials.named import named_material
+        from materials.named.table import named_material
 
         found = named_material(self.name)
         bulk = found.bulk if self.bulk is None else self.bulk

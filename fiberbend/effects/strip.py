@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Field
 
@@ -152,15 +152,21 @@ class StripEffect(Effect):
     @property
     def stiffness(self) -> float:
         """Of warp and of weft, N/mm; of a strip that is valid."""
+        given = self.by_numbers()
+        assert given.modulus is not None
+        assert given.thickness is not None
+        return given.modulus * given.thickness
+
+    def by_numbers(self) -> Self:
+        """Modulus and thickness of a named fabric."""
+        if self.fabric is None:
+            return self
         from materials.named.table import SHEETS_BY_NAME
 
-        modulus, thickness = self.modulus, self.thickness
-        if self.fabric is not None:
-            sheet = SHEETS_BY_NAME[self.fabric]
-            modulus, thickness = sheet.modulus, sheet.thickness or thickness
-        assert modulus is not None
-        assert thickness is not None
-        return modulus * thickness
+        sheet = SHEETS_BY_NAME[self.fabric]
+        thickness = sheet.thickness or self.thickness
+        update = {"fabric": None, "modulus": sheet.modulus, "thickness": thickness}
+        return self.model_copy(update=update)
 
     def _made_of(self, path: str) -> Iterator[Problem]:
         """What is missing, unknown or without effect of what it is made of."""
