@@ -121,7 +121,7 @@ format: setup ## put the code in its format
 
 docs: tools ## write generated pages and the drawing, build the site docs/_build/html
 	$(BIN)/python bench/columns.py
-	$(BIN)/python bench/pages.py
+	$(BIN)/python -m bench.pages
 	$(BIN)/python bench/actuator_drawing.py
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html
 	@echo "docs: open docs/_build/html/index.html"

@@ -9,10 +9,9 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from bench import materials_page
 from fiberbend.reader.json_schema import json_schema
 from fiberbend.schema.units import KINDS
-from materials.fiber import FIBERS
-from materials.named import NAMED
 
 ROOT = Path(__file__).resolve().parent.parent
 WIDTH = 96
@@ -34,7 +33,8 @@ An editor checks the file while you type if its first line names the schema:
 ```
 
 The file `cases/case.schema.json` is this schema; `fiberbend schema` prints it.
-[Models, and when to trust each](models.md) says which model supports which effect.
+[Models, and when to trust each](models.md) says which model supports which effect, and
+[Materials](materials.md) lists the materials that have names, with their sources.
 
 """
 COMMANDS_HEAD = """# The commands
@@ -160,20 +160,7 @@ def case_file() -> str:
             lines += [*_rows(part), ""]
         else:
             lines += ["It takes no settings.", ""]
-    lines += ["## Named materials", "", "| name | law and coefficients | density | source |"]
-    lines.append("|---|---|---|---|")
-    for key, material in NAMED.items():
-        numbers = ", ".join(f"{k} = {v:g} MPa" for k, v in material.parameters.items())
-        density = "–" if material.density is None else f"{material.density:g} kg/m³"
-        lines.append(f"| `{key}` | {material.law}: {numbers} | {density} | {material.source} |")
-    lines += ["", "## Named fibers", "", "| name | modulus | diameter | `radius_factor` | source |"]
-    lines.append("|---|---|---|---|---|")
-    lines += [
-        f"| `{key}` | {fiber.modulus:g} MPa | {fiber.diameter:g} mm | {fiber.radius_factor:g} | "
-        f"{fiber.source} |"
-        for key, fiber in FIBERS.items()
-    ]
-    return "\n".join(lines) + "\n"
+    return "\n".join(lines).rstrip() + "\n"
 
 
 def commands() -> str:
@@ -197,6 +184,7 @@ def commands() -> str:
 PAGES: dict[str, Callable[[], str]] = {
     "docs/case_file.md": case_file,
     "docs/commands.md": commands,
+    "docs/materials.md": materials_page.page,
 }
 """Pages by their path, each with what writes it."""
 

@@ -28,6 +28,7 @@ _PLACES = {
     "plan": "fiberbend.api.calls",
     "validate": "fiberbend.api.calls",
     "sweep": "fiberbend.api.calls",
+    "materials": "fiberbend.api.materials",
     "fit": "fiberbend.api.fitting",
     "trial": "fiberbend.api.trial",
     "Case": "fiberbend.case.case",
@@ -48,6 +49,7 @@ if TYPE_CHECKING:
     from fiberbend.api.calls import sweep as sweep
     from fiberbend.api.calls import validate as validate
     from fiberbend.api.fitting import fit as fit
+    from fiberbend.api.materials import materials as materials
     from fiberbend.api.result import Result as Result
     from fiberbend.api.sweep import Sweep as Sweep
     from fiberbend.api.trial import Trial as Trial
@@ -67,6 +69,7 @@ __all__ = [
     "__version__",
     "fit",
     "load",
+    "materials",
     "plan",
     "run",
     "sweep",

@@ -33,68 +33,38 @@ app = App(
     default_parameter=Parameter(negative=(), show_default=False),
     suppress_keyboard_interrupt=False,
 )
-# The options of a control loop are many; who does not use them does not load them.
-app.command(
-    "fiberbend.control.arguments:control",
-    name="control",
-    help="Bend under feedback control: step response and sine.",
-    help_epilogue=EXAMPLES["control"],
-)
-app.command(
-    "fiberbend.commands.plot:plot",
-    name="plot",
-    help="Draw a figure for a paper: curves of runs, sweeps and measured points.",
-    help_epilogue=EXAMPLES["plot"],
-)
-
-app.command(
-    "fiberbend.commands.init:init",
-    name="init",
-    help="Write a commented case file of your own actuator, by options or by questions.",
-    help_epilogue=EXAMPLES["init"],
-)
-
-app.command(
-    "fiberbend.commands.cases:cases",
-    name="cases",
-    help="List the cases that come with the program, or copy some of them into a folder.",
-    help_epilogue=EXAMPLES["cases"],
-)
-
-app.command(
-    "fiberbend.commands.show:show",
-    name="show",
-    help="Draw the actuator of a case at rest, with its dimensions; nothing is solved.",
-    help_epilogue=EXAMPLES["show"],
-)
-
-app.command(
-    "fiberbend.commands.mesh:mesh",
-    name="mesh",
-    help="Write the mesh of a case with its regions, surfaces and fibers.",
-    help_epilogue=EXAMPLES["mesh"],
-)
-
-app.command(
-    "fiberbend.commands.accuracy:accuracy",
-    name="accuracy",
-    help="Show what accuracy costs in time: a case by every model and mesh.",
-    help_epilogue=EXAMPLES["accuracy"],
-)
-
-app.command(
-    "fiberbend.commands.fit:fit",
-    name="fit",
-    help="Fit laws of rubber to tests, with errors, stability and what they do to P(θ).",
-    help_epilogue=EXAMPLES["fit"],
-)
-
-app.command(
-    "fiberbend.commands.report:report",
-    name="report",
-    help="Write report.html of a run or a sweep again.",
-    help_epilogue=EXAMPLES["report"],
-)
+# What a command needs is loaded when it is called; the options of a control loop alone are many.
+_LOADED = {
+    "fiberbend.control.arguments:control": "Bend under feedback control: step response and sine.",
+    "fiberbend.commands.plot:plot": (
+        "Draw a figure for a paper: curves of runs, sweeps and measured points."
+    ),
+    "fiberbend.commands.init:init": (
+        "Write a commented case file of your own actuator, by options or by questions."
+    ),
+    "fiberbend.commands.cases:cases": (
+        "List the cases that come with the program, or copy some of them into a folder."
+    ),
+    "fiberbend.commands.materials:materials": (
+        "List named rubbers, threads, fabrics and papers, each with its source."
+    ),
+    "fiberbend.commands.show:show": (
+        "Draw the actuator of a case at rest, with its dimensions; nothing is solved."
+    ),
+    "fiberbend.commands.mesh:mesh": (
+        "Write the mesh of a case with its regions, surfaces and fibers."
+    ),
+    "fiberbend.commands.accuracy:accuracy": (
+        "Show what accuracy costs in time: a case by every model and mesh."
+    ),
+    "fiberbend.commands.fit:fit": (
+        "Fit laws of rubber to tests, with errors, stability and what they do to P(θ)."
+    ),
+    "fiberbend.commands.report:report": "Write report.html of a run or a sweep again.",
+}
+for _place, _text in _LOADED.items():
+    _name = _place.rpartition(":")[2]
+    app.command(_place, name=_name, help=_text, help_epilogue=EXAMPLES[_name])
 
 
 def entry() -> NoReturn:

@@ -35,8 +35,3 @@ class Fiber:
     def stiffness(self) -> float:
         """Axial stiffness EA in N, E π (factor · diameter / 2)²."""
         return self.modulus * math.pi * (self.radius_factor * self.diameter / 2) ** 2
-
-
-FIBERS: dict[str, Fiber] = {
-    "kevlar": Fiber(31076.0, 0.38, 0.5, "Polygerinos et al. 2015, section III-C: radius halved"),
-}

@@ -41,6 +41,7 @@ class Material:
         density: density in kg/m³, 0 of what has no weight, or None.
         bulk: bulk modulus in MPa of a nearly incompressible material, or None for incompressible.
         source: where the numbers come from.
+        tested: least and greatest stretch of the tests behind them, or None where nobody says.
 
     Raises:
         ValueError: an unknown law, parameters that are unknown, missing or not allowed, or a
@@ -52,6 +53,7 @@ class Material:
     density: float | None = None
     bulk: float | None = None
     source: str = ""
+    tested: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         if self.law not in LAWS:
@@ -71,6 +73,9 @@ class Material:
             raise ValueError(f"bulk {self.bulk}: expected a positive number")
         if self.density is not None and not (math.isfinite(self.density) and self.density >= 0):
             raise ValueError(f"density {self.density}: expected a number, 0 or more")
+        if self.tested is not None and not 0 < self.tested[0] <= 1 < self.tested[1]:
+            least, most = self.tested
+            raise ValueError(f"tested {least:g} to {most:g}: expected stretches with 1 within")
         stresses = (p.name for p in law.parameters if p.unit != "1")
         scale = sum(abs(self.values[name]) for name in stresses)
         if not self.initial_shear_modulus > ROUND_OFF * scale:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 
 if TYPE_CHECKING:
+    from fiberbend.states.recovery import SplitNodes
     from fiberbend.states.snapshot import ModelMesh, Snapshot
     from geometry.actuator import Actuator
+    from geometry.mesh.data import Floats
 
 _NEAR_END = 0.1
 """Parts of the chamber's length that are near its root or its tip."""
@@ -19,6 +22,8 @@ _CORNER = 0.9
 """Parts of the chamber's half width from which its lowest line is a corner."""
 _ROUNDING = 1e-6
 """Millimetres by which round-off may move a line."""
+_BEYOND = 0.01
+"""Part of a stretch by which a run may be beyond tests unsaid: of a node's average."""
 _SAME = 1e-6
 """Part of the greatest strain by which places may miss it and still be alike: the first is told."""
 
@@ -36,7 +41,8 @@ def greatest_strain(case: Case, model_mesh: ModelMesh, snapshot: Snapshot) -> di
 
     Returns:
         Step, pressure in kPa, angle in degrees; the maximum principal strain, logarithmic ln λ1 and
-        nominal λ1 − 1; its region, its place in words, and its coordinates at rest in mm.
+        nominal λ1 − 1; its region, its place in words, and its coordinates at rest in mm. Where
+        materials are strained beyond their tests, `beyond_tests` has a sentence on each.
     """
     import numpy as np
 
@@ -52,7 +58,9 @@ def greatest_strain(case: Case, model_mesh: ModelMesh, snapshot: Snapshot) -> di
     at = mesh.nodes[copies.node[copy]]
     # a slice that repeats has no place along the axis
     shown = at[:2] if model_mesh.uniform else at
+    beyond = list(_beyond(model_mesh, copies, stretch))
     return {
+        **({"beyond_tests": beyond} if beyond else {}),
         "step": snapshot.step,
         "pressure_kPa": snapshot.pressure_kpa,
         "angle_deg": snapshot.angle_deg,
@@ -62,6 +70,22 @@ def greatest_strain(case: Case, model_mesh: ModelMesh, snapshot: Snapshot) -> di
         "place": _place(convert.dimensions(case.actuator), region, [float(v) for v in shown]),
         **{f"{axis}_mm": float(v) for axis, v in zip("xyz", shown, strict=False)},
     }
+
+
+def _beyond(model_mesh: ModelMesh, copies: SplitNodes, stretch: Floats) -> Iterator[str]:
+    """Regions that are stretched further than the tests of their material, a sentence each."""
+    mesh = model_mesh.mesh
+    for region, number in mesh.regions.items():
+        tested = model_mesh.materials[region].tested
+        cells = copies.cells[mesh.cell_region == number]
+        if tested is None or not cells.size:
+            continue
+        reached = float(stretch[cells].max())
+        if reached > tested[1] * (1 + _BEYOND):
+            yield (
+                f"materials.{region}: tested to a stretch of {tested[1]:.3g}, the run reaches "
+                f"{reached:.3g}; beyond its tests a law is a guess"
+            )
 
 
 def _place(actuator: Actuator, region: str, at: list[float]) -> str:

@@ -259,7 +259,7 @@ def _as_file(file: Mapping[str, Any] | Path | str) -> Iterator[Path]:
         raise CaseError([Problem("sweep", f"{found(file)}, {wanted}")])
     import yaml
 
-    from fiberbend.reader.yaml_file import root_paths
+    from fiberbend.reader.own_files import root_paths
 
     data = dict(file)
     base = data.get("case")
@@ -269,6 +269,7 @@ def _as_file(file: Mapping[str, Any] | Path | str) -> Iterator[Path]:
         base = {**base, "output": dict(base.get("output") or {})}
         root_paths(base, Path())
         data["case"] = base
+    data |= _rooted(data)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "sweep.yaml"
         path.write_text(yaml.safe_dump(data, sort_keys=False, allow_unicode=True), encoding="utf-8")
@@ -276,3 +277,23 @@ def _as_file(file: Mapping[str, Any] | Path | str) -> Iterator[Path]:
             yield path
         except CaseError as error:
             raise CaseError(dataclasses.replace(p, line=None) for p in error.problems) from None
+
+
+def _rooted(sweep: Mapping[str, Any]) -> dict[str, Any]:
+    """Changes of a sweep whose own files of materials are seen from the working folder."""
+    from fiberbend.reader.own_files import rooted_value
+
+    found: dict[str, Any] = {}
+    for part in ("set", "vary", "zip"):
+        changes = sweep.get(part)
+        if isinstance(changes, Mapping):
+            found[part] = {key: rooted_value(key, value, Path()) for key, value in changes.items()}
+    points = sweep.get("points")
+    if isinstance(points, list | tuple):
+        found["points"] = [
+            {key: rooted_value(key, value, Path()) for key, value in point.items()}
+            if isinstance(point, Mapping)
+            else point
+            for point in points
+        ]
+    return found

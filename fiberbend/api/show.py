@@ -32,7 +32,8 @@ def facts(case: Case) -> Iterator[tuple[str, str]]:
             continue
         material = convert.material(spec)
         parameters = ", ".join(f"{key} {value:g}" for key, value in material.parameters.items())
-        what = f"{spec.name} ({material.law}: {parameters})" if spec.name else material.law
+        plain = f"{material.law} ({spec.source})" if spec.source else material.law
+        what = f"{spec.name} ({material.law}: {parameters})" if spec.name else plain
         yield name, f"{thickness:g} mm, {what}"
     yield "caps", f"{given.cap:g} mm each; {actuator.total_length:g} mm in all"
     words = _winding(case)

@@ -44,15 +44,20 @@ def material(spec: case.MaterialSpec) -> Material:
         ValueError: an unknown name, or coefficients that the law does not allow.
     """
     from materials.material import Material
-    from materials.named import named_material
+    from materials.named.table import named_material
 
     if spec.name is not None:
         base = named_material(spec.name)
+    elif spec.young is not None:
+        shear, bulk = spec.moduli
+        base = Material("neo-hooke", {"mu": shear}, bulk=bulk)
     else:
-        base = Material(spec.law or "", spec.coefficients, source="the case")
+        base = Material(spec.law or "", spec.coefficients)
     density = base.density if spec.density is None else spec.density * _KG_PER_M3
     bulk = base.bulk if spec.bulk is None else spec.bulk
-    return dataclasses.replace(base, density=density, bulk=bulk)
+    tested = base.tested if spec.tested is None else spec.tested
+    source = base.source or spec.source or "the case"
+    return dataclasses.replace(base, density=density, bulk=bulk, tested=tested, source=source)
 
 
 def site(given: case.Case) -> Site:

@@ -23,6 +23,12 @@ EXAMPLES = {
   fiberbend cases section sweeps/angle_at_pressure
   fiberbend cases --all --out examples
 """,
+    "materials": """Examples:
+  fiberbend materials
+  fiberbend materials --kind thread
+  fiberbend materials dragon-skin-10
+  fiberbend materials dragon-skin-10 --plot dragon-skin-10.png
+""",
     "show": """Examples:
   fiberbend show cases/free_bending.yaml --open
   fiberbend show cases/grasp.yaml --set actuator.radius="10 mm" --out grasp.png

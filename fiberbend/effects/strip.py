@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Field
 
@@ -19,9 +19,9 @@ from fiberbend.effects.effect import (
     Site,
     Stretch,
 )
-from fiberbend.schema.problems import Problem
+from fiberbend.schema.problems import Problem, found, meant
 from fiberbend.schema.quantities import Angle as AngleOtherThanZero
-from fiberbend.schema.quantities import Coordinate, Length, Modulus, Named
+from fiberbend.schema.quantities import Coordinate, Length, Modulus, Named, Quantity, by_names
 from fiberbend.schema.units import show
 
 if TYPE_CHECKING:
@@ -32,6 +32,11 @@ if TYPE_CHECKING:
 PLACES = {"top": 0.0, "right": math.pi / 2, "bottom": math.pi, "left": 3 * math.pi / 2}
 """Names of places by the angle from the top toward +x, rad."""
 _ROUNDING = 1e-9
+_LENGTHS = {
+    "thickness": Quantity("length").expected,
+    "modulus": f"{Quantity('modulus').expected}, or a fabric",
+}
+"""What a message expects."""
 
 
 class PlaceSpec(Named):
@@ -86,6 +91,16 @@ class PlaceSpec(Named):
         return show(self.arc or 0.0, "length")
 
 
+class FabricName:
+    """Annotation of a text that names a fabric or a paper."""
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        """A name, or a file of one's own."""
+        from materials.named.table import SHEETS_BY_NAME
+
+        return {"anyOf": by_names(SHEETS_BY_NAME)}
+
+
 class StripEffect(Effect):
     """Inextensible fabric on wall and floor, under the sheath, along the body between the caps."""
 
@@ -96,10 +111,15 @@ class StripEffect(Effect):
     """Its middle: top, right (+x), bottom, left, an angle or an arc length."""
     width: Length
     """Along the outline."""
-    thickness: Length
+    fabric: Annotated[str, FabricName()] | None = None
+    """A named fabric or paper in place of the modulus, and of the thickness where it has one; or a
+    file of your own with both, `fabric: my-fabric.yaml`."""
+    thickness: Length | None = None
     """Of the fabric; with the modulus it gives the stiffness of warp and of weft."""
-    modulus: Modulus
+    modulus: Modulus | None = None
     """Young's modulus of warp and weft; there is none against shear and bending."""
+    source: str | None = None
+    """Where the numbers come from, for the reader."""
     tension_only: bool = Field(default=False)
     """The fabric goes slack instead of carrying compression."""
 
@@ -129,9 +149,51 @@ class StripEffect(Effect):
         turned = self.at.turned
         return turned is None or not _multiple(turned - math.pi / 2, math.pi)
 
+    @property
+    def stiffness(self) -> float:
+        """Of warp and of weft, N/mm; of a strip that is valid."""
+        given = self.by_numbers()
+        assert given.modulus is not None
+        assert given.thickness is not None
+        return given.modulus * given.thickness
+
+    def by_numbers(self) -> Self:
+        """Modulus and thickness of a named fabric."""
+        if self.fabric is None:
+            return self
+        from materials.named.table import SHEETS_BY_NAME
+
+        sheet = SHEETS_BY_NAME[self.fabric]
+        thickness = sheet.thickness or self.thickness
+        update = {"fabric": None, "modulus": sheet.modulus, "thickness": thickness}
+        return self.model_copy(update=update)
+
+    def _made_of(self, path: str) -> Iterator[Problem]:
+        """What is missing, unknown or without effect of what it is made of."""
+        needed, idle = ["thickness", "modulus"], dict[str, str]()
+        if self.fabric is not None:
+            from materials.named.table import SHEETS_BY_NAME, hint
+
+            sheet = SHEETS_BY_NAME.get(self.fabric)
+            if sheet is None:
+                known = hint(self.fabric, SHEETS_BY_NAME)
+                near = meant(self.fabric, SHEETS_BY_NAME)
+                text = f"expected {known}, or modulus and thickness{near}"
+                yield Problem(f"{path}.fabric", f"{found(self.fabric)}, {text}")
+                return
+            needed = [] if sheet.thickness else ["thickness"]
+            idle = dict.fromkeys(("modulus", "source"), f"beside {self.fabric}")
+            idle |= {} if needed else {"thickness": f"beside {self.fabric}"}
+        for key in needed:
+            if getattr(self, key) is None:
+                yield Problem(f"{path}.{key}", f"missing, expected {_LENGTHS[key]}")
+        for key, where in idle.items():
+            if getattr(self, key) is not None:
+                yield Problem(f"{path}.{key}", f"no effect {where}, expected no value")
+
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
         """A place, a width that the outline has, and none over another strip."""
-        wrong = list(self.at.problems(f"{path}.at"))
+        wrong = [*self.at.problems(f"{path}.at"), *self._made_of(path)]
         yield from wrong
         if wrong or draft.actuator is None:
             return
@@ -202,7 +264,7 @@ class StripEffect(Effect):
 
         (window,) = self.windows(site.actuator)
         laid = lay(mesh, site.actuator, window)
-        return Built((Strip(str(self.at), laid, self.modulus * self.thickness, self.tension_only),))
+        return Built((Strip(str(self.at), laid, self.stiffness, self.tension_only),))
 
     def unlike(self, other: Effect) -> str:
         """Fabric may differ in all: every zone has its own."""
@@ -221,8 +283,7 @@ class StripEffect(Effect):
             laid = lay(zone.mesh, actuator, window)
             laid = dataclasses.replace(laid, z=laid.z + zone.start)
             name = f"{strip.at} from {show(zone.start, 'length')} on"
-            stiffness = strip.modulus * strip.thickness
-            terms.append(Strip(name, laid, stiffness, strip.tension_only))
+            terms.append(Strip(name, laid, strip.stiffness, strip.tension_only))
         return Built(tuple(terms))
 
 

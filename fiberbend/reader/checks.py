@@ -11,7 +11,6 @@ from fiberbend.case.case import (
     ActuatorSpec,
     Case,
     Materials,
-    MaterialSpec,
     Mesh,
     Output,
     Solver,
@@ -20,10 +19,10 @@ from fiberbend.case.symmetry import upside_down
 from fiberbend.effects.effect import Draft, Effect, Inflation, keep_straight, mirror_breakers
 from fiberbend.effects.table import EFFECTS
 from fiberbend.models.choice import MODELS, choose_model
+from fiberbend.reader.material_checks import material_problems
 from fiberbend.reader.proportions import disproportions
-from fiberbend.schema.problems import Problem, found, meant
+from fiberbend.schema.problems import Problem
 from fiberbend.schema.units import show
-from materials.laws.table import LAWS
 
 _END = 1 + 1e-9
 """A value at the end of a load is within it: units are factors, and a quotient rounds."""
@@ -133,43 +132,13 @@ def _materials(parts: ValidParts) -> Iterator[Problem]:
     for part in ("wall", "floor", "sheath", "layer"):
         path, material = f"materials.{part}", getattr(parts.materials, part)
         if material is not None:
-            yield from _material(path, material)
+            yield from material_problems(path, material)
         if parts.actuator is not None:
             thickness = getattr(parts.actuator, part)
             if material is None and thickness is not None:
                 yield Problem(path, f"missing, expected the material of actuator.{part}")
             if material is not None and thickness is None:
                 yield Problem(path, f"no effect without actuator.{part}, expected no value")
-
-
-def _material(path: str, material: MaterialSpec) -> Iterator[Problem]:
-    from materials.named import NAMED
-
-    given = material.coefficients
-    if material.name is not None:
-        if material.name not in NAMED:
-            wanted = f"expected {', '.join(NAMED)}, or a law{meant(material.name, NAMED)}"
-            yield Problem(path, f"{found(material.name)}, {wanted}")
-        for key in [*(["law"] if material.law else []), *given]:
-            yield Problem(f"{path}.{key}", "no effect on a named material, expected no value")
-        return
-    if material.law is None:
-        yield Problem(path, "neither name nor law, expected one of them")
-        return
-    law = LAWS[material.law]
-    problems = [
-        *((key, f"missing, expected a coefficient of {law.name}") for key in law.missing(given)),
-        *((key, f"no effect on {law.name}, expected no value") for key in law.unknown(given)),
-        *((key, f"no effect without {term}, expected no value") for key, term in law.idle(given)),
-        *law.refusals(given),
-    ]
-    for key, text in problems:
-        yield Problem(f"{path}.{key}", text)
-    if not problems:
-        try:
-            convert.material(material)
-        except ValueError as error:
-            yield Problem(path, str(error))
 
 
 def _bends(parts: ValidParts) -> Iterator[Problem]:
@@ -193,7 +162,7 @@ def _upside_down(parts: ValidParts) -> bool:
         return False
     regions = convert.dimensions(parts.actuator).one_material()
     specs = [getattr(parts.materials, region) for region in regions]
-    if not regions or any(spec is None or any(_material("", spec)) for spec in specs):
+    if not regions or any(spec is None or any(material_problems("", spec)) for spec in specs):
         return False
     return upside_down(parts.actuator, parts.materials)
 
@@ -210,9 +179,9 @@ def _density(parts: ValidParts) -> Iterator[Problem]:
             names = " or ".join(name for name, effect in EFFECTS.items() if effect.needs_density)
             yield Problem(f"{path}.density", f"no effect without {names}, expected no value")
         if weighing and material.density is None:
-            from materials.named import NAMED
+            from materials.named.table import SOLIDS
 
-            if material.name not in NAMED or NAMED[material.name].density is None:
+            if material.name not in SOLIDS or SOLIDS[material.name].density is None:
                 yield Problem(f"{path}.density", f"missing, expected a density for {weighing[0]}")
     given = [spec for spec in dict(parts.materials).values() if spec is not None]
     if weighing and all(spec.density == 0 for spec in given):

@@ -68,7 +68,9 @@ class Part:
         names = known_materials()
         for word in rest:
             if word not in names:
-                wanted = f"expected a thickness, {NONE}, or one of {', '.join(names)}"
+                wanted = (
+                    f"expected a thickness, {NONE}, or a material that `fiberbend materials` lists"
+                )
                 raise CaseError(
                     [Problem(f"--{name}", f"{found(word)}, {wanted}{meant(word, names)}")]
                 )
@@ -190,9 +192,9 @@ def usual_part(name: str, section: str) -> Part:
 
 def known_materials() -> list[str]:
     """Names of materials that a case can use."""
-    from materials.named import NAMED
+    from materials.named.table import SOLIDS
 
-    return list(NAMED)
+    return list(SOLIDS)
 
 
 def schema_beside(path: Path) -> str | None:

@@ -21,11 +21,11 @@ from fiberbend.effects.table import EffectEntry, unwrap
 from fiberbend.models import choice
 from fiberbend.reader.checks import ValidParts, check, mesh_problems
 from fiberbend.reader.defaults import complete
+from fiberbend.reader.own_files import inlined, root_paths
 from fiberbend.reader.yaml_file import (
     apply_setting,
     line_numbers,
     read_yaml,
-    root_paths,
     setting_path,
 )
 from fiberbend.reader.zones import zone_problems
@@ -139,6 +139,17 @@ def parse_case(data: Mapping[str, Any]) -> Case:
     Raises:
         CaseError: everything that is wrong with it.
     """
+    own = inlined(data) if isinstance(data, Mapping) else None
+    if own is None or not own.files:
+        return _checked(data if own is None else own.data)
+    try:
+        return _checked(own.data)
+    except CaseError as error:
+        raise CaseError(own.located(problem) for problem in error.problems) from None
+
+
+def _checked(data: Mapping[str, Any]) -> Case:
+    """A case of a mapping that names no file of a material."""
     problems: list[Problem] = []
     case = None
     try:

@@ -209,23 +209,6 @@ def located(problem: Problem, lines: Mapping[str, int], changed: Sequence[str] =
     return dataclasses.replace(problem, line=line)
 
 
-def root_paths(data: dict[str, Any], folder: Path) -> None:
-    """Make the files that a case names independent of where it lies.
-
-    Args:
-        data: the case, not yet checked; changed in place.
-        folder: that of the case file.
-    """
-    output = data.get("output")
-    if not isinstance(output, dict):
-        return
-    measured = output.get("measured")
-    if isinstance(measured, str):
-        output["measured"] = str(folder.resolve() / measured)
-    elif isinstance(measured, dict) and isinstance(measured.get("file"), str):
-        measured["file"] = str(folder.resolve() / measured["file"])
-
-
 def setting_path(setting: str) -> str:
     """The path of a change, `effects.0.pressure.to=150 kPa`."""
     return setting.partition("=")[0].strip()

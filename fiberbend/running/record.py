@@ -20,7 +20,7 @@ from fiberbend.results.folder import RunFolder
 from fiberbend.running import messages
 from fiberbend.running.assembly import Assembly
 from fiberbend.schema.problems import CaseError, Problem
-from fiberbend.states.snapshot import Snapshot
+from fiberbend.states.snapshot import ModelMesh, Snapshot
 from fiberbend.version import __version__
 from machine import origin
 
@@ -223,17 +223,20 @@ def beside(check: Check | None) -> dict[str, Any]:
     return {} if check is None else {"crosscheck": check.entry()}
 
 
-def strain(case: Case, assembly: Assembly, last: Snapshot | None) -> dict[str, Any]:
-    """The greatest strain of the last state, where that is at hand; on rank 0.
+def strain(
+    case: Case, mesh: Callable[[], ModelMesh], last: Snapshot | None
+) -> tuple[dict[str, Any], list[str]]:
+    """The greatest strain of the last state, where that is at hand, and warnings; on rank 0.
 
     Args:
         case: the case.
-        assembly: its scene.
+        mesh: gives the mesh of its model.
         last: the last state, or None.
     """
     if last is None:
-        return {}
-    return {"greatest_strain": greatest_strain(case, assembly.model_mesh(case), last)}
+        return {}, []
+    found = greatest_strain(case, mesh(), last)
+    return {"greatest_strain": found}, found.get("beyond_tests", [])
 
 
 def cost(run: Mapping[str, Any]) -> list[str]:

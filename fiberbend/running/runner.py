@@ -218,6 +218,9 @@ class _Run:
         recording.warn(lacking, silent=True)
         progress.phase("output")
         recording.keep(LAST)
+        last = (lambda: assembly.model_mesh(case), recording.last)
+        strain, beyond = on_rank_0(self.comm, lambda: record.strain(case, *last))
+        recording.warn(beyond, silent=True)
         rows = check.beside(recorder.rows) if check else recorder.rows
         run = record.entries(
             status,
@@ -230,8 +233,7 @@ class _Run:
             kernels.versions(),
         )
         run |= record.of_effects(case, recorder.rows) | record.beside(check) | error
-        run |= self.own.entries
-        run |= on_rank_0(self.comm, lambda: record.strain(case, assembly, recording.last))
+        run |= self.own.entries | strain
         if self.folder is not None:
             self.folder.write_history(rows)
             self.run = run

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterable
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
@@ -44,8 +45,16 @@ class Named(Spec):
 
     @model_serializer(mode="wrap")
     def _to_name(self, write: Any) -> Any:
-        name = getattr(self, "name", None)
-        return name if name is not None else write(self)
+        given = {key: value for key, value in self if value is not None}
+        return given["name"] if given.keys() == {"name"} else write(self)
+
+
+def by_names(names: Iterable[str]) -> list[dict[str, Any]]:
+    """The schema of what is written alone: one of the names, or a file of one's own."""
+    return [
+        {"enum": sorted(names), "type": "string"},
+        {"pattern": r"\.ya?ml$", "type": "string"},
+    ]
 
 
 @dataclasses.dataclass(frozen=True)

@@ -18,6 +18,7 @@ from fiberbend.accuracy.words import ways_differ
 from fiberbend.case.case import Case
 from fiberbend.effects.straight import kept_straight
 from fiberbend.models.choice import choose_model
+from fiberbend.reader.own_files import root_paths, rooted_value
 from fiberbend.reader.reader import parse_case
 from fiberbend.reader.yaml_file import (
     YamlContent,
@@ -144,7 +145,7 @@ def _checked(source: YamlContent, path: Path, settings: Sequence[str]) -> Sweep:
     if problems:
         raise CaseError(problems)
     base = _base(file, source, path, settings)
-    points = list(_settings(file))
+    points = [_rooted(point, path.parent) for point in _settings(file)]
     checked = _check_all(base, points, file.report)
     cases = [case for case, _ in checked]
     names = labels(list(dict.fromkeys(s.path for point in points for s in point)))
@@ -187,10 +188,12 @@ def _base(file: SweepFile, source: YamlContent, path: Path, settings: Sequence[s
     else:
         where, own = file.case, read_yaml(path.parent / file.case)
     base = own.data
+    # what a file says is seen from that file, and what a sweep file says from it
+    root_paths(base, path.parent if where == "case" else (path.parent / where).parent)
     problems: list[Problem] = []
     for field, value in file.set.items():
         try:
-            put(base, field, copy.deepcopy(value))
+            put(base, field, rooted_value(field, copy.deepcopy(value), path.parent))
         except CaseError as error:
             problems += (Problem(f"set.{p.path}", p.text) for p in error.problems)
     for setting in settings:
@@ -200,6 +203,7 @@ def _base(file: SweepFile, source: YamlContent, path: Path, settings: Sequence[s
             problems += error.problems
     if problems:
         raise CaseError(problems)
+    root_paths(base, Path())
     return _Base(own, where, (*file.set, *map(setting_path, settings)))
 
 
@@ -225,6 +229,14 @@ def _settings(file: SweepFile) -> Iterator[tuple[_Setting, ...]]:
         parts.append([[_Setting(path, v, f"vary.{path}.{i}")] for i, v in enumerate(values)])
     for combination in itertools.product(*parts):
         yield tuple(setting for part in combination for setting in part)
+
+
+def _rooted(point: tuple[_Setting, ...], folder: Path) -> tuple[_Setting, ...]:
+    """The changes of a point with files of materials seen from the sweep file."""
+    return tuple(
+        dataclasses.replace(each, value=rooted_value(each.path, each.value, folder))
+        for each in point
+    )
 
 
 def _check_all(

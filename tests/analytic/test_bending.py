@@ -13,7 +13,7 @@ from scipy.integrate import dblquad, quad
 from analytic.bending import Hemicircle
 from analytic.stress import effective, wound
 from materials.material import Material
-from materials.named import named_material
+from materials.named.table import named_material
 
 BASE = Hemicircle(8, 2, 2, 160)
 QUARTERS = np.radians([90, 180, 270, 360])

@@ -7,12 +7,13 @@ from typing import Any
 
 import pytest
 
-from materials.fiber import FIBERS, Fiber
+from materials.fiber import Fiber
+from materials.named.table import named_thread
 
 
 def test_kevlar_stiffness() -> None:
     # the paper: 31 076 MPa, 0.38 mm with half the radius gives 881 N
-    assert FIBERS["kevlar"].stiffness == pytest.approx(881, abs=0.5)
+    assert named_thread("kevlar").stiffness == pytest.approx(881, abs=0.5)
 
 
 @pytest.mark.parametrize("name", ["modulus", "diameter", "radius_factor"])

@@ -10,8 +10,7 @@ import pytest
 import yaml
 
 from fiberbend.sweep.command import run_sweep
-from materials.fiber import FIBERS
-from materials.named import named_material
+from materials.named.table import named_material, named_thread
 from tests.conftest import ROOT
 from tests.verify.helix_tube import HelixTube
 
@@ -34,7 +33,7 @@ def test_a_sweep_over_angle_and_starts(tmp_path: Path) -> None:
         rows = list(csv.DictReader(file))
     given = [(row["angle_from_axis_deg"], row["starts"]) for row in rows]
     assert given == [(angle, starts) for angle in ("30", "45", "60") for starts in ("3", "12")]
-    c, fiber = named_material("dragon-skin-30").parameters, FIBERS["kevlar"].stiffness
+    c, fiber = named_material("dragon-skin-30").parameters, named_thread("kevlar").stiffness
     for row in rows:
         pitch = 2 * math.pi * 6.5 / math.tan(math.radians(float(row["angle_from_axis_deg"])))
         tube = HelixTube(c["c1"], c["c2"], 5.0, 6.5, pitch, int(row["starts"]) * fiber, (-1,))

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Any
 from pydantic import Field
 
 from fiberbend.schema.problems import Problem, found, meant
-from fiberbend.schema.quantities import Length, Modulus, Named, PenaltyStiffness, Spec
+from fiberbend.schema.quantities import (
+    Length,
+    Modulus,
+    Named,
+    PenaltyStiffness,
+    Spec,
+    by_names,
+)
 
 if TYPE_CHECKING:
     from materials.bulging import Bulging
@@ -19,18 +26,23 @@ class FiberSpec(Named):
     """The thread of a winding: a name, or modulus and diameter."""
 
     name: str | None = None
-    """A named fiber; written alone, `fiber: kevlar`."""
+    """A named fiber; written alone, `fiber: kevlar`, or with the diameter of one that is made in
+    many. A file of your own, `fiber: my-thread.yaml`, is written alone too: it has these keys."""
     modulus: Modulus | None = None
     """Young's modulus of the thread."""
     diameter: Length | None = None
     """Diameter of the thread."""
     radius_factor: float | None = Field(default=None, gt=0, le=1)
     """Part of the radius that carries; 0.5 where the paper halves it, 1 by default."""
+    source: str | None = None
+    """Where the numbers come from, for the reader."""
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: Any, handler: Any) -> dict[str, Any]:
-        """A name alone is allowed too."""
-        return {"anyOf": [{"type": "string"}, handler.resolve_ref_schema(handler(schema))]}
+        """A name alone is allowed too, and a file of one's own."""
+        from materials.named.table import THREADS_BY_NAME
+
+        return {"anyOf": [*by_names(THREADS_BY_NAME), handler.resolve_ref_schema(handler(schema))]}
 
     def thread(self) -> Fiber:
         """The thread as the geometry takes it; a described one carries with all of its radius.
@@ -38,17 +50,15 @@ class FiberSpec(Named):
         Raises:
             ValueError: an unknown name, or one without modulus and diameter.
         """
-        from materials.fiber import FIBERS, Fiber
+        from materials.fiber import Fiber
+        from materials.named.table import named_thread
 
         if self.name is not None:
-            if self.name not in FIBERS:
-                known = ", ".join(FIBERS)
-                raise ValueError(f"fiber {self.name!r} is unknown: expected one of {known}")
-            return FIBERS[self.name]
+            return named_thread(self.name, self.diameter)
         if self.modulus is None or self.diameter is None:
             raise ValueError("a fiber without a name needs modulus and diameter")
         factor = 1.0 if self.radius_factor is None else self.radius_factor
-        return Fiber(self.modulus, self.diameter, factor, source="the case")
+        return Fiber(self.modulus, self.diameter, factor, source=self.source or "the case")
 
     def plain(self) -> FiberSpec:
         """With its defaults; one by its name has none."""
@@ -66,19 +76,25 @@ class FiberSpec(Named):
 
     def problems(self, path: str) -> Iterator[Problem]:
         """What is missing, unknown or without effect."""
-        own = ("modulus", "diameter", "radius_factor")
         if self.name is None:
-            for key in own[:2]:
+            for key in ("modulus", "diameter"):
                 if getattr(self, key) is None:
                     text = f"missing, expected the {key} of an unnamed fiber"
                     yield Problem(f"{path}.{key}", text)
             return
-        from materials.fiber import FIBERS
+        from materials.named.table import THREADS_BY_NAME, hint
 
-        if self.name not in FIBERS:
-            names = ", ".join(FIBERS)
-            wanted = f"expected {names}, or modulus and diameter{meant(self.name, FIBERS)}"
-            yield Problem(path, f"{found(self.name)}, {wanted}")
+        own = ["modulus", "diameter", "radius_factor", "source"]
+        known = THREADS_BY_NAME.get(self.name)
+        if known is None:
+            wanted = f"expected {hint(self.name, THREADS_BY_NAME)}, or modulus and diameter"
+            near = meant(self.name, THREADS_BY_NAME)
+            yield Problem(path, f"{found(self.name)}, {wanted}{near}")
+        elif known.diameter is None:
+            own.remove("diameter")
+            if self.diameter is None:
+                text = f"missing, expected the diameter of {self.name}, which is made in many"
+                yield Problem(f"{path}.diameter", text)
         for key in own:
             if getattr(self, key) is not None:
                 yield Problem(f"{path}.{key}", "no effect on a named fiber, expected no value")

@@ -12,7 +12,6 @@ import numpy as np
 from fem import kernels
 from fiberbend import columns as col
 from fiberbend.answer.answer import answer
-from fiberbend.answer.strain import greatest_strain
 from fiberbend.case.case import Case
 from fiberbend.case.zones import lengths, shared_pressures, zone_cases
 from fiberbend.models.model import MeshedModel
@@ -285,6 +284,11 @@ class _ZonedRun:
             if joined.model_mesh.fibers is not None:
                 write_fibers(self.states, joined.model_mesh.fibers, joined.model_mesh.smeared)
             shots = self._shots(links, joined, touching)
+        strain: dict[str, Any] = {}
+        if joined is not None and shots:
+            space = joined.model_mesh
+            strain, beyond = record.strain(case, lambda: space, shots[-1])
+            self.warn(beyond, silent=True)
         rows = check.beside(self.rows) if check else self.rows
         run = record.entries(
             status,
@@ -297,8 +301,7 @@ class _ZonedRun:
             kernels.versions(),
         )
         run |= record.of_effects(case, self.rows) | record.beside(check) | self.own.entries
-        if joined is not None and shots:
-            run |= {"greatest_strain": greatest_strain(case, joined.model_mesh, shots[-1])}
+        run |= strain
         if folder is not None:
             folder.write_history(rows)
             folder.write_run(**run)

@@ -1,0 +1,1 @@
+"""Materials by name, each with the source of its numbers; `table` lists them."""

@@ -1,0 +1,331 @@
+"""Materials of a case by names, moduli, files of one's own and tests; fabrics of strips."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+
+from fiberbend import CaseError
+from fiberbend.case import convert
+from fiberbend.case.case import Case
+from fiberbend.effects.strip import StripEffect
+from fiberbend.effects.winding import WindingEffect
+from fiberbend.reader.json_schema import json_schema
+from fiberbend.reader.reader import as_case, read_case
+from fiberbend.sweep.points import read_sweep
+from materials.fit.fit import fit_law
+from materials.fit.modes import MODES, Measurement
+from materials.named.entry import DATA
+from materials.named.table import RUBBERS, SHEETS_BY_NAME, SOLIDS, THREADS_BY_NAME
+from tests.conftest import ROOT
+
+SECTION = ROOT / "cases" / "section.yaml"
+TEST = DATA / "dragon-skin-30.csv"
+OWN = """law: yeoh
+c1: 0.1123456789 MPa
+c2: 0.0212345678 MPa
+density: 1.08 g/cm^3
+tested: [1, 2.5]
+source: a test of March
+"""
+
+
+def complaint(settings: dict[str, Any]) -> list[str]:
+    with pytest.raises(CaseError) as error:
+        as_case(SECTION, settings)
+    return [f"{problem.path}: {problem.text}" for problem in error.value.problems]
+
+
+def wall(settings: Any) -> Any:
+    return convert.material(as_case(SECTION, {"materials.wall": settings}).materials.wall)
+
+
+# --- names --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_every_name_may_stand_in_a_case(name: str) -> None:
+    case = as_case(SECTION, {"materials.wall": name})
+    assert case.resolved()["materials"]["wall"] == name
+    assert as_case(case.resolved()) == case
+
+
+def enums(schema: Any) -> set[frozenset[str]]:
+    """Every list of words within a schema."""
+    if isinstance(schema, dict):
+        own = {frozenset(schema["enum"])} if "enum" in schema else set()
+        return own.union(*(enums(value) for value in schema.values()))
+    return set[frozenset[str]]().union(*map(enums, schema)) if isinstance(schema, list) else set()
+
+
+def test_the_schema_suggests_all_names_and_takes_own_files() -> None:
+    jsonschema = pytest.importorskip("jsonschema")
+    schema = json_schema()
+    assert {frozenset(SOLIDS), frozenset(THREADS_BY_NAME), frozenset(SHEETS_BY_NAME)} <= enums(
+        schema
+    )
+    data = yaml.safe_load(SECTION.read_text(encoding="utf-8"))
+    for value, good in {
+        "dragon-skin-10": True,
+        "my-rubber.yaml": True,
+        "my-rubber.yml": True,
+        "dragon-skin": False,
+    }.items():
+        data["materials"]["wall"] = value
+        valid = jsonschema.Draft202012Validator(schema).is_valid(data)
+        assert valid is good, value
+
+
+def test_unknown_names_are_told_near_ones() -> None:
+    (line,) = complaint({"materials.wall": "ecoflex"})
+    assert line.startswith('materials.wall: "ecoflex", expected ecoflex-00')
+    assert "`fiberbend materials` lists" in line
+    (line,) = complaint({"materials.wall": "kevlar"})
+    assert "expected another kind than a thread" in line
+    (line,) = complaint({"effects.1.winding.fiber": "ecoflex-0030"})
+    assert "expected another kind than a rubber" in line
+
+
+# --- Young's modulus ----------------------------------------------------------------------------
+
+
+def test_moduli_of_youngs_modulus_and_poissons_ratio() -> None:
+    rubber = wall({"young": "0.9 MPa"})
+    assert (rubber.law, rubber.parameters["mu"], rubber.bulk) == ("neo-hooke", 0.3, None)
+    assert wall({"young": "0.9 MPa", "poisson": 0.5}) == rubber
+    soft = wall({"young": "0.9 MPa", "poisson": 0.45})
+    shear, bulk = soft.parameters["mu"], soft.bulk
+    assert 9 * bulk * shear / (3 * bulk + shear) == pytest.approx(0.9, rel=1e-13)
+    assert (3 * bulk - 2 * shear) / (6 * bulk + 2 * shear) == pytest.approx(0.45, rel=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("material", "line"),
+    [
+        ({"young": "1 MPa", "poisson": 0.6}, "materials.wall.poisson: 0.6, expected at most 0.5"),
+        ({"young": "1 MPa", "poisson": -0.1}, "materials.wall.poisson: -0.1, expected at least 0"),
+        ({"young": "1 MPa", "c1": "1 MPa"}, "materials.wall.c1: no effect beside young"),
+        ({"young": "1 MPa", "law": "yeoh"}, "materials.wall.law: no effect beside young"),
+        ({"young": "1 MPa", "bulk": "9 MPa"}, "materials.wall.bulk: no effect beside young"),
+        ({"law": "neo-hooke", "mu": "1 MPa", "poisson": 0.4}, "materials.wall.poisson: no effect"),
+        ({"name": "ecoflex-0030", "young": "1 MPa"}, "materials.wall.young: no effect on a named"),
+        ({"name": "ecoflex-0030", "tested": [1, 2]}, "materials.wall.tested: no effect on a"),
+        ({"poisson": 0.5}, "materials.wall: neither name nor law"),
+        ({"young": "1 MPa", "upto": 2}, "materials.wall.upto: no effect without data"),
+        ({"law": "yeoh", "c1": "1 MPa", "tested": [2, 3]}, "materials.wall: tested 2 to 3"),
+    ],
+)
+def test_forms_that_say_nothing_are_refused(material: Any, line: str) -> None:
+    assert any(text.startswith(line) for text in complaint({"materials.wall": material}))
+
+
+# --- a file of one's own ------------------------------------------------------------------------
+
+
+def write_case(folder: Path, **changes: Any) -> Path:
+    data = yaml.safe_load(SECTION.read_text(encoding="utf-8"))
+    data["materials"] |= changes
+    path = folder / "own.yaml"
+    path.write_text(yaml.safe_dump(data, sort_keys=False), encoding="utf-8")
+    return path
+
+
+def test_an_own_file_is_the_same_numbers_in_the_case(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "my-rubber.yaml").write_text(OWN, encoding="utf-8")
+    path = write_case(tmp_path, wall="my-rubber.yaml")
+    monkeypatch.chdir(ROOT)
+    own = read_case(path)
+    said = yaml.safe_load(OWN)
+    # without gravity nobody asks for a density
+    del said["density"]
+    there = read_case(
+        write_case(tmp_path, wall=said | {"source": "my-rubber.yaml: a test of March"})
+    )
+    assert own == there
+    assert own.materials.wall.coefficients == {"c1": 0.1123456789, "c2": 0.0212345678}
+    assert convert.material(own.materials.wall).tested == (1.0, 2.5)
+    assert own.resolved()["materials"]["wall"]["source"] == "my-rubber.yaml: a test of March"
+    assert as_case(own.resolved()) == own
+
+
+def test_an_own_file_has_its_density_where_something_weighs(tmp_path: Path) -> None:
+    (tmp_path / "my-rubber.yaml").write_text(OWN, encoding="utf-8")
+    file = str(tmp_path / "my-rubber.yaml")
+    settings = {
+        "materials": {"wall": file, "floor": file, "sheath": file},
+        "effects.2": {"gravity": {"direction": "-y"}},
+        "model": "body",
+    }
+    case = as_case(SECTION, settings)
+    assert case.materials.wall.density == pytest.approx(1.08e-9)
+
+
+@pytest.mark.parametrize(
+    ("content", "lines"),
+    [
+        (
+            "law: yeoh\nc2: 1 MPa\n\nc9: 1 MPa\n",
+            ["materials.wall.c9: my.yaml, line 4: unknown key"],
+        ),
+        (
+            "law: yeoh\nc2: 1 MPa\n",
+            ["materials.wall.c1: my.yaml: missing, expected a coefficient of yeoh"],
+        ),
+        ("law: yoeh\nc1: 1 MPa\n", ['materials.wall.law: my.yaml, line 1: "yoeh", expected yeoh']),
+        ("name: other.yaml\n", ["materials.wall: my.yaml: "]),
+        ("- 1\n", ["materials.wall: my.yaml: contains no mapping, expected a material"]),
+        ("law: [\n", ["materials.wall: my.yaml, line 2: malformed YAML"]),
+        ("law: yeoh\nc1: 1 MPa\ndensity: 3\n", ["materials.wall.density: my.yaml, line 3: 3"]),
+    ],
+)
+def test_what_is_wrong_in_an_own_file_has_its_name(
+    tmp_path: Path, content: str, lines: list[str]
+) -> None:
+    (tmp_path / "my.yaml").write_text(content, encoding="utf-8")
+    found = complaint({"materials.wall": str(tmp_path / "my.yaml")})
+    for begin in lines:
+        assert any(line.startswith(begin) for line in found), found
+
+
+def test_a_file_that_is_not_there() -> None:
+    (line,) = complaint({"materials.wall": "none.yaml"})
+    assert line == "materials.wall: none.yaml: no such file, expected a file of a material"
+
+
+def test_threads_and_fabrics_of_own_files(tmp_path: Path) -> None:
+    (tmp_path / "thread.yaml").write_text("modulus: 3 GPa\ndiameter: 0.3 mm\n", encoding="utf-8")
+    (tmp_path / "cloth.yaml").write_text("modulus: 2 GPa\nthickness: 0.2 mm\n", encoding="utf-8")
+    strip = {"at": "bottom", "width": "6 mm", "fabric": str(tmp_path / "cloth.yaml")}
+    settings = {
+        "effects.1.winding.fiber": str(tmp_path / "thread.yaml"),
+        "effects.2": {"strip": strip},
+    }
+    case = as_case(SECTION, settings)
+    winding, cloth = case.find(WindingEffect), case.find(StripEffect)
+    assert winding is not None
+    assert winding.fiber is not None
+    assert (winding.fiber.modulus, winding.fiber.diameter) == (3000.0, 0.3)
+    assert winding.fiber.source == "thread.yaml"
+    assert cloth is not None
+    assert cloth.stiffness == pytest.approx(400.0)
+    assert as_case(case.resolved()) == case
+    (tmp_path / "cloth.yaml").write_text("modulus: 2 GPa\nthicknes: 0.2 mm\n", encoding="utf-8")
+    found = complaint(settings)
+    assert any("thicknes: cloth.yaml, line 2: unknown key" in line for line in found), found
+
+
+def test_a_sweep_has_own_files_too(tmp_path: Path) -> None:
+    for name, c1 in (("a", 0.1), ("b", 0.2)):
+        text = f"law: yeoh\nc1: {c1} MPa\n"
+        (tmp_path / f"{name}.yaml").write_text(text, encoding="utf-8")
+    sweep = {"case": str(SECTION), "vary": {"materials.wall": ["a.yaml", "b.yaml"]}}
+    path = tmp_path / "sweep.yaml"
+    path.write_text(yaml.safe_dump(sweep), encoding="utf-8")
+    points = read_sweep(path).points
+    assert [p.case.materials.wall.coefficients["c1"] for p in points] == [0.1, 0.2]
+
+
+# --- tests of one's own -------------------------------------------------------------------------
+
+
+def test_a_law_is_fitted_to_a_test(tmp_path: Path) -> None:
+    (tmp_path / "tensile.csv").write_bytes(TEST.read_bytes())
+    data = {"data": "tensile.csv", "law": "yeoh-2", "upto": 2}
+    case = read_case(write_case(tmp_path, wall=data))
+    from fiberbend.tensile.reading import Wanted, read_test
+
+    fit = fit_law("yeoh-2", [read_test(TEST, "uniaxial", Wanted(most=2.0)).measurement])
+    assert case.materials.wall.law == "yeoh"
+    assert case.materials.wall.coefficients == fit.parameters
+    # those of the table, which has fewer digits
+    stored = RUBBERS["dragon-skin-30"].coefficients
+    assert case.materials.wall.coefficients["c1"] == pytest.approx(stored["c1"], rel=1e-3)
+    resolved = case.resolved()["materials"]["wall"]
+    assert "data" not in resolved
+    assert resolved["source"].startswith("yeoh-2 fitted to tensile.csv from a stretch of 1 to 1.9")
+    assert as_case(case.resolved()) == case
+    shipped = as_case(SECTION, {"materials.wall": data | {"data": "dragon-skin-30"}})
+    assert shipped.materials.wall.coefficients == fit.parameters
+    (tmp_path / "my.yaml").write_text(yaml.safe_dump(data), encoding="utf-8")
+    from_file = read_case(write_case(tmp_path, wall="my.yaml"))
+    assert from_file.materials.wall.coefficients == case.materials.wall.coefficients
+
+
+def test_a_law_is_fitted_to_tests_of_several_kinds(tmp_path: Path) -> None:
+    files = {way: str(DATA / f"kawabata-1981-{way}.csv") for way in MODES}
+    case = as_case(SECTION, {"materials.wall": {"data": files, "law": "ogden-2"}})
+    tests = []
+    for way, file in files.items():
+        stretch, stress = np.loadtxt(file, delimiter=",", skiprows=1).T
+        tests.append(Measurement(MODES[way], stretch, stress))
+    assert case.materials.wall.coefficients == pytest.approx(
+        fit_law("ogden-2", tests).parameters, rel=1e-6
+    )
+
+
+@pytest.mark.parametrize(
+    ("material", "line"),
+    [
+        ({"data": "none.csv", "law": "yeoh"}, "materials.wall.data: none.csv: No such file"),
+        ({"data": str(SECTION), "law": "yeoh"}, "materials.wall.data: section.yaml: "),
+        ({"data": str(TEST)}, "materials.wall.law: missing, expected a law to fit"),
+        ({"data": str(TEST), "law": "yoeh"}, "materials.wall.law: law 'yoeh', expected one of"),
+        ({"data": str(TEST), "law": "yeoh", "c1": "1 MPa"}, "materials.wall.c1: no effect beside"),
+        ({"data": str(TEST), "law": "yeoh", "upto": "x"}, 'materials.wall.upto: "x", expected'),
+        ({"data": str(TEST), "law": "yeoh", "upto": 0.5}, "materials.wall"),
+        ({"data": {"shear": "a.csv"}, "law": "yeoh"}, "materials.wall.data.shear: unknown key"),
+        ({"data": {}, "law": "yeoh"}, "materials.wall.data: no test, expected one of"),
+        ({"data": [1], "law": "yeoh"}, "materials.wall.data: [1], expected the name of a file"),
+    ],
+)
+def test_tests_that_cannot_be_fitted_are_refused(material: Any, line: str) -> None:
+    assert any(text.startswith(line) for text in complaint({"materials.wall": material}))
+
+
+# --- fabrics of strips --------------------------------------------------------------------------
+
+
+def strips(**more: Any) -> dict[str, Any]:
+    return {"effects.2": {"strip": {"at": "bottom", "width": "6 mm", **more}}}
+
+
+def test_a_strip_of_a_named_paper() -> None:
+    def stiffness(case: Case) -> float:
+        strip = case.find(StripEffect)
+        assert strip is not None
+        return strip.stiffness
+
+    named = as_case(SECTION, strips(fabric="printer-paper", thickness="0.1 mm"))
+    given = as_case(SECTION, strips(modulus="5320 MPa", thickness="0.1 mm"))
+    assert stiffness(named) == stiffness(given) == pytest.approx(532.0)
+    assert as_case(named.resolved()) == named
+
+
+@pytest.mark.parametrize(
+    ("more", "line"),
+    [
+        ({"fabric": "printer-paper"}, "effects.2.strip.thickness: missing, expected a length"),
+        ({"thickness": "1 mm"}, "effects.2.strip.modulus: missing, expected a modulus"),
+        ({"modulus": "1 GPa"}, "effects.2.strip.thickness: missing, expected a length"),
+        (
+            {"fabric": "printer-paper", "thickness": "1 mm", "modulus": "1 GPa"},
+            "effects.2.strip.modulus: no effect beside printer-paper",
+        ),
+        ({"fabric": "paper"}, 'effects.2.strip.fabric: "paper", expected printer-paper'),
+        ({"fabric": "kevlar"}, 'effects.2.strip.fabric: "kevlar", expected another kind than a'),
+    ],
+)
+def test_strips_that_say_too_little_or_too_much(more: dict[str, Any], line: str) -> None:
+    assert any(text.startswith(line) for text in complaint(strips(**more)))
+
+
+def test_the_schema_of_the_cases_is_that_of_the_code() -> None:
+    text = (ROOT / "cases" / "case.schema.json").read_text(encoding="utf-8")
+    assert json.loads(text) == json_schema()
