@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import shutil
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,7 +16,7 @@ from bench.paper.page import Made, counts, draw, html, markdown, missing
 from bench.paper.part import Part
 from bench.paper.parts import PARTS
 from bench.paper.runs import ROOT, Runs
-from fiberbend.drawing.page import own_style
+from fiberbend.drawing.page import own_style, save
 
 OUT = ROOT / "runs" / "paper"
 DOCS = ROOT / "docs"
@@ -48,12 +47,11 @@ def make(runs: Runs, out: Path, parts: Sequence[Part] = PARTS) -> list[Made]:
     return made
 
 
-def publish(made: Sequence[Made], out: Path) -> None:
+def publish(made: Sequence[Made]) -> None:
     """Write docs/paper.md and its pictures."""
     for each in made:
         for figure in each.found.figures:
-            target = DOCS / "images" / f"paper_{figure.name}.png"
-            shutil.copyfile(out / "figures" / f"{figure.name}.png", target)
+            save(figure.page, DOCS / "images" / f"paper_{figure.name}.png")
     (DOCS / "paper.md").write_text(markdown(made, WHOLE), encoding="utf-8")
 
 
@@ -69,7 +67,7 @@ def main() -> None:
     parts = [part for part in PARTS if not given.only or part.name in given.only]
     made = make(Runs(given.out, given.full, given.jobs), given.out, parts)
     if given.full and not given.only:
-        publish(made, given.out)
+        publish(made)
     found = ", ".join(f"{number} {word}" for word, number in counts(made).items())
     print(f"{found}; {time.perf_counter() - start:.0f} s")
     print(f"open {given.out / 'index.html'}")

@@ -17,6 +17,8 @@ FLAT = 0.01
 """Part by which a quantity may change and is still insignificant in the sense of Table II."""
 
 UNREACHED = "the run ends before"
+_GLUE = "\u00a0"
+"""Between a number and its unit, which stay in one line."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -45,12 +47,12 @@ class Verdict:
 
 def percent(part: float, digits: int = 1) -> str:
     """A part with its sign in percent."""
-    return f"{100 * part:+.{digits}f} %".replace("-", "−")
+    return f"{100 * part:+.{digits}f}{_GLUE}%".replace("-", "−")
 
 
 def number(value: float, unit: str = "", digits: int = 4) -> str:
-    """A number and its unit; parts without a unit are percent where they are small."""
-    return f"{value:.{digits}g} {unit}".strip().replace("-", "−")
+    """A number and its unit."""
+    return f"{value:.{digits}g}{_GLUE}{unit}".strip().replace("-", "−")
 
 
 def near(key: str, model: str, ours: float, bound: float, source: str) -> Verdict:
@@ -186,8 +188,9 @@ def possible(
     """
     stated = STATED[key]
     low, high = shared(values, errors)
-    pairs = zip(models, values, strict=True)
-    ours = ", ".join(f"{name} {number(value, unit)}" for name, value in pairs)
+    if not all(math.isfinite(value) for value in values):
+        return Verdict(stated, " and ".join(models), "", None, UNREACHED)
+    ours = " and ".join(number(value, unit) for value in values)
     if low <= high:
         why = (
             f"the measured points are not published; {where} a measurement from {low:.4g} to "
