@@ -12,7 +12,7 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from bench.paper.page import Made, counts, draw, html, markdown, missing
+from bench.paper.page import Made, draw, html, markdown, missing, sentence
 from bench.paper.part import Part
 from bench.paper.parts import PARTS
 from bench.paper.runs import ROOT, Runs
@@ -68,8 +68,7 @@ def main() -> None:
     made = make(Runs(given.out, given.full, given.jobs), given.out, parts)
     if given.full and not given.only:
         publish(made)
-    found = ", ".join(f"{number} {word}" for word, number in counts(made).items())
-    print(f"{found}; {time.perf_counter() - start:.0f} s")
+    print(f"{sentence(made)} {time.perf_counter() - start:.0f} s")
     print(f"open {given.out / 'index.html'}")
 
 

@@ -31,6 +31,7 @@ class Verdict:
         ours: what it gives.
         kept: whether it is within the bound; None where nothing can be compared.
         why: the bound and how far off, or why nothing can be compared.
+        taken: it is an input that our models take as it is stated.
     """
 
     stated: Stated
@@ -38,6 +39,7 @@ class Verdict:
     ours: str
     kept: bool | None
     why: str
+    taken: bool = False
 
     @property
     def word(self) -> str:
@@ -100,7 +102,7 @@ def used(key: str, ours: float, where: str) -> Verdict:
     stated = STATED[key]
     kept = math.isclose(ours, stated.value, rel_tol=1e-12)
     why = "taken as stated" if kept else "taken otherwise"
-    return Verdict(stated, where, number(ours, stated.unit, 6), kept, why)
+    return Verdict(stated, where, number(ours, stated.unit, 6), kept, why, taken=kept)
 
 
 def holds(key: str, model: str, ours: str, kept: bool, why: str) -> Verdict:

@@ -118,7 +118,7 @@ def _draw(closed: Path, paths: Mapping[str, Path]) -> Any:
             panel.annotate(
                 f"{degrees:g}°",
                 place,
-                xytext=18 * out / np.linalg.norm(out),
+                xytext=24 * out / np.linalg.norm(out),
                 textcoords="offset points",
                 ha="center",
                 va="center",
