@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -65,7 +66,10 @@ def main() -> None:
     given = parser.parse_args()
     start = time.perf_counter()
     parts = [part for part in PARTS if not given.only or part.name in given.only]
-    made = make(Runs(given.out, given.full, given.jobs), given.out, parts)
+    try:
+        made = make(Runs(given.out, given.full, given.jobs), given.out, parts)
+    except KeyboardInterrupt:
+        sys.exit("interrupted: the same command goes on")
     if given.full and not given.only:
         publish(made)
     print(f"{sentence(made)} {time.perf_counter() - start:.0f} s")

@@ -90,6 +90,11 @@ class Known(Runs):
         return Solved("forces", curves, table, f"a command of {name}")
 
     @property
+    def whole_thread(self) -> Curve:  # type: ignore[override]
+        """That of a cell."""
+        return self.cell.sizes[BASELINE]
+
+    @property
     def pictures(self) -> Path:  # type: ignore[override]
         """Two small pictures."""
         from PIL import Image
