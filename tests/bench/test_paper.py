@@ -17,7 +17,7 @@ import yaml
 from bench.paper import __main__ as paper
 from bench.paper import verdict as v
 from bench.paper.facts import ANGLES, BASELINE, FIG_8, FIG_10, FIG_11, STATED, TABLE_I, by_key
-from bench.paper.figures import fig13
+from bench.paper.figures import fig11, fig13
 from bench.paper.lines import force, kpa, printed, zero_fit
 from bench.paper.lines import paper as closed_form
 from bench.paper.page import PIXELS, Made, markdown, missing, sentence
@@ -310,6 +310,17 @@ def test_errors_against_points_that_are_not_published() -> None:
         assert max(abs(x / measured - 1) for x in (237.828, 196.0)) <= 0.109 + 1e-12
     apart = v.possible("pressure", ("(19)", "cell"), (237.8, 181.5), (0.109, 0.109), "at 360°")
     assert apart.kept is False
+
+
+def test_a_lever_arm_that_leaves_room_for_both_errors() -> None:
+    of = {key: [1.0] * 5 for key in fig11.KEYS}
+    every = {"eq. (20)": of, fig11.HELD: {key: [1.0, 1.0, 1.05, 1.1, 1.1] for key in fig11.KEYS}}
+    low, high = fig11.levers(every, fig11.HELD)
+    for lever, part in ((low, 1.0), (high, 1.1)):
+        # at its ends a measured force is just between (20) and the body
+        ends = v.shared((15.0 / lever, part), fig11.ERRORS)
+        assert ends[0] == pytest.approx(ends[1])
+    assert low < 15 < high
 
 
 def test_places_that_no_measured_one_is_near() -> None:
