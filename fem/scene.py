@@ -22,7 +22,7 @@ from fem.kinematics.place import Place, place
 from fem.matrix import may_free
 from fem.own_code import OwnCode
 from fem.ranks import total
-from fem.round_off import probed, summed_noise
+from fem.round_off import noise_along, probed, summed_noise
 
 Floats = npt.NDArray[np.float64]
 
@@ -46,6 +46,7 @@ class Scene(OwnCode):
         force_scale: scale of the forces in the last residual, N.
         force_noise: norm of the forces that round-off in all potentials makes at rest, N.
         solid_noise: the part of it that is not of potentials with own code, N.
+        noise_along: what round-off makes there of ∂Π/∂q of the natural scalars, by name.
         free: local dofs (owned and ghosts) that no constraint fixes, (local,).
         free_opposite: the same for modes of the symmetry opposite to that of half a body; None of
             a whole one, and where they cannot be told.
@@ -93,7 +94,9 @@ class Scene(OwnCode):
         self._compile(potentials)
         self._constrain(constraints)
         self.solid_noise = self._solid_noise()
-        self.force_noise = float(np.hypot(self._noise(), self.solid_noise))
+        discretes = self.discrete.values()
+        self.force_noise = float(np.hypot(summed_noise(self.body, discretes), self.solid_noise))
+        self.noise_along = noise_along(self.body, discretes, self.natural)
         self.free_opposite = opposite_free(ordered, self.body)
 
     def __del__(self) -> None:
@@ -313,9 +316,6 @@ class Scene(OwnCode):
         np.add.at(values, lead, values[follow])
         values[follow] = 0.0
         return values, norm
-
-    def _noise(self) -> float:
-        return summed_noise(self.body, self.discrete.values())
 
     def _solid_noise(self) -> float:
         noise = probed(self.body, self._solid_forces)

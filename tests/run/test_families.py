@@ -107,6 +107,27 @@ def test_mirrored_hands_give_mirrored_answers(model: str, kind: str) -> None:
     assert abs(right.last("twist_deg")) > 1
 
 
+def test_a_stiff_braid_on_a_fine_section_converges_to_its_round_off() -> None:
+    """Force and moment of its threads round off by 1e-11 of themselves: no more can be asked."""
+    tube = {"section": "circle", "radius": "5 mm", "length": "97.344 mm", "wall": "1.5 mm"}
+    fine, rough = (
+        solved(
+            helices(40.0, 6),
+            "section",
+            "smeared",
+            actuator=tube,
+            materials={"wall": "dragon-skin-30"},
+            pressure={"to": "30 kPa"},
+            mesh={"section": 8},
+            solver={"tolerance": tolerance},
+        )
+        for tolerance in (1e-12, 1e-10)
+    )
+    for name in ("axis_stretch", "chamber_mm3", "stored_mJ"):
+        assert fine.last(name) == pytest.approx(rough.last(name), rel=1e-9)
+    assert (fine.status, fine.run["cutbacks"]) == ("converged", 0)
+
+
 def test_starts_fill_a_slice_of_a_part_of_the_pitch() -> None:
     # n starts in p/n are those in 2p/n: twice half of them, one start further on
     def cell(starts: int, *phases: str) -> RunResult:
