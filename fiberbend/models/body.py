@@ -121,7 +121,8 @@ class Body(MeshedModel):
         from fem.results.centre_line import BendingAngle, CentreLine
         from fiberbend.models.gauges import BodyGauge
 
-        frames, line = Frames(scene.body), CentreLine(scene.body)
+        against = case.zones is not None
+        frames, line = Frames(scene.body, against), CentreLine(scene.body)
         return Observables(
             frames,
             BendingAngle(line),
