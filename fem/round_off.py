@@ -44,3 +44,18 @@ def summed_noise(body: Kinematics, discretes: Iterable[Discrete]) -> float:
         discrete.update(body.w.x.array)
         discrete.add_noise(noise)
     return float(np.sqrt(total(body.domain.comm, float(noise @ noise))))
+
+
+def noise_along(
+    body: Kinematics, discretes: Iterable[Discrete], names: Iterable[str]
+) -> dict[str, float]:
+    """What round-off makes of ∂Π/∂q of global scalars at rest, by name; collective.
+
+    Args:
+        body: the kinematics, at rest.
+        discretes: the potentials with code of their own, there.
+        names: of the scalars.
+    """
+    potentials = list(discretes)
+    squares = {name: sum(each.noise_along(name) for each in potentials) for name in names}
+    return {name: float(np.sqrt(total(body.domain.comm, s))) for name, s in squares.items()}

@@ -22,7 +22,7 @@ from fem.kinematics.place import Place, place
 from fem.matrix import may_free
 from fem.own_code import OwnCode
 from fem.ranks import total
-from fem.round_off import probed, summed_noise
+from fem.round_off import noise_along, probed, summed_noise
 from geometry.mesh.data import MeshData
 
 Floats = npt.NDArray[np.float64]
@@ -51,6 +51,7 @@ class Scene(OwnCode):
         volume_scale: norm of ∫ φ dX over the pressure field's test functions, mm³.
         force_noise: norm of the forces that round-off in all potentials makes at rest, N.
         solid_noise: the part of it that is not of potentials with own code, N.
+        noise_along: what round-off makes there of ∂Π/∂q of the natural scalars, by name.
         volumetric: owned dofs of the pressure field, (owned,).
         free: local dofs (owned and ghosts) that no constraint fixes, (local,).
         free_opposite: the same for modes of the symmetry opposite to that of half a body; None of
@@ -148,7 +149,9 @@ class Scene(OwnCode):
         if "volume" in self._forms:
             self.volume_scale = self.norm(self._sum(self._forms["volume"], ())[0])
         self.solid_noise = self._solid_noise()
-        self.force_noise = float(np.hypot(self._noise(), self.solid_noise))
+        discretes = self.discrete.values()
+        self.force_noise = float(np.hypot(summed_noise(self.body, discretes), self.solid_noise))
+        self.noise_along = noise_along(self.body, discretes, self.natural)
 
     def __del__(self) -> None:
         if hasattr(self, "matrix") and may_free(self.matrix):
@@ -314,9 +317,6 @@ class Scene(OwnCode):
         np.add.at(values, lead, values[follow])
         values[follow] = 0.0
         return values, norm
-
-    def _noise(self) -> float:
-        return summed_noise(self.body, self.discrete.values())
 
     def _solid_noise(self) -> float:
         noise = probed(self.body, self._solid_forces)

@@ -87,6 +87,9 @@ class Discrete(Protocol):
     def add_noise(self, b: Floats) -> None:
         """Add the least forces that double precision resolves, at rest, to local coefficients."""
 
+    def noise_along(self, name: str) -> float:
+        """What round-off makes of ∂Π/∂q of a global scalar at rest: this rank's sum of squares."""
+
     def tangent_blocks(self) -> Floats:
         """∂²Π/∂w² of every piece, dense and symmetric, in the dofs `block_dofs`, (n, k, k)."""
 

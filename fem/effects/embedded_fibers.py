@@ -134,6 +134,14 @@ class FiberPotential:
         force = self.length * self.stiffness * self._along.noise()
         self._along.add(b, force[:, None] * np.abs(self._along.by_dofs))
 
+    def noise_along(self, name: str) -> float:
+        """Sum of squares over the segments, whose strains round off each for itself."""
+        along = self._along.by_scalar.get(name)
+        if along is None:
+            return 0.0
+        noise = self.length * self.stiffness * self._along.noise() * along
+        return float(noise @ noise)
+
     def predict(
         self, correction: Floats | None, scalars: Mapping[str, float] | None = None
     ) -> None:

@@ -73,14 +73,15 @@ class Equilibrium:
                 measures[measure("conjugate", name)] = scene.conjugate(name)
         if self._control is not None:
             measures["control"] = self._control.value()
-        turned = scene.body.turned()
+        shape, turned = self._predictor.describe(), scene.body.turned()
+        turned = self._predictor.turned(shape) if turned is None else turned
         if turned is not None:
             measures[TURN] = turned
         return State(
             w=scene.w.copy(),
             scalars=scalars,
             measures=measures,
-            shape=self._predictor.describe(),
+            shape=shape,
             discrete=scene.memory(),
         )
 

@@ -37,13 +37,15 @@ class Frames:
 
     Args:
         body: kinematics with the displacement.
+        against: parts of the body may bend against each other, so that its bending angle hides
+            how far they do.
 
     Attributes:
         z: reference positions of the stations, mm, (k,).
     """
 
-    def __init__(self, body: Kinematics) -> None:
-        self._body = body
+    def __init__(self, body: Kinematics, against: bool = False) -> None:
+        self._body, self._against = body, against
         nodes = body.domain.data.nodes
         low, high = nodes.min(axis=0), nodes.max(axis=0)
         # no station between two planes of nodes, which would weigh none
@@ -109,6 +111,19 @@ class Frames:
         spin, middle = self._at_nodes(rotation, centre)
         warp = np.einsum("nba,nb->na", spin, x - middle) - self._section
         return Shape(rotation, centre, warp)
+
+    def turned(self, shape: Shape) -> float | None:
+        """Greatest turn of a station, rad, where the bending angle may hide it; else None.
+
+        Turns about the axes of the sections add up from station to station: further than π too.
+        """
+        from scipy.spatial.transform import Rotation
+
+        if not self._against:
+            return None
+        rotation = Rotation.from_matrix(shape.rotation)
+        turns = np.cumsum((rotation[:-1].inv() * rotation[1:]).as_rotvec(), axis=0)
+        return float(np.linalg.norm(turns, axis=1).max())
 
     def rebuild(self, shape: Shape) -> Floats:
         """Displacement of the owned nodes of a shape, mm, (n, 3)."""

@@ -40,6 +40,10 @@ class Predictor:
         """The scene's present displacement as a rod; None without frames."""
         return self._frames.fit(self._scene.body.displacement()) if self._frames else None
 
+    def turned(self, shape: Shape | None) -> float | None:
+        """Greatest turn of a rod, rad, where the bending angle does not tell it; else None."""
+        return None if self._frames is None or shape is None else self._frames.turned(shape)
+
     def turn(self, turning: bool) -> None:
         """Extrapolate displacements in the frames that turn with the body, or as they are."""
         self._turning = turning

@@ -29,6 +29,9 @@ class SideCondition(Protocol):
     def value(self) -> float:
         """g at the present state, scaled so that 1 is a large error."""
 
+    def noise(self) -> float:
+        """What round-off makes of it: less is none."""
+
     def lag(self) -> float:
         """What a step with the last tangent lacks of that; see `Problem.lag`."""
 

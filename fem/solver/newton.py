@@ -219,6 +219,8 @@ class _Solve:
         self.owned = newton.owned
         self.history: list[tuple[float, float, float]] = []
         self.scale = 0.0
+        self.sides_met = False
+        """Every side condition is met as far as double precision resolves it."""
         self.least = np.inf
         self.reuse = Reuse(self.comm, newton.settings.reuse, newton.spares)
         self.sizing = newton.problem.free[: self.owned] & ~newton.problem.volumetric
@@ -263,6 +265,10 @@ class _Solve:
         self.scale = max(scale, 1e-30)
         r[~problem.free[: self.owned]] = 0.0
         g = np.array([condition.value() for condition in self.conditions])
+        noise = np.array([condition.noise() for condition in self.conditions])
+        self.sides_met = bool(
+            np.all(np.abs(g) <= np.maximum(noise, self.newton.settings.tolerance))
+        )
         volumetric = problem.volumetric
         self.history.append(
             (
@@ -310,13 +316,13 @@ class _Solve:
     def test(self, _snes: PETSc.SNES, iteration: int, _norms: tuple[float, ...]) -> int:
         """Force, volume and side conditions, each for itself."""
         reasons = PETSc.SNES.ConvergedReason
-        force, volume, side = self.history[-1]
+        force, volume, _ = self.history[-1]
         tolerance = self.newton.settings.tolerance
         if not np.isfinite(force):
             self.reason = self._not_a_number()
             return int(reasons.DIVERGED_FUNCTION_DOMAIN)
         resolved = max(tolerance, self.problem.force_noise / self.scale)
-        if force <= resolved and volume <= tolerance and side <= tolerance:
+        if force <= resolved and volume <= tolerance and self.sides_met:
             return int(reasons.CONVERGED_FNORM_RELATIVE)
         if self.reuse.effort >= self.newton.settings.iterations:
             self.reason = f"no convergence in {iteration} iterations"

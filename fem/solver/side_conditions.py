@@ -42,6 +42,10 @@ class GivenConjugate:
         """What is left of the equation, scaled."""
         return (self._scene.conjugate(self._name) - self._target) / self._scale
 
+    def noise(self) -> float:
+        """None that is known."""
+        return 0.0
+
     def lag(self) -> float:
         """What a step with the last tangent lacks of that."""
         return -self._scene.lag_along(self._name) / self._scale
@@ -76,6 +80,10 @@ class Stationary:
         """What is left of the equation, scaled."""
         return -self._scene.conjugate(self._name) / self._scale
 
+    def noise(self) -> float:
+        """That of the potentials with code of their own."""
+        return self._scene.noise_along[self._name] / self._scale
+
     def lag(self) -> float:
         """What a step with the last tangent lacks of that."""
         return self._scene.lag_along(self._name) / self._scale
@@ -103,6 +111,10 @@ class GivenFunctional:
     def value(self) -> float:
         """What is left of the equation, scaled."""
         return self._functional.value() - self._target
+
+    def noise(self) -> float:
+        """None that is known."""
+        return 0.0
 
     def lag(self) -> float:
         """Nothing: no fiber force is in it."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from fiberbend import columns as col
+from fiberbend.answer.asked import asked
 from fiberbend.answer.motion import SEEN, motion, turn
 from fiberbend.answer.numbers import number, quantity
 from fiberbend.answer.touch import touches
@@ -22,8 +22,6 @@ from fiberbend.plan.doubts import errors
 
 WIDTH = 100
 """Columns of the printed answer."""
-_SAME = 1e-6
-"""Part of an asked angle or pressure by which a row may miss it."""
 _HARD = "\u00a0"
 _TOGETHER = re.compile(r"(?<==) (?=-?\d)|(?<=[a-z]) (?==)|(?<=\d) (?=(?:[a-zA-Z]+³?|%)(?:\W|$))")
 """Spaces within "x = 8 mm"."""
@@ -95,7 +93,7 @@ def answer(case: Case, rows: Sequence[col.Row], run: Mapping[str, Any]) -> Answe
     """
     model = choose_model(case)[0]
     entries = [
-        *(_forces(case, model, rows) if case.straight else _bending(case, rows)),
+        *(Entry(*told) for told in asked(case, model, rows)),
         _end(case, rows),
         *_tip(case, rows),
         *(Entry(*told) for told in turned(rows, len(case.zones or ()))),
@@ -189,78 +187,6 @@ def _state(case: Case, row: col.Row) -> str:
 
 def _end(case: Case, rows: Sequence[col.Row]) -> Entry:
     return Entry("end of the run", _state(case, rows[-1]))
-
-
-# --- what is asked for ------------------------------------------------------------------------
-
-
-def _asked(
-    rows: Sequence[col.Row], key: str, goal: float, value: str, units: tuple[str, str], what: str
-) -> Entry:
-    """A column where another one has an asked value, at every load step that has it.
-
-    Args:
-        rows: of the history.
-        key: the column that is asked at.
-        goal: its value.
-        value: the column that answers.
-        units: of the asked value and of the answer.
-        what: what the answer is.
-    """
-    label = f"{what} at {quantity(goal, units[0])}"
-    slack = _SAME * max(1.0, abs(goal))
-    found = [
-        row for row in rows[1:] if row.get(value) is not None and abs(row[key] - goal) <= slack
-    ]
-    if not found:
-        return Entry(label, "not reached")
-    first, *again = (quantity(row[value], units[1]) for row in found)
-    return Entry(label, first, f"and again {', '.join(again)}" if again else "")
-
-
-def _bending(case: Case, rows: Sequence[col.Row]) -> Iterator[Entry]:
-    """Pressures at the asked angles, and angles at the asked pressures."""
-    if case.inflation is None:
-        return
-    for angle in dict.fromkeys(case.output.at_angles):
-        goal = math.degrees(angle)
-        yield _asked(rows, col.ANGLE, goal, col.PRESSURE, ("°", "kPa"), "pressure")
-    for pressure in dict.fromkeys(case.output.at_pressures):
-        yield _asked(rows, col.PRESSURE, 1e3 * pressure, col.ANGLE, ("kPa", "°"), "angle")
-
-
-def _forces(case: Case, model: ModelKind, rows: Sequence[col.Row]) -> Iterator[Entry]:
-    """Tip forces at the asked pressures and at the end, named for what they are."""
-    units = ("kPa", "N")
-    found = [
-        _asked(rows, col.PRESSURE, 1e3 * pressure, col.TIP_FORCE, units, "tip force")
-        for pressure in dict.fromkeys(case.output.at_pressures)
-    ]
-    last = rows[-1]
-    if last.get(col.TIP_FORCE) is None:
-        yield from found
-        return
-    yield from found
-    if not found:
-        at = quantity(last[col.PRESSURE], "kPa")
-        yield Entry(f"tip force at {at}", quantity(last[col.TIP_FORCE], "N"))
-    yield Entry("this force is", _force_name(case, model))
-    forces = ((col.ROOF_FORCE, "force of the roof", "N"), (col.AXIAL_FORCE, "axial force", "N"))
-    for key, label, unit in (*forces, (col.MOMENT, "bending moment", "N mm")):
-        if last.get(key) is not None:
-            yield Entry(label, quantity(last[key], unit), "at the end")
-
-
-def _force_name(case: Case, model: ModelKind) -> str:
-    """What the tip force of a model is."""
-    if model.ends:
-        return "that of the body's tip on the post"
-    from fiberbend.models.closed_form import lever_arm
-
-    lever = quantity(lever_arm(case), "mm")
-    if model.elements() is None:
-        return f"κP/L_f, of a closed form whose section keeps its shape; L_f = {lever}"
-    return f"M/L_f, of a {model.name} kept straight all along, without caps; L_f = {lever}"
 
 
 # --- where it is ------------------------------------------------------------------------------

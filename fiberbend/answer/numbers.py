@@ -26,6 +26,6 @@ def number(value: float, decimals: int = 4, digits: int = 4) -> str:
 
 
 def quantity(value: float, unit: str, digits: int = 4) -> str:
-    """A value with its unit, such as "45.11 kPa" or "90°"."""
-    space = "" if unit == "°" else " "
+    """A value with its unit, such as "45.11 kPa" or "90°"; a ratio has none."""
+    space = "" if unit in ("°", "") else " "
     return f"{number(value, _DECIMALS.get(unit, 4), digits)}{space}{unit}"

@@ -106,7 +106,8 @@ class Solver(Spec):
     max_step: Pressure | None = None
     """Greatest step of the pressure; without limit by default; under pressure control only."""
     max_turn: Angle | None = None
-    """Greatest change of the bending angle in a step; by default that of the model."""
+    """Greatest change of the bending angle in a step, of a body with zones that of the greatest
+    turn along it; by default that of the model."""
     max_cutbacks: int = Field(default=8, ge=0, le=100)
     """How often in a row a step is cut before the run gives up."""
     tolerance: float = Field(default=1e-8, gt=0, le=1e-2)

@@ -6,6 +6,7 @@ pyvista is imported where it is used: a run without pictures does without it.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -219,29 +220,88 @@ class BodySurfaces:
             near: greatest z at rest of what is at x < 0, mm.
             opened: draw x > 0 alone.
         """
-        mesh, scenery = self.mesh, self._scenery
-        pairs = mesh.facets.get("winding", np.zeros((0, 2), dtype=np.int64))
-        if scenery.actuator is None or not scenery.strips or not len(pairs):
+        skin = self._clothed()
+        if skin is None:
             return []
-        actuator, perimeter = scenery.actuator, scenery.actuator.winding_perimeter
-        skin = Tessellation(mesh, pairs)
-        data = self.surface(skin, state, mesh.half)
+        data = self.surface(skin, state, self.mesh.half)
         data.points = data.points + _OFF * np.asarray(data.point_data.active_normals)
-        rest = np.asarray(self.surface(skin, None, mesh.half).points)
-        s = arc_length(actuator, rest[:, :2], rest[:, 0] < 0)
+        rest = np.asarray(self.surface(skin, None, self.mesh.half).points)
         end = np.where(rest[:, 0] < 0, -np.inf if opened else near, high)
-        data["along"] = np.maximum(low - rest[:, 2], rest[:, 2] - np.minimum(end, high))
-        if np.isneginf(end).any():
-            data["along"] = np.where(np.isneginf(end), -rest[:, 0], data["along"])
+        along = np.maximum(low - rest[:, 2], rest[:, 2] - np.minimum(end, high))
+        data["along"] = np.where(np.isneginf(end), -rest[:, 0], along)
+        return [
+            Drawable(part, color=COLORS["fabric"])
+            for cloth in self._cut_out(data, rest)
+            if (part := cloth.clip_scalar(scalars="along", value=0.0)).n_cells
+        ]
+
+    def fabric_in(self, states: Sequence[Floats]) -> tuple[Ints, list[Floats]]:
+        """Strips of fabric on the modelled half or whole, in many states.
+
+        Args:
+            states: positions of all nodes in each, (n, 3), mm.
+
+        Returns:
+            Triangles, (k, 3), and the positions of their points in each state, (m, 3), mm.
+        """
+        import pyvista as pv
+
+        none = np.zeros((0, 3), dtype=np.int64), [np.zeros((0, 3)) for _ in states]
+        skin = self._clothed()
+        if skin is None:
+            return none
+        data = self.surface(skin, None, False)
+        for number, nodes in enumerate(states):
+            at_cells = nodes[self.mesh.cells]
+            data[f"at {number}"] = skin.interpolate(at_cells) + _OFF * skin.normals(at_cells)
+        # a cut interpolates whatever is known at points
+        strips = self._cut_out(data, np.asarray(data.points))
+        if not strips:
+            return none
+        found = (
+            pv.merge(strips, merge_points=False)
+            .extract_surface(algorithm="dataset_surface")
+            .triangulate()
+        )
+        triangles: Ints = np.asarray(found.regular_faces).astype(np.int64)
+        return triangles, [np.asarray(found[f"at {n}"]) for n in range(len(states))]
+
+    def _clothed(self) -> Tessellation | None:
+        """The surface on which strips lie; None without any."""
+        pairs = self.mesh.facets.get("winding", np.zeros((0, 2), dtype=np.int64))
+        there = self._scenery.actuator is not None and self._scenery.strips and len(pairs)
+        return Tessellation(self.mesh, pairs) if there else None
+
+    def _cut_out(self, data: Any, rest: Floats) -> list[Any]:
+        """The strips cut out of a surface, those that are on it.
+
+        Args:
+            data: the surface as pyvista.PolyData.
+            rest: where its points are at rest, (n, 3), mm.
+        """
+        actuator = self._scenery.actuator
+        assert actuator is not None
+        perimeter, s = actuator.winding_perimeter, arc_length(actuator, rest[:, :2], rest[:, 0] < 0)
         found = []
-        for window in scenery.strips:
-            apart = np.abs((s - window.middle + perimeter / 2) % perimeter - perimeter / 2)
-            data["aside"] = apart - window.width / 2
-            part = data.clip_scalar(scalars="aside", value=0.0)
-            if part.n_points:
-                part = part.clip_scalar(scalars="along", value=0.0)
+        for window in self._scenery.strips:
+            apart = (s - window.middle + perimeter / 2) % perimeter - perimeter / 2
+            half, (start, end) = window.width / 2, window.ends
+            narrow = half < perimeter / 4
+            sides = [apart - half, -apart - half] if narrow else [np.abs(apart) - half]
+            if np.isfinite(window.ends).any():
+                sides.append(np.maximum(start - rest[:, 2], rest[:, 2] - end))
+            names = [f"beyond {number}" for number in range(len(sides))]
+            for name, side in zip(names, sides, strict=True):
+                data[name] = side
+            part = data
+            if narrow:
+                # opposite the strip it jumps, and would pass through all that lies between
+                jumps = np.ptp(apart[data.regular_faces], axis=1) > perimeter / 2
+                part = data.remove_cells(jumps)
+            for name in names:
+                part = part.clip_scalar(scalars=name, value=0.0) if part.n_cells else part
             if part.n_cells:
-                found.append(Drawable(part, color=COLORS["fabric"]))
+                found.append(part)
         return found
 
     def fiber_tubes(

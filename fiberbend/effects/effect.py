@@ -224,6 +224,10 @@ class Effect(Spec):
         """Whether it holds the bending angle, so that no load can reach one."""
         return "curvature" in self.fixed_scalars()
 
+    def held(self) -> dict[str, str]:
+        """Motions that it holds along the whole length, by their columns, and at what, in words."""
+        return {}
+
     def fixed_scalars(self) -> tuple[str, ...]:
         """Global unknowns of uniform bending that it fixes."""
         return ()

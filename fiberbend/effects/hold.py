@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from pydantic import Field
 
+from fiberbend.columns import ANGLE, AXIS_STRETCH, SIDE_ANGLE, TWIST
 from fiberbend.effects.effect import HELD, Built, Draft, Effect, Requests, Site
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import AngleOrZero
@@ -70,6 +72,17 @@ class HoldEffect(Effect):
     def fixes_angle(self) -> bool:
         """Where the bend is held."""
         return self.bend is not None
+
+    def held(self) -> dict[str, str]:
+        """Those that are given."""
+        turns = {ANGLE: ("bend", self.bend), SIDE_ANGLE: ("side bend", self.side_bend)}
+        turns[TWIST] = ("twist", self.twist)
+        given = {AXIS_STRETCH: f"its stretch at {self.stretch:g}"} if self.stretch else {}
+        return given | {
+            key: f"its {name} at {math.degrees(value):.4g}°"
+            for key, (name, value) in turns.items()
+            if value is not None
+        }
 
     def _moves(self) -> bool:
         """Whether it is held elsewhere than at rest."""

@@ -31,10 +31,9 @@ from fiberbend.effects.effect import (
     tip_strips,
 )
 from fiberbend.models.costs.size import pieces
+from fiberbend.models.ends import AT_ENDS, at_ends
 from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import (
-    AT_ENDS,
-    ENDS_BEND,
     MeshedModel,
     Objection,
     Observables,
@@ -122,7 +121,8 @@ class Body(MeshedModel):
         from fem.results.centre_line import BendingAngle, CentreLine
         from fiberbend.models.gauges import BodyGauge
 
-        frames, line = Frames(scene.body), CentreLine(scene.body)
+        against = case.zones is not None
+        frames, line = Frames(scene.body, against), CentreLine(scene.body)
         return Observables(
             frames,
             BendingAngle(line),
@@ -223,7 +223,7 @@ class Body(MeshedModel):
         for effect in case.effects:
             yield from effect.uncertainties(case.straight)
         if not case.straight and not any(effect.alone() for effect in case.effects):
-            yield f"{AT_ENDS}{ENDS_BEND}: see uniform_angle_deg"
+            yield f"{AT_ENDS}{at_ends(case)}: see the columns uniform_…"
 
     def errors_of_zones(self) -> Iterator[str]:
         """It has the borders."""

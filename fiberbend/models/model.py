@@ -31,13 +31,6 @@ if TYPE_CHECKING:
 
     KinematicsFactory = Callable[[Domain, Iterable[str]], Kinematics]
 
-AT_ENDS = "ends: "
-"""Begins what a model says of the bend near caps; zones say it of their borders as well."""
-ENDS_BEND = (
-    "the whole body bends further than its middle, the baseline's by 0.6 to 1.4 % "
-    "(docs/evidence/free.md)"
-)
-
 Objection = tuple[str, str]
 """A path within a case, and what a model has against it."""
 

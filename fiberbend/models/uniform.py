@@ -12,9 +12,8 @@ from fiberbend.case.symmetry import Symmetry
 from fiberbend.case.zones import shared_pressures
 from fiberbend.columns import UNIFORM, ZONES
 from fiberbend.effects.effect import SPACE
+from fiberbend.models.ends import AT_ENDS, left_out
 from fiberbend.models.model import (
-    AT_ENDS,
-    ENDS_BEND,
     MeshedModel,
     Objection,
     Observables,
@@ -106,7 +105,7 @@ class UniformModel(MeshedModel):
             )
             return
         yield f"mesh: moves P by up to {self.mesh_error(case)} % (docs/evidence/uniform.md)"
-        yield f"{AT_ENDS}left out; {ENDS_BEND}"
+        yield left_out(case)
 
     def steps_of_zones(self, case: Case) -> int:
         """Pressures at which all zones are chained, and angles."""

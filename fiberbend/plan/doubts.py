@@ -11,7 +11,8 @@ from fiberbend.case.zones import zone_cases
 from fiberbend.effects.effect import Effect
 from fiberbend.effects.wound.turns import Turns
 from fiberbend.models.choice import choose_model
-from fiberbend.models.model import AT_ENDS, ModelKind
+from fiberbend.models.ends import AT_ENDS
+from fiberbend.models.model import ModelKind
 from fiberbend.models.resolution import FARTHEST_PITCH, lost_pressure, winding_remark
 from fiberbend.plan.memory import gigabytes, needed_mb, room
 from fiberbend.schema.slips import LIMITS

@@ -133,7 +133,7 @@ def report(
         curves=curves,
         side=side,
         path_in_space=_pictures(path, _PATHS, words) if known and _leaves_plane(known) else [],
-        sections=_sections(path, case, states, words),
+        sections=_sections(path, case, known, states, words),
         body=[each for each in _limited(path, _BODY, links, words) if each.inside or not loose],
         dimensions=list(case_tables.dimensions(case)),
         materials=list(case_tables.materials(case)),
@@ -187,13 +187,19 @@ def _words(states: States | None) -> dict[str, str]:
 
 
 def _forces(case: Case, rows: Sequence[Mapping[str, Any]]) -> dict[int, str]:
-    """What the line of a step says of the obstacles, by the number of the step."""
+    """What the line of a step says of turns and of obstacles, by the number of the step."""
+    beside = scenery(case, rows)
     return {
         step: ", ".join(
-            f"{name} {short_number(float(np.linalg.norm(force)))} N"
-            for name, force in forces.items()
+            [
+                *(f"{name} {short_number(turn)}°" for name, turn in beside.turned[step].items()),
+                *(
+                    f"{name} {short_number(float(np.linalg.norm(force)))} N"
+                    for name, force in forces.items()
+                ),
+            ]
         )
-        for step, forces in scenery(case, rows).forces.items()
+        for step, forces in beside.forces.items()
     }
 
 
@@ -248,7 +254,11 @@ def _curves(
 
 
 def _sections(
-    path: Path, case: Case, states: States | None, words: Mapping[str, str]
+    path: Path,
+    case: Case,
+    rows: Sequence[Mapping[str, Any]],
+    states: States | None,
+    words: Mapping[str, str],
 ) -> list[Picture]:
     """Pictures of a section or cell in its own plane; where there are none, its shape now."""
     there = _pictures(path, _SECTIONS, words)
@@ -262,7 +272,7 @@ def _sections(
     others = ("section_str*.*",)
     with own_style(), _drawn(others) as (pictures, write):
         if shots:
-            draw_sections(states.model_mesh, shots, write, scenery=scenery(case))
+            draw_sections(states.model_mesh, shots, write, scenery=scenery(case, rows))
     return pictures
 
 

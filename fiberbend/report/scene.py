@@ -16,16 +16,16 @@ from fiberbend.drawing.renderer import FROM_THE_SIDE
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.drawing.tessellation import Tessellation, boundary_facets, on_mirror
 from fiberbend.report.fields import QUANTITIES, Fields
+from fiberbend.report.laid import Threads, strips
 from fiberbend.report.packing import base64_of, packed
+from fiberbend.report.places import Places
+from fiberbend.results.scenery import scenery
 from fiberbend.results.space import Space
 from fiberbend.results.states import Kept, States
-from fiberbend.states.bend import Bend, in_frame
-from fiberbend.states.fiber_lines import fiber_lines
 from fiberbend.states.recovery import SplitNodes, split_nodes
-from fiberbend.states.snapshot import ModelMesh, Snapshot
+from fiberbend.states.snapshot import ModelMesh
 from fiberbend.states.stack import split_alike
 from geometry.mesh.data import Floats, Ints, MeshData
-from geometry.winding.segments import EmbeddedFibers
 
 MOST_NUMBERS = 12_000_000
 """Bytes of all steps before they are compressed; beyond, surfaces get coarser, then steps fewer."""
@@ -37,33 +37,6 @@ _BESIDE = 0.15
 """So far from the body obstacles are within the view, as a part of the body's extent."""
 _EDGE_ON = 0.2
 """A surface is hardly seen from the side whose normal has less than this along the view."""
-
-
-class Places:
-    """Positions of nodes in space at any step.
-
-    Args:
-        space: body and fibers in space.
-    """
-
-    def __init__(self, space: Space) -> None:
-        self._space = space
-        self.mesh: MeshData = space.model_mesh.mesh
-
-    def at(self, state: Snapshot, nodes: Ints | None = None) -> Floats:
-        """Positions in a state, (n, 3), mm.
-
-        Args:
-            state: of the model's own mesh.
-            nodes: numbers in the mesh in space; all by default.
-        """
-        stack, base = self._space.stack, self._space.own.mesh
-        some = slice(None) if nodes is None else nodes
-        if stack is None:
-            moved: Floats = self.mesh.nodes[some] + state.displacement[some]
-            return moved
-        position = in_frame(base.nodes, state.displacement)[stack.node[some]] * stack.sign[some]
-        return Bend.of(state, base).place(position, self.mesh.nodes[some, 2])
 
 
 @dataclasses.dataclass(frozen=True)
@@ -140,18 +113,22 @@ def scene_data(
     if len(shown) < len(kept):
         notes.append("Steps whose files are damaged are left out.")
     places = Places(space)
-    threads = _Threads(space, places)
+    surfaces = BodySurfaces(space.model_mesh, scenery(case))
+    threads = Threads(surfaces, places)
     fields = Fields(space.own, _own_nodes(space.own), [(skin.value, skin.seen) for skin in skins])
     skin_nodes = np.concatenate([skin.node for skin in skins])
     positions = np.stack([places.at(shot, skin_nodes) for _, shot in shown])
     lines = np.stack([threads.at(shot) for _, shot in shown])
+    cloth, fabric = strips(surfaces, [places.at(shot) for _, shot in shown])
     values = [fields.at(shot) for _, shot in shown]
     tops = fields.tops(values)
     if space.stack is not None:
-        notes.append("The length between the end caps; this model has no caps.")
+        slices = space.in_slices
+        notes.append(f"The length between the end caps{slices}; this model has no caps.")
     if space.model_mesh.smeared:
         notes.append("The winding is spread over its surface: there are no single fibers to draw.")
-    everything = np.concatenate([positions.reshape(-1, 3), lines.reshape(-1, 3)])
+    drawn = (positions, lines, fabric)
+    everything = np.concatenate([each.reshape(-1, 3) for each in drawn])
     corner, scale = everything.min(axis=0), float(np.ptp(everything, axis=0).max()) / 65535
     ends = np.cumsum([len(skin.node) for skin in skins])[:-1]
     around = _mirrored(everything) if places.mesh.half else everything
@@ -197,6 +174,7 @@ def scene_data(
         ],
         "colors": _colors(),
         "fibers": threads.content | {"positions": placed(lines)},
+        "fabric": cloth | {"positions": placed(fabric)},
         "obstacles": _obstacles(case, around),
         "bounds": [around.min(axis=0).tolist(), around.max(axis=0).tolist()],
         "around": _BESIDE * float(np.ptp(around, axis=0).max()),
@@ -291,77 +269,6 @@ def _seen(mesh: MeshData, drawn: Tessellation, node: Ints, copy: Ints) -> Ints:
         if seen.any():
             return np.unique(copy[seen])
     return np.unique(copy)
-
-
-class _Threads:
-    """The fibers, one line for each ribbon."""
-
-    def __init__(self, space: Space, places: Places) -> None:
-        self._places = places
-        surfaces = BodySurfaces(space.model_mesh)
-        fibers, mesh = surfaces.fibers, places.mesh
-        self._fibers: EmbeddedFibers | None = None
-        self.content: dict[str, Any] = {
-            "points": 0,
-            "segments": "",
-            "radius": 0.0,
-            "family": "",
-            "families": [],
-        }
-        if fibers is None:
-            return
-        cells, self._cell = np.unique(fibers.cell, return_inverse=True)
-        self._node, numbers = np.unique(mesh.cells[cells], return_inverse=True)
-        self._fibers = dataclasses.replace(fibers, cell=self._cell)
-        self._mesh = dataclasses.replace(
-            mesh,
-            nodes=mesh.nodes[self._node],
-            cells=numbers.reshape(len(cells), -1),
-            cell_region=mesh.cell_region[cells],
-            facets={},
-            points={},
-        )
-        lines = self._lines()
-        # the cells of a PolyData of lines: their sizes, each before its points
-        sizes, flat = [], np.asarray(lines.lines)
-        start = 0
-        while start < len(flat):
-            sizes.append(int(flat[start]))
-            start += sizes[-1] + 1
-        first = np.ones(lines.n_points, dtype=bool)
-        first[np.cumsum(sizes) - 1] = False
-        starts = np.flatnonzero(first)
-        self.content = {
-            "points": int(lines.n_points),
-            "segments": packed(np.column_stack([starts, starts + 1]).astype("<u4")),
-            "family": packed(_family(sizes, lines, surfaces).astype("u1")),
-            "families": [
-                {"name": name, "color": color, "image": surfaces.image_colors[number]}
-                for number, (name, color) in enumerate(surfaces.family_colors.items())
-            ],
-        }
-
-    def at(self, state: Snapshot) -> Floats:
-        """Points of the lines in a state, (n, 3), mm; none without fibers."""
-        if self._fibers is None:
-            return np.zeros((0, 3))
-        return np.asarray(self._lines(state).points, dtype=float)
-
-    def _lines(self, state: Snapshot | None = None) -> Any:
-        assert self._fibers is not None
-        moved = None
-        if state is not None:
-            moved = self._places.at(state, self._node) - self._mesh.nodes
-        return fiber_lines(self._mesh, self._fibers, moved)
-
-
-def _family(sizes: list[int], lines: Any, surfaces: BodySurfaces) -> Ints:
-    """The place of the family of every piece of polylines among those that are told apart."""
-    names = list(surfaces.family_colors.values())
-    place = np.array([names.index(color) for color in surfaces.line_colors] or [0])
-    family = np.asarray(lines.cell_data["family"]) if surfaces.line_colors else np.zeros(len(sizes))
-    found: Ints = np.repeat(place[family.astype(np.int64)], np.array(sizes) - 1)
-    return found
 
 
 def _mirrored(points: Floats) -> Floats:

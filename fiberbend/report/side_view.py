@@ -17,7 +17,8 @@ from fiberbend.case.case import Case
 from fiberbend.drawing.page import colormap, figure, literal
 from fiberbend.drawing.tessellation import on_mirror
 from fiberbend.report.captions import in_short
-from fiberbend.report.scene import Places, thinned
+from fiberbend.report.places import Places
+from fiberbend.report.scene import thinned
 from fiberbend.results.space import Space
 from fiberbend.results.states import Kept, States
 from geometry.mesh.data import (

@@ -62,6 +62,8 @@ LOG = "run.log"
 CHECKPOINT = "checkpoint.npz"
 CHECKPOINT_BEFORE = "checkpoint.before.npz"
 """The one before the last, for when that cannot be read."""
+ZONES = "zones"
+"""Folder of a run over zones with a file of each that is solved."""
 LADDER = "accuracy.json"
 """By this file a folder is that of a ladder of accuracy; what it has found."""
 RUNGS = "rungs"
@@ -71,7 +73,7 @@ BLOCKED = "blocked"
 
 _OF_A_RUN = (
     *(CASE_FILE, RUN_FILE, HISTORY_FILE, MESH, CHECKPOINT, CHECKPOINT_BEFORE, "actuator.msh"),
-    *("error.log", "error.rank*.log", f"{SNAPSHOTS}/*.npz"),
+    *("error.log", "error.rank*.log", f"{SNAPSHOTS}/*.npz", f"{ZONES}/*.npz"),
     *(FIBERS, LOG, REPORT),
     *("fields/*.vtu", "fields/*.vtp", "fields/*.vtm", "fields/*.pvd"),
     *("pictures/rest.png", "pictures/animation.gif", "pictures/animation.mp4"),
@@ -93,6 +95,12 @@ FILES = (
 
 _HELD = "{}, expected its end, or another folder by --out"
 _EXISTS = "exists, expected a new folder, or --overwrite or --resume"
+
+
+def checkpoints(path: Path) -> list[Path]:
+    """Files in a run folder from which a run of the same case goes on."""
+    steps = (path / name for name in (CHECKPOINT, CHECKPOINT_BEFORE))
+    return [*filter(Path.exists, steps), *sorted(path.glob(f"{ZONES}/*.npz"))]
 
 
 class FolderHeldError(CaseError):

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import dataclasses
+import itertools
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fiberbend import columns as col
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.case.zones import bounds, effects_of
 from fiberbend.drawing.space.obstacles import Scenery
+from fiberbend.states.labels import short_number
+from geometry.winding.strip import Window
+
+_TURNS = {"side": col.SIDE_ANGLE, "twist": col.TWIST}
+"""Turns beside the bending angle, by what captions call them."""
 
 
 def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
@@ -19,7 +27,7 @@ def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
         rows: of its history; none for a case that has not been run.
     """
     actuator = convert.dimensions(case.actuator)
-    forces, tips, at_tip = {}, {}, {}
+    forces, tips, at_tip, turned = {}, {}, {}, {}
     for row in rows:
         step = int(row[col.STEP])
         forces[step] = {
@@ -28,6 +36,8 @@ def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
             for name, force in effect.obstacle_forces(row).items()
         }
         at_tip[step] = {k: v for effect in case.effects for k, v in effect.at_tip(row).items()}
+        turns = {name: float(row.get(key) or 0.0) for name, key in _TURNS.items()}
+        turned[step] = {name: value for name, value in turns.items() if short_number(value) != "0"}
         if case.straight and row.get(col.TIP_FORCE) is not None:
             tips[step] = float(row[col.TIP_FORCE])
     lengths = {
@@ -40,6 +50,18 @@ def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
         thickness = getattr(actuator, region, None)
         if thickness is not None:
             lengths[region] = thickness
-    strips = tuple(window for effect in case.effects for window in effect.windows(actuator))
     shapes = convert.obstacle_shapes(case)
-    return Scenery(shapes, forces, tips, lengths, actuator, strips, at_tip)
+    return Scenery(shapes, forces, tips, lengths, actuator, _strips(case), at_tip, turned)
+
+
+def _strips(case: Case) -> tuple[Window, ...]:
+    """Fabric on the whole length, or of zones from one border to the next."""
+    actuator = convert.dimensions(case.actuator)
+    if case.zones is None:
+        return tuple(window for effect in case.effects for window in effect.windows(actuator))
+    return tuple(
+        dataclasses.replace(window, ends=ends)
+        for number, ends in enumerate(itertools.pairwise(bounds(case)))
+        for effect in effects_of(case, number).values()
+        for window in effect.windows(actuator)
+    )

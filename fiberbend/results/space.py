@@ -15,6 +15,9 @@ from fiberbend.states.snapshot import ModelMesh, Snapshot
 from fiberbend.states.stack import Stack, extruded, repeated, split_alike
 from geometry.mesh.data import Floats
 
+_SHORT = 1e-3
+"""Part of the length that a picture may lack or have beyond without a word."""
+
 
 class Space:
     """The length between the ends of the chamber in space; of a body all of it.
@@ -42,6 +45,14 @@ class Space:
     def model_mesh(self) -> ModelMesh:
         """Mesh, materials and fibers in space."""
         return self._one if self.halves is None else self.halves.model_mesh
+
+    @property
+    def in_slices(self) -> str:
+        """What a picture has to say of its length, after a comma; empty where that is the whole."""
+        drawn = float(np.ptp(self._one.mesh.nodes[:, 2]))
+        if self.stack is None or abs(drawn - self.length) < _SHORT * self.length:
+            return ""
+        return f", in whole slices: {drawn:.4g} of {self.length:.4g} mm"
 
     def snapshot(self, state: Snapshot) -> Snapshot:
         """A state of the model as one of the body in space."""

@@ -149,6 +149,20 @@ def interrupted(rows: Sequence[col.Row], kept: int, solved: bool) -> str:
     return f"stopped at step {step}, nothing kept; --resume begins anew"
 
 
+def interrupted_zones(kept: int, zones: int) -> str:
+    """What a signal has left of a run over zones.
+
+    Args:
+        kept: zones from the root on that are solved and kept.
+        zones: how many there are.
+    """
+    if not kept:
+        return "stopped in zone 1, nothing kept; --resume begins anew"
+    if kept < zones:
+        return f"stopped in zone {kept + 1}, those before it kept; go on with --resume"
+    return "stopped after the last zone, all kept; --resume chains them, and makes what is missing"
+
+
 def uncounted(ramps: Sequence[Ramp], rows: Sequence[col.Row]) -> list[str]:
     """A warning of half a body that does not know its opposite modes, where it may lose one.
 

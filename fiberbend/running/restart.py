@@ -13,7 +13,14 @@ import numpy as np
 from fem.march.position import Position
 from fem.results.checkpoint import Archive
 from fiberbend import columns as col
-from fiberbend.results.folder import CHECKPOINT, CHECKPOINT_BEFORE, FIBERS, MESH, RunFolder
+from fiberbend.results.folder import (
+    CHECKPOINT,
+    CHECKPOINT_BEFORE,
+    FIBERS,
+    MESH,
+    RunFolder,
+    checkpoints,
+)
 from fiberbend.results.states import DAMAGED, LAST, STEP, read_snapshot, snapshot_paths
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.states.snapshot import Snapshot
@@ -104,8 +111,8 @@ def mesh(folder: RunFolder) -> MeshData | None:
 
 def discard(folder: RunFolder) -> None:
     """Remove what a run would be resumed from."""
-    shots = (shot.relative_to(folder.path) for shot in snapshot_paths(folder.path))
-    for name in (CHECKPOINT, CHECKPOINT_BEFORE, MESH, FIBERS, *map(str, shots)):
+    paths = (*checkpoints(folder.path), *snapshot_paths(folder.path))
+    for name in (MESH, FIBERS, *(str(path.relative_to(folder.path)) for path in paths)):
         folder.remove(name)
 
 

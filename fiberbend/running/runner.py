@@ -147,7 +147,7 @@ def _solve(
     if case.zones is not None:
         from fiberbend.running.zones.run import run_zones
 
-        return run_zones(case, model, folder, progress, comm, own, scratch)
+        return run_zones(case, model, folder, progress, comm, own, scratch, resume)
     alone = _Run(case, model, folder, progress, MPI.COMM_SELF, comm.size, scratch, own)
     return on_rank_0(comm, lambda: alone.go(False))
 

@@ -10,7 +10,6 @@ import numpy as np
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.results.space import Space, is_section
-from fiberbend.states.bend import Bend
 from fiberbend.states.recovery import NodalFields
 from fiberbend.states.snapshot import ModelMesh, Snapshot, Write
 
@@ -107,21 +106,10 @@ def draw_bent(
     model = "section" if is_section(space.own) else "cell"
     page = side_by_side.page(
         title=f"{space.own.title}: {model} model, caps not modelled",
-        captions=[_caption(state, space, beside) for state in snapshots],
+        captions=[beside.caption(state) for state in snapshots],
         values=[side_by_side.skin.interpolate(strain) for strain in strains],
         limits=(0.0, nice_above(high)),
-        label="maximum principal logarithmic strain",
+        label=f"maximum principal logarithmic strain{space.in_slices}",
         toward=FROM_THE_SIDE,
     )
     write("bent.png", page.save)
-
-
-def _caption(state: Snapshot, space: Space, beside: Scenery) -> str:
-    caption = beside.caption(state)
-    if state.twist == 0 and state.side_curvature == 0:
-        return caption
-    rates = Bend.of(state, space.own.mesh).rates
-    _, side, twist = np.rad2deg(rates * space.length) + 0.0
-    turned = f"{caption},  side {side:.0f}°" if state.side_curvature else caption
-    turned = f"{turned},  twist {twist:.0f}°" if state.twist else turned
-    return turned.replace("-", "−")

@@ -29,13 +29,12 @@ from typing import IO, Any
 from fiberbend.case.case import Case
 from fiberbend.results.folder import (
     BLOCKED,
-    CHECKPOINT,
-    CHECKPOINT_BEFORE,
     HISTORY_FILE,
     POINTS,
     RUN_FILE,
     FolderHeldError,
     RunFolder,
+    checkpoints,
 )
 from fiberbend.results.reading import read_history
 from fiberbend.schema.problems import CaseError, Problem
@@ -213,8 +212,9 @@ class Store:
             run = self.result(point)
             if claim is not None and run is not None and run["status"] == "failed":
                 (self.folder(point) / RUN_FILE).unlink()
-                for name in (CHECKPOINT, CHECKPOINT_BEFORE, "error.log"):
-                    (self.folder(point) / name).unlink(missing_ok=True)
+                folder = self.folder(point)
+                for path in (*checkpoints(folder), folder / "error.log"):
+                    path.unlink(missing_ok=True)
 
     def _finish(self, claim: Claim, run: dict[str, Any], wall: float) -> dict[str, Any] | None:
         point = claim.point
@@ -248,7 +248,7 @@ def _run(case: Case, folder: Path, force: bool) -> dict[str, Any]:
     from fiberbend.running.runner import run_case
 
     alone = MPI.COMM_SELF
-    if any((folder / name).exists() for name in (CHECKPOINT, CHECKPOINT_BEFORE)):
+    if checkpoints(folder):
         try:
             return run_case(case, folder, resume=True, force=force, comm=alone).run
         except FolderHeldError:

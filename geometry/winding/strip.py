@@ -19,15 +19,17 @@ _STEPS = 720
 
 @dataclasses.dataclass(frozen=True)
 class Window:
-    """A part of the outline, between the caps all along.
+    """A part of the outline, between the caps all along or from one z to another.
 
     Attributes:
         middle: arc length s of its middle, from the top toward +x, mm.
         width: along the outline, mm.
+        ends: z at rest of its ends, mm.
     """
 
     middle: float
     width: float
+    ends: tuple[float, float] = (-np.inf, np.inf)
 
     def intervals(self, perimeter: float) -> list[tuple[float, float]]:
         """The parts of 0 ≤ s ≤ S that it covers, mm."""

@@ -111,3 +111,31 @@ def test_tip_is_the_centroid_of_the_end_face(body: Body) -> None:
     body.set_displacement(nodes @ A.T - nodes)
     assert tip.position() == pytest.approx(A @ centroid, abs=1e-6)
     body.w.x.array[:] = 0.0
+
+
+@pytest.mark.parametrize("degrees", [-30.0, 179.0, 400.0])
+def test_the_greatest_turn_counts_full_turns(body: Body, degrees: float) -> None:
+    frames = Frames(body, against=True)
+    found = frames.turned(frames.fit(_arc(body, np.deg2rad(degrees))))
+    whole = np.deg2rad(abs(degrees)) * np.ptp(frames.z) / LENGTH
+    # stations at the ends stand for what is next to them
+    assert found == pytest.approx(whole, rel=0.08)
+    assert Frames(body).turned(frames.fit(_arc(body, np.deg2rad(degrees)))) is None
+
+
+def test_the_greatest_turn_of_an_s_is_that_of_its_middle(body: Body) -> None:
+    """Its ends are parallel: the bending angle knows nothing of it."""
+    frames = Frames(body, against=True)
+    X = body.domain.data.nodes[body.owned_nodes]
+    half, angle = np.ptp(X[:, 2]) / 2, np.deg2rad(50.0)
+    z = X[:, 2] - X[:, 2].min()
+    turn = angle * (1 - np.abs(z / half - 1))
+    # ∫ of sin and cos of the turn, there and back
+    k = angle / half
+    out = (np.sin(k * np.minimum(z, half)), 1 - np.cos(k * np.minimum(z, half)))
+    back = (np.sin(angle) - np.sin(turn), np.cos(turn) - np.cos(angle))
+    along, down = (a / k + np.where(z > half, b / k, 0.0) for a, b in zip(out, back, strict=True))
+    x = np.column_stack([X[:, 0], X[:, 1] * np.cos(turn) - down, X[:, 1] * np.sin(turn) + along])
+    x[:, 2] += X[:, 2].min()
+    assert frames.turned(frames.fit(x - X)) == pytest.approx(angle, rel=0.08)
+    assert frames.turned(frames.fit(0 * X)) == pytest.approx(0.0, abs=1e-12)

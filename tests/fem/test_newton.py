@@ -81,6 +81,9 @@ class _Volume:
     def row(self) -> Floats:
         return -self._scene.load("pressure") / self._target
 
+    def noise(self) -> float:
+        return 0.0
+
     def lag(self) -> float:
         return 0.0
 
@@ -180,6 +183,7 @@ def test_when_newton_gives_up(sizes: list[float], iteration: int, reason: str) -
         history=[(1e-9, size, 0.0) if np.isfinite(size) else (size,) * 3 for size in sizes],
         newton=types.SimpleNamespace(settings=Settings()),
         problem=types.SimpleNamespace(force_noise=0.0),
+        sides_met=True,
         reuse=types.SimpleNamespace(effort=iteration),
         scale=1.0,
         reason="",
@@ -199,6 +203,7 @@ def test_each_residual_is_below_the_tolerance(row: tuple[float, ...], noise: flo
         history=[row],
         newton=types.SimpleNamespace(settings=Settings()),
         problem=types.SimpleNamespace(force_noise=noise),
+        sides_met=row[2] == 0,
         reuse=types.SimpleNamespace(effort=1),
         scale=2.0,
     )

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
 from fiberbend.drawing import curves, tip_path
+from fiberbend.drawing.renderer import Renderer
 from fiberbend.drawing.style import Style
+
+
+@pytest.fixture(scope="module")
+def renderer() -> Iterator[Renderer]:
+    """A window in which all tests of a module draw."""
+    with Renderer() as window:
+        yield window
 
 
 @pytest.fixture

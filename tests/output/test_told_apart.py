@@ -123,6 +123,40 @@ def test_fabric_is_as_wide_as_its_strip_and_where_it_lies() -> None:
     assert patch.data.area == pytest.approx(40 * 6, rel=0.03)
 
 
+@pytest.mark.parametrize("width", [0.3, 2.0, 30.0])
+@pytest.mark.parametrize("at", ["90 deg", "5 deg", "200 deg"])
+def test_fabric_in_motion_has_its_area_however_narrow(width: float, at: str) -> None:
+    """Coarser pieces than a strip is wide do not swallow or widen it."""
+    place = {"width": f"{width} mm", "thickness": "0.2 mm", "modulus": "1 GPa"}
+    strip = {"strip": {"at": {"angle": at}, **place}}
+    case = _case(strip, model="section", families=None)
+    space = Space(case, _mesh(case), both=True)
+    surfaces = BodySurfaces(space.model_mesh, scenery(case))
+    nodes = surfaces.mesh.nodes
+    triangles, (rest, longer) = surfaces.fabric_in([nodes, nodes * [1.0, 1.0, 1.25]])
+    assert len(rest) == len(longer)
+    for points, stretch in ((rest, 1.0), (longer, 1.25)):
+        a, b, c = points[triangles].swapaxes(0, 1)
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+        # a little off the surface
+        assert area == pytest.approx(40 * width * stretch * 6.6 / 6.5, rel=0.01)
+
+
+def test_fabric_of_zones_ends_at_their_borders() -> None:
+    strip = {"width": "3 mm", "thickness": "0.2 mm", "modulus": "1 GPa"}
+    data = _case(model="body", families=None).resolved()
+    zones = [{"length": "10 mm", "strip": {"at": "bottom", **strip}}]
+    zones += [{"length": "30 mm", "strip": {"at": "top", **strip}}]
+    case = as_case(data | {"zones": zones})
+    assert [window.ends for window in scenery(case).strips] == [(0.0, 10.0), (10.0, 40.0)]
+    lower, upper = BodySurfaces(_mesh(case), scenery(case)).fabric()
+    below, above = (np.asarray(patch.data.points) for patch in (lower, upper))
+    assert (below[:, 2].min(), below[:, 2].max()) == pytest.approx((0.0, 10.0))
+    assert (above[:, 2].min(), above[:, 2].max()) == pytest.approx((10.0, 40.0))
+    assert below[:, 1].max() < 0.5
+    assert above[:, 1].min() > 12.5
+
+
 def test_as_much_of_a_tip_load_as_is_on_is_shown() -> None:
     case = _case({"tip-load": {"force": ["0 N", "-0.4 N", "0.2 N"]}}, model="body")
     at_tip = scenery(case, [{"step": 3, "load_tip_load": 0.5}]).at_tip

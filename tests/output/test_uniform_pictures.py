@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,11 +18,10 @@ from fiberbend.drawing.cell import Slices, plot_tension, tension_along
 from fiberbend.drawing.crosscut import Crosscut
 from fiberbend.drawing.renderer import Renderer
 from fiberbend.drawing.section import Sections
-from fiberbend.drawing.space.obstacles import Scenery
 from fiberbend.reader.reader import parse_case
 from fiberbend.results.folder import RunFolder
+from fiberbend.results.scenery import scenery
 from fiberbend.results.space import Space
-from fiberbend.running import uniform_outputs
 from fiberbend.running.outputs import draw
 from fiberbend.states.bend import Bend
 from fiberbend.states.recovery import cauchy_stress, recover
@@ -260,17 +259,28 @@ def test_twisted_section_is_drawn_whole(tmp_path: Path) -> None:
     assert is_drawn(tmp_path / "pictures" / "bent.png")
 
 
-def test_a_caption_has_the_twist_of_the_whole_length_not_of_whole_slices() -> None:
+def test_a_picture_of_whole_slices_says_how_much_of_the_length_it_has() -> None:
     case, scene = case_of("cell"), cell(False)
     actuator = case.actuator.model_copy(update={"length": 2.3 * PITCH})
     space = Space(case.model_copy(update={"actuator": actuator}), scene)
     drawn = float(np.ptp(space.model_mesh.mesh.nodes[:, 2]))
     assert abs(drawn - 2.3 * PITCH) > 0.1
-    twisted = state(scene, 0.0, twist=0.1)
-    turn = math.degrees(Bend.of(twisted, scene.mesh).rates[2] * 2.3 * PITCH)
-    assert abs(turn) > 20
-    caption = uniform_outputs._caption(twisted, space, Scenery())
-    assert caption.endswith(f"twist {turn:.0f}°")
+    assert space.in_slices == f", in whole slices: {drawn:.4g} of {2.3 * PITCH:.4g} mm"
+    actuator = case.actuator.model_copy(update={"length": 2 * PITCH})
+    assert Space(case.model_copy(update={"actuator": actuator}), scene).in_slices == ""
+
+
+def test_captions_have_the_turns_of_the_history() -> None:
+    """Those of the whole length, whatever is drawn; none of round-off."""
+    rows: list[dict[str, Any]] = [
+        {"step": 1, "twist_deg": 34.0821, "side_angle_deg": -1.2666},
+        {"step": 2},
+    ]
+    rows.append({"step": 3, "twist_deg": 1e-9, "side_angle_deg": 0.0})
+    shots = [dataclasses.replace(state(section(), 60.0), step=step) for step in (1, 2, 3)]
+    captions = [scenery(case_of("section"), rows).caption(shot) for shot in shots]
+    assert captions[0].endswith("θ = 60°,  side −1.27°,  twist 34.1°")
+    assert captions[1] == captions[2] == shots[1].caption
 
 
 def test_floor_bulge_is_read_between_middle_and_edge() -> None:

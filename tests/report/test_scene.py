@@ -52,6 +52,28 @@ def test_every_point_lies_on_its_arc_in_every_step(content: dict[str, Any]) -> N
             assert np.abs(points - exact).max() < 3 * content["scale"]
 
 
+def test_strips_of_fabric_are_on_the_body_in_every_step(tmp_path: Path) -> None:
+    strip = {"at": "right", "width": "3 mm", "thickness": "0.2 mm", "modulus": "1 GPa"}
+    given = case(effects=[*CASE["effects"], {"strip": strip}], mesh={"axial": "4 mm"})
+    bent_folder(tmp_path / "run", given, run_of())
+    found = scene_data(given, States(tmp_path / "run", given, rows())).content
+    fabric = found["fabric"]
+    points = positions(found, fabric["positions"])
+    for moved, degrees in zip(points, (0.0, *ANGLES), strict=True):
+        exact = bending.bent(points[0], 24.0, np.radians(degrees))
+        assert np.abs(moved - exact).max() < 0.02
+    triangles = unpacked(fabric["triangles"], "<u4").reshape(-1, 3)
+    assert triangles.max() == fabric["points"] - 1
+    a, b, c = (points[0][triangles[:, i]] for i in range(3))
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+    assert area == pytest.approx(3 * 24, rel=0.03)
+    assert np.cross(b - a, c - a)[:, 0].mean() > 0
+
+
+def test_without_strips_there_is_no_fabric(content: dict[str, Any]) -> None:
+    assert content["fabric"]["points"] == 0
+
+
 def test_surfaces_are_closed_and_their_outside_is_outside(content: dict[str, Any]) -> None:
     solid = {"body": 0.0, "sheath": 0.0}
     for skin in content["skins"]:

@@ -6,10 +6,12 @@ import math
 from typing import Any
 
 import pytest
+import yaml
 
 from fiberbend import run
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case
+from tests.conftest import ROOT
 from tests.run.conftest import small
 from tests.verify.helix_tube import HelixTube
 
@@ -103,6 +105,27 @@ def test_mirrored_hands_give_mirrored_answers(model: str, kind: str) -> None:
     )
     alike(right, left, SCREW, 1e-10)
     assert abs(right.last("twist_deg")) > 1
+
+
+def test_a_stiff_braid_on_a_fine_section_converges_to_its_round_off() -> None:
+    """Force and moment of its threads round off by 1e-11 of themselves: no more can be asked."""
+    tube = {"section": "circle", "radius": "5 mm", "length": "97.344 mm", "wall": "1.5 mm"}
+    fine, rough = (
+        solved(
+            helices(40.0, 6),
+            "section",
+            "smeared",
+            actuator=tube,
+            materials={"wall": "dragon-skin-30"},
+            pressure={"to": "30 kPa"},
+            mesh={"section": 8},
+            solver={"tolerance": tolerance},
+        )
+        for tolerance in (1e-12, 1e-10)
+    )
+    for name in ("axis_stretch", "chamber_mm3", "stored_mJ"):
+        assert fine.last(name) == pytest.approx(rough.last(name), rel=1e-9)
+    assert (fine.status, fine.run["cutbacks"]) == ("converged", 0)
 
 
 def test_starts_fill_a_slice_of_a_part_of_the_pitch() -> None:
@@ -209,6 +232,28 @@ def test_the_whole_body_of_one_hand_twists_as_its_section() -> None:
     body = solved([given], "body", "smeared", mesh={"section": 1, "axial": "8 mm"})
     assert body.last("uniform_twist_deg") == pytest.approx(section.last("twist_deg"), rel=0.05)
     assert section.last("twist_deg") < -5
+
+
+@pytest.mark.parametrize(
+    ("name", "column", "rest", "lost"),
+    [
+        ("contracting", "stretch", 1.0, 0.096),
+        pytest.param("twisting", "twist_deg", 0.0, 0.040, marks=pytest.mark.hard),
+        pytest.param("extending", "stretch", 1.0, 0.003, marks=pytest.mark.hard),
+    ],
+)
+def test_caps_take_as_much_of_a_tube_s_motion_as_is_said(
+    name: str, column: str, rest: float, lost: float
+) -> None:
+    """docs/models.md and the expected error have these numbers."""
+    case = yaml.safe_load((ROOT / "cases" / f"{name}.yaml").read_text(encoding="utf-8"))
+    cell = run({**case, "output": NO_FILES})
+    body = run({**case, "model": "body", "output": NO_FILES})
+    whole = body.last("axis_stretch" if column == "stretch" else column) - rest
+    middle = body.last(f"uniform_{column}") - rest
+    far = cell.last("axis_stretch" if column == "stretch" else column) - rest
+    assert 1 - whole / middle == pytest.approx(lost, abs=0.0006)
+    assert middle + rest == pytest.approx(far + rest, rel=3e-4)
 
 
 def test_what_a_model_cannot_have_is_refused() -> None:

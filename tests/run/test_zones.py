@@ -274,6 +274,29 @@ def test_a_body_of_equal_zones_is_the_body_without() -> None:
     assert parts == pytest.approx(other[col.ANGLE], rel=1e-12)
 
 
+def test_steps_of_an_s_are_as_short_as_is_asked() -> None:
+    """Its bending angle stays zero; each of its halves turns by no more than a step may."""
+    tube = {"section": "circle", "radius": "3 mm", "length": "64 mm", "wall": "1 mm"}
+    strips = [{"strip": STRIP | {"at": at}} for at in ("bottom", "top")]
+    given = case(
+        {"length": "32 mm"} | strips[0],
+        strips[1],
+        wound=WOUND,
+        actuator=tube | {"cap": "6 mm"},
+        materials={"wall": "elastosil-m4601"},
+        model="body",
+        mesh={"axial": "8 mm"},
+        solver={"max_turn": "3 deg"},
+        effects=[{"pressure": {"to": "24 kPa"}}],
+    )
+    rows = solve(given).rows
+    first = np.array([row["zone_1_angle_deg"] for row in rows])
+    assert first[-1] > 9
+    assert np.abs([row[col.ANGLE] for row in rows]).max() < 0.5
+    # caps turn with the ends, and the step to come is foreseen
+    assert np.diff(first).max() < 1.25 * 3
+
+
 def test_a_body_on_tetrahedra_has_zones_too() -> None:
     given: dict[str, Any] = {"model": "body", "mesh": {"axial": "6 mm", "element": "tetrahedron"}}
     zones: list[dict[str, Any]] = [{"length": "16 mm", "floor": "elastosil-m4601"}, {}]

@@ -176,6 +176,10 @@ class VolumeRatio:
         """V/V₀ less its target."""
         return self._scene.conjugate("pressure") / self._rest - self._ratio
 
+    def noise(self) -> float:
+        """None."""
+        return 0.0
+
     def lag(self) -> float:
         """No fiber force is in it."""
         return 0.0

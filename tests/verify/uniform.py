@@ -128,6 +128,9 @@ class _Balance:
     def value(self) -> float:
         return -self._scene.conjugate(self._name)
 
+    def noise(self) -> float:
+        return 0.0
+
     def lag(self) -> float:
         return self._scene.lag_along(self._name)
 

@@ -132,6 +132,10 @@ class Reduced:
     def add_noise(self, b: Floats) -> None:
         """None: a sum of displacements is as exact as these."""
 
+    def noise_along(self, name: str) -> float:
+        """None likewise."""
+        return 0.0
+
     def tangent_blocks(self) -> Floats:
         """None."""
         return np.zeros((0, 1, 1))

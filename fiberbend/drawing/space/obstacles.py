@@ -59,6 +59,8 @@ class Scenery:
         strips: of fabric, as parts of the outline.
         at_tip: by the number of a load step, what acts at the tip's outer face, its force in N, or
             None where it has no direction that is known.
+        turned: by the number of a load step, how far it is turned beside its bending angle over the
+            whole length, in degrees by what captions call it.
     """
 
     shapes: Mapping[str, Shape] = dataclasses.field(default_factory=dict)
@@ -68,12 +70,14 @@ class Scenery:
     actuator: Actuator | None = None
     strips: tuple[Window, ...] = ()
     at_tip: Mapping[int, Mapping[str, Force | None]] = dataclasses.field(default_factory=dict)
+    turned: Mapping[int, Mapping[str, float]] = dataclasses.field(default_factory=dict)
 
     def caption(self, state: Snapshot) -> str:
-        """Pressure and angle of a state; where the body is kept straight its force comes first."""
+        """Pressure and turns of a state; where the body is kept straight its force comes first."""
         force = self.tip_forces.get(state.step)
         if force is None:
-            return state.caption
+            turned = self.turned.get(state.step, {}).items()
+            return state.caption + "".join(f",  {n} {short_number(v)}°" for n, v in turned)
         text = f"P = {short_number(state.pressure_kpa)} kPa,  F = {short_number(force)} N"
         angle = short_number(state.angle_deg)
         return text if abs(state.angle_deg) < _STRAIGHT else f"{text},  θ = {angle}°"

@@ -195,6 +195,30 @@
       };
     }
 
+    let fabric = null;
+    if (data.fabric.points) {
+      const { points, color } = data.fabric;
+      const geometry = new THREE.BufferGeometry();
+      const positions = new THREE.BufferAttribute(new Float32Array(3 * points), 3);
+      geometry.setAttribute("position", positions);
+      geometry.setAttribute("value", new THREE.BufferAttribute(new Uint8Array(points), 1, true));
+      const index = await unpacked(data.fabric.triangles, Uint32Array);
+      geometry.setIndex(new THREE.BufferAttribute(index, 1));
+      const material = coloring();
+      material.polygonOffset = false;
+      material.uniforms.colors.value = palette(regionColors([{ number: 0, color }]));
+      fabric = {
+        points,
+        geometry,
+        numbers: await unpacked(data.fabric.positions, Uint16Array),
+        whole: both(() => {
+          const mesh = new THREE.Mesh(geometry, material);
+          mesh.frustumCulled = false;
+          return mesh;
+        }),
+      };
+    }
+
     const obstacles = new THREE.Group();
     scene.add(obstacles);
     for (const obstacle of data.obstacles) {
@@ -226,11 +250,11 @@
     function showStep(number) {
       shown = number;
       const step = data.steps[number];
-      for (const skin of skins) {
-        const position = skin.geometry.getAttribute("position");
-        place(skin.numbers, number * skin.points, skin.points, position.array);
+      for (const moved of fabric ? [...skins, fabric] : skins) {
+        const position = moved.geometry.getAttribute("position");
+        place(moved.numbers, number * moved.points, moved.points, position.array);
         position.needsUpdate = true;
-        skin.geometry.computeVertexNormals();
+        moved.geometry.computeVertexNormals();
       }
       if (fibers) {
         const { points, segments, geometry } = fibers;
@@ -289,6 +313,10 @@
       if (fibers) {
         fibers.whole.visible = checked("show-fibers");
         if (fibers.whole.children[1]) fibers.whole.children[1].visible = !cut;
+      }
+      if (fabric) {
+        fabric.whole.visible = checked("show-fabric");
+        if (fabric.whole.children[1]) fabric.whole.children[1].visible = !cut;
       }
       obstacles.visible = checked("show-obstacles");
       showValues();

@@ -9,6 +9,7 @@ from typing import Any
 from mpi4py import MPI
 
 from fem.march.hooks import Hook, Marching
+from fem.march.position import Position
 from fem.march.records import Report, State, measure
 from fem.results.checkpoint import Archive
 from fem.results.walls import Walls
@@ -47,6 +48,23 @@ class Kept:
     bend: Bend
 
 
+@dataclasses.dataclass(frozen=True)
+class Solved:
+    """What the march of a zone has found.
+
+    Attributes:
+        position: where it stands, its states those at shared pressures, in the order of the march.
+        pressures: of the states, MPa.
+        rows: of its own history, of the states.
+        walls: what is remembered of opposite walls.
+    """
+
+    position: Position
+    pressures: list[float]
+    rows: list[dict[str, Any]]
+    walls: dict[str, Any]
+
+
 class ZoneMarch:
     """A zone compiled and at rest.
 
@@ -58,6 +76,7 @@ class ZoneMarch:
     Attributes:
         case: the uniform case of the zone.
         mesh: of its section or slice.
+        archive: moves its states to arrays and back.
         report: of its march through all pressures.
         rest: its state at rest.
         kept: states by the pressure in MPa that was asked for.
@@ -70,7 +89,7 @@ class ZoneMarch:
         self.mesh = model.mesh(self.case)
         self.assembly = assemble(self.case, self.mesh, MPI.COMM_SELF)
         scene = self.assembly.scene
-        self._archive, self._gauge = Archive(scene, None), self.assembly.observables.gauge()
+        self.archive, self._gauge = Archive(scene, None), self.assembly.observables.gauge()
         self.walls = Walls(scene)
         self.rod = self.assembly.observables.rod()
         self._counts = Report()
@@ -103,6 +122,29 @@ class ZoneMarch:
         rows = Recorder(self.assembly.scene, self._gauge, self._model, march.rest)
         listener = _Listener(self, rows, pressures, progress, zones)
         self.report = march.run([ramp], [self.walls, listener])
+        self._count(self.report)
+        self._path = list(self.kept)
+
+    def solved(self) -> Solved:
+        """What its march has found, to be taken up by another process."""
+        found = [(pressure, kept) for pressure, kept in self.kept.items() if pressure in self._path]
+        states = [kept.state for _, kept in found]
+        position = dataclasses.replace(self.assembly.march.saved(), states=states)
+        position.report = self.report
+        rows = [kept.row for _, kept in found]
+        return Solved(position, [pressure for pressure, _ in found], rows, self.walls.memory())
+
+    def take_up(self, solved: Solved) -> None:
+        """Be where a march of the same zone has ended."""
+        march = self.assembly.march
+        march.resume(solved.position)
+        for pressure, state, row in zip(
+            solved.pressures, solved.position.states, solved.rows, strict=True
+        ):
+            march.equilibrium.restore(state)
+            self.keep(pressure, state, row)
+        self.walls.recall(solved.walls)
+        self.report = solved.position.report
         self._count(self.report)
         self._path = list(self.kept)
 
@@ -162,7 +204,7 @@ class ZoneMarch:
         self.kept[pressure] = self._kept(state, row)
 
     def _kept(self, state: State, row: dict[str, Any]) -> Kept:
-        scene, archive = self.assembly.scene, self._archive
+        scene, archive = self.assembly.scene, self.archive
         displacement, multiplier = archive.displacement(), archive.multiplier()
         assert displacement is not None
         assert multiplier is not None

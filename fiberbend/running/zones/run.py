@@ -28,6 +28,7 @@ from fiberbend.running.launch import on_rank_0
 from fiberbend.running.outputs import draw, write_page
 from fiberbend.running.progress import Progress
 from fiberbend.running.zones.chain import Link, find_angle, passes_itself, row_of
+from fiberbend.running.zones.kept import save, take_up
 from fiberbend.running.zones.march import ZoneMarch
 from fiberbend.states.labels import angle_labels, pressure_labels, unused
 from fiberbend.states.snapshot import Snapshot
@@ -41,6 +42,7 @@ def run_zones(
     comm: Any,
     own: Own | None,
     scratch: RunFolder | None,
+    resume: bool,
 ) -> RunResult:
     """Solve every zone of a case at the same pressures, and chain them; collective.
 
@@ -52,14 +54,15 @@ def run_zones(
         comm: an mpi4py communicator, of which one rank solves it.
         own: what the run has of itself beside its case.
         scratch: where states go without a folder, or None.
+        resume: take up the zones that the folder has.
     """
     run = _ZonedRun(case, model, folder, progress, comm.size, own or Own(), scratch)
     try:
-        return on_rank_0(comm, run.go)
+        return on_rank_0(comm, lambda: run.go(resume))
     except KeyboardInterrupt as error:
         stop = stop_of(error)
         stop.reason, stop.together = (
-            messages.interrupted(run.rows, 0, False),
+            messages.interrupted_zones(run.kept, len(case.zones or ())),
             comm.size == 1 or None,
         )
         if folder is not None and folder.writes:
@@ -69,7 +72,12 @@ def run_zones(
 
 
 class _ZonedRun:
-    """The steps of one run, and what they share; see `run_zones`."""
+    """The steps of one run, and what they share; see `run_zones`.
+
+    Attributes:
+        rows: of the history.
+        kept: zones from the root on whose marches are in the folder.
+    """
 
     def __init__(
         self,
@@ -86,11 +94,12 @@ class _ZonedRun:
         self.states = folder or scratch
         self.lengths = lengths(case)
         self.zones: list[ZoneMarch] = []
+        self.kept = 0
         self.rows: list[dict[str, Any]] = []
         self.warnings: list[str] = []
 
-    def go(self) -> RunResult:
-        """Compile, solve, chain, write."""
+    def go(self, resume: bool) -> RunResult:
+        """Compile, solve, chain, write; `resume`: with the zones that the folder has."""
         case, progress = self.case, self.progress
         known = doubts(case)
         progress.phase("compile")
@@ -99,7 +108,7 @@ class _ZonedRun:
         progress.phase("solve")
         goals = shared_pressures(case)
         for zone in self.zones:
-            zone.march(goals, progress, len(self.zones))
+            self._march(zone, goals, resume)
         links, status, reason = self._chain(goals)
         self._write_rows(links)
         self.warn(self.own.remarks, silent=True)
@@ -128,6 +137,16 @@ class _ZonedRun:
                     self.progress.message(text)
 
     # --- the path ------------------------------------------------------------------------------
+
+    def _march(self, zone: ZoneMarch, goals: Sequence[float], resume: bool) -> None:
+        """A zone's states at all pressures, as far as it comes, and in the folder."""
+        if resume and self.folder and take_up(self.folder, zone, goals, self.progress.message):
+            self.progress.message(f"{zone.name} taken up as it was solved")
+        else:
+            zone.march(goals, self.progress, len(self.zones))
+            if self.folder is not None:
+                save(self.folder, zone)
+        self.kept += self.folder is not None
 
     def _solve(self, pressure: float) -> Link | None:
         """The state at a pressure in MPa; None where a zone has none."""
