@@ -15,7 +15,7 @@ export PRTE_MCA_rmaps_default_mapping_policy := :oversubscribe
 .DEFAULT_GOAL := help
 .PHONY: help setup tools demo sweep test browser notebook verify hard survive tables speed accuracy \
     calibration knowledge growth times validate peers check format docs pictures schema clean \
-    test-fast test-wheel test-debian13 test-image platforms
+    test-fast test-wheel test-debian13 test-image platforms paper
 
 help: ## list the commands
 	@sed -n 's/^\([a-z0-9-]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 20
@@ -103,6 +103,9 @@ times: setup ## fit the times and memory of `fiberbend plan` to runs; an idle ma
 
 validate: setup ## figures beside those that no one here wrote, docs/validation.md; a few minutes
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m bench.validate
+
+paper: setup ## figures and tables of the paper with verdicts, runs/paper/index.html; FULL=1: bodies too
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m bench.paper $(if $(FULL),--full)
 
 peers: setup ## bend the same actuator in CalculiX, felupe and plain dolfinx; half an hour
 	bench/peers/setup.sh

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad
 
-from tests.exact.equal_area import SHAPES, EqualArea, Shape, text_torques
+from analytic.equal_area import SHAPES, EqualArea, Shape, text_torques
 
 EXACT = EqualArea(10, 160)
 ROUNDED = EqualArea(10, 160, rounded=True)

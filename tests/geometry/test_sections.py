@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from analytic.equal_area import EqualArea, Shape
 from fiberbend.case import case
 from geometry.bodies.extrude import hexahedral_body, hexahedral_slice, section_quadrilaterals
 from geometry.bodies.gmsh_body import build_body
@@ -38,7 +39,6 @@ from geometry.winding.outline import (
     tangent,
 )
 from geometry.winding.smear import smear
-from tests.exact.equal_area import EqualArea, Shape
 from tests.geometry.lengths import curve_length
 
 HEMICIRCLE = HemicircleActuator(radius=8, length=40, wall=2, floor=2, sheath=1, cap=8, layer=0.5)
