@@ -24,6 +24,7 @@ from fiberbend.case.case import Case
 from fiberbend.effects.effect import Effect
 from fiberbend.models.choice import meshed
 from fiberbend.models.parts import build
+from geometry.mesh.data import MeshData
 
 PRESSURE = "pressure"
 _SAME = 1e-9
@@ -56,15 +57,22 @@ class Small:
     Args:
         case: model section or cell.
         like: the same section with the same winding under another load, whose scene it shares.
+        mesh: in place of the model's own; of `like` where that is given.
     """
 
     scene: Scene
     _newton: Newton
     _march: March
 
-    def __init__(self, case: Case, like: Small | None = None) -> None:
+    def __init__(
+        self, case: Case, like: Small | None = None, mesh: MeshData | None = None
+    ) -> None:
         model = meshed(case)
-        self._case, mesh = case, model.mesh(case) if like is None else like.scene.domain.data
+        self._case = case
+        if like is not None:
+            mesh = like.scene.domain.data
+        elif mesh is None:
+            mesh = model.mesh(case)
         self.parts = parts = build(case, mesh, model)
         self._held = {k: v for term in parts.effects for k, v in term.fixed_scalars().items()}
         if like is None:
