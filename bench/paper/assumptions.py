@@ -135,6 +135,11 @@ class Combination(Readings):
         """Of what has C = 7.9 MPa, mm."""
         return self.layer if self.layered else self.floor
 
+    @property
+    def base(self) -> str:
+        """Field of that thickness."""
+        return "layer" if self.layered else "floor"
+
     def chamber(self, length: float) -> float:
         """Length of the chamber in mm of an actuator of a stated length L."""
         return length - 2 * CAP.value if self.capped else length

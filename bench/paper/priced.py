@@ -79,6 +79,7 @@ class Line:
         pressure: P in kPa at 360°.
         force: F in N of the simulation at 200 kPa and 0°.
         formula: the same of eq. (20).
+        lever: L_f, mm.
         radius: greatest step of P over the radius, a part; below zero where it falls throughout.
     """
 
@@ -87,6 +88,7 @@ class Line:
     pressure: Floats
     force: Floats
     formula: Floats
+    lever: Floats
     radius: Floats
 
 
@@ -113,6 +115,7 @@ def line(grid: Grid, given: Range) -> Line:
         found.pressures[BASELINE],
         found.forces[BASELINE[0]],
         found.formula[BASELINE[0]],
+        lever,
         found.steps("radius").max(axis=0),
     )
 
