@@ -8,16 +8,16 @@ from __future__ import annotations
 
 import argparse
 import os
-import shutil
+import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from bench.paper.page import Made, counts, draw, html, markdown, missing
+from bench.paper.page import Made, draw, html, markdown, missing, sentence
 from bench.paper.part import Part
 from bench.paper.parts import PARTS
 from bench.paper.runs import ROOT, Runs
-from fiberbend.drawing.page import own_style
+from fiberbend.drawing.page import own_style, save
 
 OUT = ROOT / "runs" / "paper"
 DOCS = ROOT / "docs"
@@ -48,12 +48,11 @@ def make(runs: Runs, out: Path, parts: Sequence[Part] = PARTS) -> list[Made]:
     return made
 
 
-def publish(made: Sequence[Made], out: Path) -> None:
+def publish(made: Sequence[Made]) -> None:
     """Write docs/paper.md and its pictures."""
     for each in made:
         for figure in each.found.figures:
-            target = DOCS / "images" / f"paper_{figure.name}.png"
-            shutil.copyfile(out / "figures" / f"{figure.name}.png", target)
+            save(figure.page, DOCS / "images" / f"paper_{figure.name}.png")
     (DOCS / "paper.md").write_text(markdown(made, WHOLE), encoding="utf-8")
 
 
@@ -67,11 +66,13 @@ def main() -> None:
     given = parser.parse_args()
     start = time.perf_counter()
     parts = [part for part in PARTS if not given.only or part.name in given.only]
-    made = make(Runs(given.out, given.full, given.jobs), given.out, parts)
+    try:
+        made = make(Runs(given.out, given.full, given.jobs), given.out, parts)
+    except KeyboardInterrupt:
+        sys.exit("interrupted: the same command goes on")
     if given.full and not given.only:
-        publish(made, given.out)
-    found = ", ".join(f"{number} {word}" for word, number in counts(made).items())
-    print(f"{found}; {time.perf_counter() - start:.0f} s")
+        publish(made)
+    print(f"{sentence(made)} {time.perf_counter() - start:.0f} s")
     print(f"open {given.out / 'index.html'}")
 
 

@@ -126,6 +126,7 @@ _MATERIALS = (
     Stated("young", "Young's modulus of the fiber", "31,076 MPa", "III-C", 31076, "MPa"),
     Stated("poisson", "Poisson's ratio of the fiber", "0.36", "III-C", 0.36),
     Stated("halved", "radius of the beams", "reduced by a factor of 2", "III-C", 0.5),
+    Stated("insignificant", "effect of halving it", "insignificant change", "III-C"),
     Stated("twice", "initial shear modulus of a Yeoh rubber", "μ̄ = 2 C1", "III-C", 2.0),
     Stated("rubber", "Young's modulus of soft materials", "~10² to 10⁶ Pa", "I"),
     MODULUS,

@@ -79,6 +79,16 @@ def counts(made: Sequence[Made]) -> dict[str, int]:
     return {word: words[word] for word in ("kept", "not kept", "cannot be compared")}
 
 
+def sentence(made: Sequence[Made]) -> str:
+    """How many verdicts there are of each kind, in words."""
+    found = counts(made)
+    taken = sum(verdict.taken for each in made for verdict in each.found.verdicts)
+    return (
+        f"{found['kept']} kept, of which {taken} are inputs that are taken as stated; "
+        f"{found['not kept']} not kept; {found['cannot be compared']} cannot be compared."
+    )
+
+
 def draw(made: Sequence[Made], folder: Path) -> None:
     """Write every figure as PNG, twice as fine as it is shown, and as PDF."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -121,6 +131,7 @@ def html(made: Sequence[Made], folder: Path, form: str) -> str:
             words=WORDS,
             parts=parts,
             counts=counts(made),
+            sentence=sentence(made),
             downloads=[inside(file, folder) for file in files],
             cite=citation(),
             version=__version__,
@@ -165,15 +176,13 @@ def markdown(made: Sequence[Made], form: str) -> str:
         made: its parts.
         form: what was solved, in words.
     """
-    found = counts(made)
     lines = [
         "# The paper, figure by figure",
         "",
         "<!-- Written by `make paper FULL=1`; do not edit by hand. -->",
         "",
         f"`make paper` draws this page again as runs/paper/index.html; this one is the {form}.",
-        f"**{found['kept']} statements kept, {found['not kept']} not kept, "
-        f"{found['cannot be compared']} that cannot be compared.**",
+        f"**Verdicts: {sentence(made)}**",
         "",
     ]
     for text in WORDS:
@@ -198,7 +207,7 @@ def markdown(made: Sequence[Made], form: str) -> str:
 
 
 def _verdicts(verdicts: Sequence[Verdict]) -> Table:
-    head = ("stated", "printed", "our model", "gives", "verdict", "why")
+    head = ("stated", "printed", "our model", "gives", "verdict", "because")
     rows = [
         (
             f"{v.stated.what} ({v.stated.place})",

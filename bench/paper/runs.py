@@ -15,6 +15,7 @@ from fiberbend.api.calls import sweep
 from fiberbend.api.result import Result
 from fiberbend.api.sweep import Sweep
 from geometry.mesh.data import Floats
+from materials.fiber import FIBERS
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 SWEEPS = ROOT / "cases" / "sweeps"
@@ -151,16 +152,37 @@ class Runs:
     def pictures(self) -> Path:
         """Folder of the baseline with pictures: a body, in the quick form a cell."""
         case = "free_bending" if self.bodies else "cell"
+        return self._one(f"pictures_{case}", case, {"output.pictures": True}).folder / "pictures"
+
+    @functools.cached_property
+    def whole_thread(self) -> Curve:
+        """The baseline's cell with a thread of the whole radius, which is four times as stiff."""
+        thread = FIBERS["kevlar"]
+        changes: dict[str, Any] = {
+            "effects.1.winding.fiber": {
+                "modulus": f"{thread.modulus} MPa",
+                "diameter": f"{thread.diameter} mm",
+                "radius_factor": 1.0,
+            },
+            "mesh": {"section": 2},
+            "output": {},
+        }
+        changes |= dict(change.split("=") for change in self.cell_mesh)
+        return self._one("whole_thread", "cell", changes)
+
+    def _one(self, out: str, case: str, changes: Mapping[str, Any]) -> Curve:
+        """A single run, kept as a sweep of one point."""
         file = {
-            "title": "Fig. 6",
+            "title": out,
             "case": str(ROOT / "cases" / f"{case}.yaml"),
-            "set": {"output.pictures": True},
+            "set": dict(changes),
             "points": [{"actuator.radius": "8 mm"}],
             "report": {"history": ["angle_deg"]},
         }
-        done = sweep(file, self.folder / f"pictures_{case}", settings=self.settings, retry=True)
-        (result,) = self._finished(done)
-        return result.folder / "pictures"
+        (found,) = self._finished(
+            sweep(file, self.folder / out, settings=self.settings, retry=True)
+        )
+        return found
 
     def solve(self, model: str, name: str, out: str, settings: Sequence[str] = ()) -> Solved:
         """Solve what is left of a sweep.

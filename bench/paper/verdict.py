@@ -17,6 +17,8 @@ FLAT = 0.01
 """Part by which a quantity may change and is still insignificant in the sense of Table II."""
 
 UNREACHED = "the run ends before"
+_GLUE = "\u00a0"
+"""Between a number and its unit, which stay in one line."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -29,6 +31,7 @@ class Verdict:
         ours: what it gives.
         kept: whether it is within the bound; None where nothing can be compared.
         why: the bound and how far off, or why nothing can be compared.
+        taken: it is an input that our models take as it is stated.
     """
 
     stated: Stated
@@ -36,6 +39,7 @@ class Verdict:
     ours: str
     kept: bool | None
     why: str
+    taken: bool = False
 
     @property
     def word(self) -> str:
@@ -45,12 +49,12 @@ class Verdict:
 
 def percent(part: float, digits: int = 1) -> str:
     """A part with its sign in percent."""
-    return f"{100 * part:+.{digits}f} %".replace("-", "−")
+    return f"{100 * part:+.{digits}f}{_GLUE}%".replace("-", "−")
 
 
 def number(value: float, unit: str = "", digits: int = 4) -> str:
-    """A number and its unit; parts without a unit are percent where they are small."""
-    return f"{value:.{digits}g} {unit}".strip().replace("-", "−")
+    """A number and its unit."""
+    return f"{value:.{digits}g}{_GLUE}{unit}".strip().replace("-", "−")
 
 
 def near(key: str, model: str, ours: float, bound: float, source: str) -> Verdict:
@@ -98,7 +102,7 @@ def used(key: str, ours: float, where: str) -> Verdict:
     stated = STATED[key]
     kept = math.isclose(ours, stated.value, rel_tol=1e-12)
     why = "taken as stated" if kept else "taken otherwise"
-    return Verdict(stated, where, number(ours, stated.unit, 6), kept, why)
+    return Verdict(stated, where, number(ours, stated.unit, 6), kept, why, taken=kept)
 
 
 def holds(key: str, model: str, ours: str, kept: bool, why: str) -> Verdict:
@@ -186,8 +190,9 @@ def possible(
     """
     stated = STATED[key]
     low, high = shared(values, errors)
-    pairs = zip(models, values, strict=True)
-    ours = ", ".join(f"{name} {number(value, unit)}" for name, value in pairs)
+    if not all(math.isfinite(value) for value in values):
+        return Verdict(stated, " and ".join(models), "", None, UNREACHED)
+    ours = " and ".join(number(value, unit) for value in values)
     if low <= high:
         why = (
             f"the measured points are not published; {where} a measurement from {low:.4g} to "

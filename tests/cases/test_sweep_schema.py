@@ -57,8 +57,9 @@ def grid(**changes: Any) -> dict[str, Any]:
 def test_example_sweeps_are_valid(path: Path) -> None:
     """10 points are those of Table I of Polygerinos et al. 2015, 36 the grid behind Fig. 8."""
     counts = {"radius_length_wall": 36, "floor_stiffness": 8, "angle_at_pressure": 9}
-    counts["fiber_angle"] = 15
+    counts |= {"fiber_angle": 15, "fig11_straight": 6, "fig11_body": 6}
     fields = {"floor_stiffness": 1, "angle_at_pressure": 2, "fiber_angle": 2}
+    fields |= {"fig11_straight": 2, "fig11_body": 2}
     sweep = read_sweep(path)
     assert len(sweep.points) == counts.get(path.stem, 10)
     assert sum(column.numeric for column in sweep.columns) == fields.get(path.stem, 3)

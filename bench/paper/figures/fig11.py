@@ -139,7 +139,8 @@ def _draw(every: Forces) -> Any:
         STRAIGHT["section"]: SECTION.line() | {"label": "section, kept straight"},
         STRAIGHT["cell"]: CELL.line() | {"label": "cell, kept straight", "lw": 2.4},
         HELD: {"color": "black", "ls": "-", "lw": 1.8, "label": HELD},
-        PUSHED: {"color": "black", "ls": "none", "marker": "^", "ms": 7, "label": PUSHED},
+        PUSHED: {"color": "black", "ls": "none", "marker": "^", "ms": 7, "label": PUSHED}
+        | {"clip_on": False},
     }
     for panel, letter, key in zip(panels, "bcd", KEYS, strict=True):
         for name, of in every.items():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,8 @@ from bench.paper.verdict import Verdict, holds, near
 PSI = 6.894757
 """kPa."""
 ANGLES = (90.0, 180.0, 270.0, 360.0)
+REST, BENT = ("undeformed.png", "rest.png"), ("montage.png", "bent.png")
+"""Pictures that a run leaves, a body's first."""
 ERROR = STATED["pressure"].value
 
 
@@ -110,10 +114,7 @@ def picture(runs: Runs) -> Any:
     from matplotlib.image import imread
 
     folder = runs.pictures
-    rest = next(
-        folder / name for name in ("undeformed.png", "rest.png") if (folder / name).exists()
-    )
-    images = [imread(rest), imread(folder / "bent.png")]
+    images = [imread(_first(folder, REST)), imread(_first(folder, BENT))]
     heights = [WIDTH * image.shape[0] / image.shape[1] for image in images]
     figure = empty_page(sum(heights))
     top = 1.0
@@ -124,3 +125,8 @@ def picture(runs: Runs) -> Any:
         panel.set_axis_off()
         top -= share
     return figure
+
+
+def _first(folder: Path, names: Sequence[str]) -> Path:
+    """The first file of a folder that is there."""
+    return next(folder / name for name in names if (folder / name).exists())

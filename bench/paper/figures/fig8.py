@@ -17,6 +17,8 @@ from bench.paper.verdict import FALLS, Verdict, holds, percent, sign_of
 PLACE = {"radius": 0, "length": 1, "wall": 2}
 """Of a dimension in (a, L, t)."""
 NAMES = {"radius": "radius a, mm", "length": "length L, mm", "wall": "wall t, mm"}
+LABELS = {"radius": 7.0, "length": 170.0, "wall": 2.6}
+"""Where the lines of (19) are named, mm."""
 HOOP = 0.5
 
 
@@ -104,7 +106,7 @@ def verdicts(runs: Runs) -> list[Verdict]:
     made = [
         holds(
             "sizes",
-            "section and cell",
+            " and ".join(solved(runs)),
             f"{len(sizes)} sizes",
             all(set(done.sizes) == sizes for done in solved(runs).values()),
             "the same ones are solved",
@@ -140,8 +142,12 @@ def lengths(runs: Runs) -> list[Verdict]:
     """On the text's sentence about the length."""
     keys = series("length")
     made = []
-    for name, done in solved(runs).items():
-        values = [done.sizes[key].at_angle(360.0) for key in keys]
+    every = {"eq. (19)": [float(kpa(paper(key), 360.0)) for key in keys]}
+    every |= {
+        name: [done.sizes[key].at_angle(360.0) for key in keys]
+        for name, done in solved(runs).items()
+    }
+    for name, values in every.items():
         sign, change = sign_of(values), percent(values[-1] / values[0] - 1)
         why = f"{change} from L = {keys[0][1]:g} to {keys[-1][1]:g} mm"
         made.append(holds("length_text", name, sign, sign != FALLS, why))
@@ -182,16 +188,15 @@ def _draw(every: dict[str, Solved]) -> Any:
 
 
 def _angles(panel: Any, name: str) -> None:
-    """The angle on each line of (19), at the end where it is highest."""
+    """The angle above each line of (19)."""
+    across = LABELS[name]
     for degrees in ANGLES:
-        across, up = _line(name, degrees, paper)
-        end = 0 if up[0] > up[-1] else -1
         panel.annotate(
             f"{degrees:g}°",
-            (across[end], up[end]),
-            xytext=(3 if end == 0 else -3, 5),
+            (across, float(kpa(paper(changed(name, across)), degrees))),
+            xytext=(-6, 5) if name == "wall" else (0, 5),
             textcoords="offset points",
-            ha="left" if end == 0 else "right",
+            ha="right" if name == "wall" else "center",
             fontsize=10.5,
             color=CLOSED["eq. (19)"][0].color,
         )

@@ -18,6 +18,8 @@ from geometry.mesh.data import Floats
 
 ERROR, PATH = STATED["pressure"].value, STATED["path"].value
 ANGLES = (90.0, 180.0, 270.0, 360.0)
+MIDDLE = np.array([60.0, -60.0])
+"""Of the path, mm: names of angles are outside."""
 Path = tuple[Floats, Floats]
 """Angles in degrees, (n,), and places of the tip (z, y) in mm, (n, 2)."""
 
@@ -112,8 +114,15 @@ def _draw(closed: Path, paths: Mapping[str, Path]) -> Any:
         panel.plot(*places.T, **look.points(), label=look.label)
     for degrees, place in zip(closed[0], closed[1], strict=True):
         if degrees in (0.0, *ANGLES):
+            out = place - MIDDLE
             panel.annotate(
-                f"{degrees:g}°", place, xytext=(10, 9), textcoords="offset points", fontsize=11
+                f"{degrees:g}°",
+                place,
+                xytext=24 * out / np.linalg.norm(out),
+                textcoords="offset points",
+                ha="center",
+                va="center",
+                fontsize=11,
             )
     panel.set_aspect("equal")
     named(panel, "z, mm", "y, mm")

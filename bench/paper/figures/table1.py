@@ -10,8 +10,6 @@ from bench.paper.part import Found, Table
 from bench.paper.runs import FULL, Curve, Runs, Solved
 from bench.paper.verdict import Verdict, unknown
 
-GOAL = 360.0
-
 
 def found(runs: Runs) -> Found:
     """The paper's counts beside ours."""

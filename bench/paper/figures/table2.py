@@ -21,7 +21,7 @@ def found(runs: Runs) -> Found:
     """A sign for every model."""
     made = [*pressures(runs), *blocked(runs)]
     keys = [f"{name}_{kind}" for kind in ("pressure", "force") for name in FIG_8]
-    head = ("", *(f"{STATED[key].what.replace(' up', '')}" for key in keys))
+    head = ("", *(f"{letter}: {name}" for letter in "PF" for name in FIG_8))
     rows = [["paper", *(STATED[key].printed for key in keys)]]
     for model in dict.fromkeys(verdict.model for verdict in made):
         ours = {verdict.stated.key: verdict.ours for verdict in made if verdict.model == model}
@@ -35,9 +35,7 @@ def found(runs: Runs) -> Found:
             "gives way, with 3 mm the pressure falls as in the paper, which does not state its "
             "floor.",
         ),
-        tables=[
-            Table("Signs as found, with the change from the least to the greatest", head, rows)
-        ],
+        tables=[Table("P at 360° and F at 0° as radius, length and wall grow", head, rows)],
         verdicts=made,
         commands=[
             *(done.command for done in solved(runs).values()),
