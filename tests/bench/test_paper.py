@@ -28,6 +28,10 @@ from tests.conftest import ROOT
 
 NOT_HERE = "https?://"
 CHROMIUM = Path("/usr/bin/chromium")
+FIGURES = [
+    *("fig4", "fig6", "fig8", "fig9", "fig10", "fig11", "fig13"),
+    *("assumed", "assumed_best"),
+]
 
 
 def curve(key: Key, folder: Path, model: str) -> Curve:
@@ -144,7 +148,7 @@ def test_the_page_needs_no_network(page: tuple[Path, list[Made]]) -> None:
     for link in re.findall(rf'href="({NOT_HERE}[^"]+)"', text):
         assert link.startswith("https://doi.org/")
     assert "default-src 'none'" in text
-    assert text.count("<img ") == 7
+    assert text.count("<img ") == len(FIGURES)
 
 
 def test_figures_are_files_and_the_page_says_how_they_are_made(
@@ -152,7 +156,7 @@ def test_figures_are_files_and_the_page_says_how_they_are_made(
 ) -> None:
     path, made = page
     figures = [figure.name for each in made for figure in each.found.figures]
-    assert figures == ["fig4", "fig6", "fig8", "fig9", "fig10", "fig11", "fig13"]
+    assert figures == FIGURES
     for name in figures:
         for ending in ("png", "pdf"):
             assert (path.parent / "figures" / f"{name}.{ending}").stat().st_size > 1000
@@ -198,7 +202,7 @@ def test_the_page_in_a_browser(page: tuple[Path, list[Made]]) -> None:
     assert said == []
     assert [url for url in asked if not url.startswith(("file:", "data:"))] == []
     # at 100 %, and twice as fine for sharp screens
-    assert images == [[2 * PIXELS, PIXELS]] * 7
+    assert images == [[2 * PIXELS, PIXELS]] * len(FIGURES)
     assert wide == 1280
 
 

@@ -58,7 +58,8 @@ class Held:
 def cells(
     grid: Grid, given: Combination, tell: Callable[[str], None]
 ) -> tuple[list[Confirmed], float]:
-    """Table I by the cell; with the seconds of processor time."""
+    """Table I by the cell, sheath all around; with the seconds of processor time."""
+    given = dataclasses.replace(given, bare=False)
     expected = alone(grid, given).pressures
     found, seconds = [], 0.0
     for radius, wall in SECTIONS:
@@ -66,7 +67,7 @@ def cells(
         keys.sort(key=lambda key: -key[1])
         tell(f"cell of a = {radius:g}, t = {wall:g} mm")
         chambers = [given.chamber(key[1]) for key in keys]
-        done = solving.cell(dataclasses.replace(given, bare=False), radius, wall, chambers)
+        done = solving.cell(given, radius, wall, chambers)
         seconds += done.seconds
         found += [
             Confirmed(key, round(float(expected[key]), 3), round(pressure, 3))
@@ -77,8 +78,8 @@ def cells(
 
 
 def bodies(grid: Grid, given: Combination, tell: Callable[[str], None]) -> tuple[list[Held], float]:
-    """The tip's force of two bodies, with the seconds of processor time."""
-    expected = alone(grid, dataclasses.replace(given, guided=True)).forces
+    """The tip's force of two bodies, sheath all around; with the seconds of processor time."""
+    expected = alone(grid, dataclasses.replace(given, guided=True, bare=False)).forces
     found, seconds = [], 0.0
     for radius in FORCES:
         tell(f"body of a = {radius:g} mm")

@@ -25,7 +25,7 @@ from bench.paper.lines import BLUE, BROWN, GRAY, GREEN, RED, named, page
 from bench.paper.priced import Line, line
 from bench.paper.verdict import FLAT
 
-_SMALL = 10.5
+_SMALL = 10.0
 SHORT = {
     "pitch": "pitch, mm",
     "floor": "floor, mm",
@@ -42,8 +42,8 @@ def prices(grid: Grid) -> Any:
         _pressure(panel, line(grid, each), first=each is PITCH)
     for panel, each in zip(panels[1], (PITCH, THICKNESS, LEVER), strict=True):
         _force(panel, grid, line(grid, each), first=each is PITCH)
-    panels[0][0].legend(fontsize=_SMALL - 1, frameon=False, loc="upper left")
-    panels[1][2].legend(fontsize=_SMALL - 1, frameon=False, loc="upper right")
+    panels[0][0].legend(fontsize=_SMALL, frameon=False, loc="upper left")
+    panels[1][2].legend(fontsize=_SMALL, frameon=False, loc="upper right")
     figure.tight_layout()
     return figure
 
@@ -115,7 +115,7 @@ def _conflict(panel: Any, record: Record) -> None:
                     (pressure[mark], steps[mark]),
                     (5, 4),
                     textcoords="offset points",
-                    fontsize=_SMALL - 1,
+                    fontsize=_SMALL,
                     color=color,
                 )
     panel.fill_betweenx([-9, -100 * FLAT], (1 - OURS) * FULL, (1 + OURS) * FULL, color="0.85", lw=0)
@@ -128,7 +128,7 @@ def _conflict(panel: Any, record: Record) -> None:
     panel.axhline(0, color="0.6", lw=0.8)
     panel.set_xlim(165, 260)
     panel.set_ylim(-6, 14)
-    panel.legend(fontsize=_SMALL - 1, frameon=False, loc="upper right")
+    panel.legend(fontsize=_SMALL, frameon=False, loc="upper right")
     named(panel, "P(360°) of the baseline, kPa", "greatest step of P over radius, %", "(a)")
 
 
@@ -142,5 +142,5 @@ def _profile(
     panel.plot([getattr(given, of.key)], [least], "*", color=RED, ms=12, label="best")
     panel.set_ylim(0, min(2.2 * max(least, 1.5), 1.15 * max(profile.misfit) + 0.5))
     if letter == "b":
-        panel.legend(fontsize=_SMALL - 1, frameon=False, loc="lower right")
+        panel.legend(fontsize=_SMALL, frameon=False, loc="lower right")
     named(panel, SHORT[of.key], "misfit", f"({letter})")
