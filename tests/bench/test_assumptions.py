@@ -213,7 +213,7 @@ def test_the_page_says_what_the_record_has(tmp_path: object) -> None:
     assert len(found.tables[0].rows) == len(RANGES) + len(CHOICES)
     stated = found.tables[2]
     assert len(stated.rows) == len(statements()) + 1
-    assert stated.rows[-1][-1] == f"{best.misfit:.2f}"
+    assert stated.rows[-1][-2] == f"{best.misfit:.2f}"
     confirmed = found.tables[-1]
     assert len(confirmed.rows) == len(TABLE_I) + len(RECORD.bodies)
     assert by_caption

@@ -218,7 +218,7 @@ def test_docs_have_every_stated_number() -> None:
 
 def test_markdown_is_that_of_the_parts(page: tuple[Path, list[Made]]) -> None:
     text = markdown(page[1], "a form")
-    assert text.count("| verdict | because |") == len(PARTS)
+    assert text.count("| verdict | because |") == sum(bool(each.found.verdicts) for each in page[1])
     assert "a form" in text
 
 

@@ -22,7 +22,7 @@ from geometry.mesh.data import Floats
 
 SLACK = 1.0
 """Of misfit² above the least: one scale of one statement."""
-FINE = (46, 31, 16)
+FINE = (46, 61, 31)
 """Places along pitch, thickness and L_f."""
 _STEP = 1e-3
 """Difference by which a slope is taken, a part of the bounds."""

@@ -43,7 +43,7 @@ def prices(grid: Grid) -> Any:
     for panel, each in zip(panels[1], (PITCH, THICKNESS, LEVER), strict=True):
         _force(panel, grid, line(grid, each), first=each is PITCH)
     panels[0][0].legend(fontsize=_SMALL, frameon=False, loc="upper left")
-    panels[1][2].legend(fontsize=_SMALL, frameon=False, loc="upper right")
+    panels[1][0].legend(fontsize=_SMALL, frameon=False, loc="upper left")
     figure.tight_layout()
     return figure
 
@@ -109,11 +109,11 @@ def _conflict(panel: Any, record: Record) -> None:
         marks = [int(np.argmin(np.abs(floors - value))) for value in (1.5, 2.0, 2.5, 3.0)]
         panel.plot(pressure[marks], steps[marks], "o", color=color, ms=4)
         if pitch == DEFAULT.pitch:
-            for mark in marks:
+            for mark, aside in zip(marks, ((7, -1), (4, -15), (5, 5), (5, 5)), strict=True):
                 panel.annotate(
                     f"{floors[mark]:.1f}",
                     (pressure[mark], steps[mark]),
-                    (5, 4),
+                    aside,
                     textcoords="offset points",
                     fontsize=_SMALL,
                     color=color,
@@ -127,9 +127,9 @@ def _conflict(panel: Any, record: Record) -> None:
     panel.plot([float(found.pressures[BASELINE])], [at], "*", color=RED, ms=12, label="best")
     panel.axhline(0, color="0.6", lw=0.8)
     panel.set_xlim(165, 260)
-    panel.set_ylim(-6, 14)
+    panel.set_ylim(-6, 11)
     panel.legend(fontsize=_SMALL, frameon=False, loc="upper right")
-    named(panel, "P(360°) of the baseline, kPa", "greatest step of P over radius, %", "(a)")
+    named(panel, "P(360°) of the baseline, kPa", "greatest step over radius, %", "(a)")
 
 
 def _profile(
