@@ -86,7 +86,7 @@ def test_a_case_takes_every_bound_and_every_reading(given: Combination) -> None:
     else:
         assert (actuator.floor, actuator.layer) == (given.floor, None)
     winding = case.effects[1].model_dump()
-    assert winding["pitch"] == given.pitch
+    assert winding["pitch"] == f"{given.pitch:g} mm"
     assert winding["fiber"]["radius_factor"] == (1.0 if given.whole else 0.5)
 
 
@@ -197,6 +197,8 @@ def test_the_record_has_what_the_optimiser_finds_on_its_grid() -> None:
     # where the misfit is flat, equal values are found at other numbers
     kept = {one.given.readings: one.misfit for one in RECORD.best}
     assert kept == pytest.approx({one.given.readings: one.misfit for one in found}, abs=2e-2)
+    weaker = optimise(RECORD.grid, statements(ends=True))[0]
+    assert weaker.misfit == pytest.approx(RECORD.ends.misfit, abs=1e-3)
     again = profiles(RECORD.grid, statements())
     for old, new in zip(RECORD.profiles, again, strict=True):
         assert len(new.across) in FINE
@@ -208,7 +210,8 @@ def test_the_page_says_what_the_record_has(tmp_path: object) -> None:
     found = assumed.found(Runs(folder=CASE.parent))
     best = RECORD.best[0]
     text = " ".join(found.words)
-    assert f"misfit {best.misfit:.2f}" in text
+    assert f"misfit is {best.misfit:.2f}" in text
+    assert f"misfit is {RECORD.ends.misfit:.2f}" in text
     by_caption = {table.caption.split(",")[0].split(";")[0]: table for table in found.tables}
     assert len(found.tables[0].rows) == len(RANGES) + len(CHOICES)
     stated = found.tables[2]

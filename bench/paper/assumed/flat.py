@@ -42,14 +42,24 @@ class Profile:
     across: tuple[float, ...]
     misfit: tuple[float, ...]
 
-    def allowed(self, least: float) -> tuple[float, float]:
-        """Values whose misfit² is no more than `SLACK` above that of the best combination."""
-        inside = [
-            value
-            for value, left in zip(self.across, self.misfit, strict=True)
-            if left**2 <= least**2 + SLACK
-        ]
-        return min(inside), max(inside)
+    def allowed(self, least: float, slack: float = SLACK) -> tuple[float, float] | None:
+        """Least and greatest value whose misfit² is no more than `slack` above the best one's.
+
+        Args:
+            least: misfit of the best combination.
+            slack: of misfit².
+
+        Returns:
+            None where no value is.
+        """
+        pairs = zip(self.across, self.misfit, strict=True)
+        inside = [value for value, left in pairs if left**2 <= least**2 + slack]
+        return (min(inside), max(inside)) if inside else None
+
+    @classmethod
+    def read(cls, entries: dict[str, Any]) -> Profile:
+        """From a JSON file."""
+        return cls(entries["key"], tuple(entries["across"]), tuple(entries["misfit"]))
 
 
 def profiles(grid: Grid, stated: Sequence[Statement]) -> list[Profile]:

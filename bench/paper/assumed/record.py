@@ -26,6 +26,8 @@ class Record:
         grid: sections that were solved.
         best: the best combination of every reading, the best of all first.
         profiles: of what is open between numbers.
+        ends: the best combination if of the radius only 6 and 12 mm count.
+        ends_profiles: likewise.
         directions: at the best combination.
         cells: the best combination by the cell.
         bodies: its force by bodies.
@@ -36,6 +38,8 @@ class Record:
     grid: Grid
     best: tuple[Best, ...]
     profiles: tuple[Profile, ...]
+    ends: Best
+    ends_profiles: tuple[Profile, ...]
     directions: Directions
     cells: tuple[Confirmed, ...]
     bodies: tuple[Held, ...]
@@ -49,6 +53,8 @@ class Record:
             "seconds": round(self.seconds),
             "best": [one.entries() for one in self.best],
             "profiles": [dataclasses.asdict(one) for one in self.profiles],
+            "ends": self.ends.entries(),
+            "ends_profiles": [dataclasses.asdict(one) for one in self.ends_profiles],
             "directions": dataclasses.asdict(self.directions),
             "cells": [dataclasses.asdict(one) for one in self.cells],
             "bodies": [dataclasses.asdict(one) for one in self.bodies],
@@ -65,10 +71,9 @@ class Record:
         return cls(
             Grid.read(entries["grid"]),
             tuple(Best.read(one) for one in entries["best"]),
-            tuple(
-                Profile(one["key"], tuple(one["across"]), tuple(one["misfit"]))
-                for one in entries["profiles"]
-            ),
+            tuple(Profile.read(one) for one in entries["profiles"]),
+            Best.read(entries["ends"]),
+            tuple(Profile.read(one) for one in entries["ends_profiles"]),
             Directions.read(entries["directions"]),
             tuple(
                 Confirmed(tuple(one["key"]), one["grid"], one["cell"]) for one in entries["cells"]
@@ -93,6 +98,8 @@ def made(grid: Grid, tell: Callable[[str], None]) -> Record:
         grid,
         tuple(best),
         tuple(profiles(grid, stated)),
+        optimise(grid, statements(ends=True))[0],
+        tuple(profiles(grid, statements(ends=True))),
         directions(grid, given, stated),
         tuple(cells),
         tuple(bodies),

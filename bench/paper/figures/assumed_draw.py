@@ -135,8 +135,9 @@ def _conflict(panel: Any, record: Record) -> None:
 def _profile(
     panel: Any, letter: str, profile: Profile, of: Range, given: Combination, least: float
 ) -> None:
-    low, high = profile.allowed(least)
-    panel.axvspan(low, high, color="0.9", lw=0, label="one scale more at most")
+    allowed = profile.allowed(least)
+    if allowed is not None:
+        panel.axvspan(*allowed, color="0.9", lw=0, label="one scale more at most")
     panel.plot(profile.across, profile.misfit, color=GREEN, lw=2, label="all others free")
     panel.axhline(np.sqrt(least**2 + SLACK), color=GRAY, lw=0.8, ls=":")
     panel.plot([getattr(given, of.key)], [least], "*", color=RED, ms=12, label="best")
