@@ -108,8 +108,8 @@ def _conflict(panel: Any, record: Record) -> None:
         panel.plot(pressure, steps, color=color, ls=style, lw=1.8, label=f"pitch {pitch:g} mm")
         marks = [int(np.argmin(np.abs(floors - value))) for value in (1.5, 2.0, 2.5, 3.0)]
         panel.plot(pressure[marks], steps[marks], "o", color=color, ms=4)
-        if pitch == DEFAULT.pitch:
-            for mark, aside in zip(marks, ((7, -1), (4, -15), (5, 5), (5, 5)), strict=True):
+        if pitch == PITCH.high:
+            for mark, aside in zip(marks, ((6, 2), (-25, -4), (5, 5), (-10, 7)), strict=True):
                 panel.annotate(
                     f"{floors[mark]:.1f}",
                     (pressure[mark], steps[mark]),
