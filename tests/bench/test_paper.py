@@ -17,7 +17,7 @@ import yaml
 from bench.paper import __main__ as paper
 from bench.paper import verdict as v
 from bench.paper.facts import ANGLES, BASELINE, FIG_8, FIG_10, FIG_11, STATED, TABLE_I, by_key
-from bench.paper.figures import fig13
+from bench.paper.figures import fig11, fig13
 from bench.paper.lines import force, kpa, printed, zero_fit
 from bench.paper.lines import paper as closed_form
 from bench.paper.page import PIXELS, Made, markdown, missing, sentence
@@ -28,10 +28,6 @@ from tests.conftest import ROOT
 
 NOT_HERE = "https?://"
 CHROMIUM = Path("/usr/bin/chromium")
-FIGURES = [
-    *("fig4", "fig6", "fig8", "fig9", "fig10", "fig11", "fig13"),
-    *("assumed", "assumed_best"),
-]
 
 
 def curve(key: Key, folder: Path, model: str) -> Curve:
@@ -148,7 +144,7 @@ def test_the_page_needs_no_network(page: tuple[Path, list[Made]]) -> None:
     for link in re.findall(rf'href="({NOT_HERE}[^"]+)"', text):
         assert link.startswith("https://doi.org/")
     assert "default-src 'none'" in text
-    assert text.count("<img ") == len(FIGURES)
+    assert text.count("<img ") == sum(len(each.found.figures) for each in page[1])
 
 
 def test_figures_are_files_and_the_page_says_how_they_are_made(
@@ -156,7 +152,7 @@ def test_figures_are_files_and_the_page_says_how_they_are_made(
 ) -> None:
     path, made = page
     figures = [figure.name for each in made for figure in each.found.figures]
-    assert figures == FIGURES
+    assert {"fig4", "fig6", "fig8", "fig9", "fig10", "fig11", "fig13"} <= set(figures)
     for name in figures:
         for ending in ("png", "pdf"):
             assert (path.parent / "figures" / f"{name}.{ending}").stat().st_size > 1000
@@ -177,9 +173,7 @@ def test_the_text_of_figures_is_read_at_its_size(page: tuple[Path, list[Made]]) 
                 for text in figure.page.findobj(Text)
                 if text.get_text().strip() and text.get_visible()
             ]
-            assert all(size >= 7 for size in sizes), figure.name
-            # shrunken only the letters of indices
-            assert sum(size < 10 for size in sizes) == 0, figure.name
+            assert min(sizes, default=10) >= 10, figure.name
 
 
 def test_the_page_in_a_browser(page: tuple[Path, list[Made]]) -> None:
@@ -202,7 +196,8 @@ def test_the_page_in_a_browser(page: tuple[Path, list[Made]]) -> None:
     assert said == []
     assert [url for url in asked if not url.startswith(("file:", "data:"))] == []
     # at 100 %, and twice as fine for sharp screens
-    assert images == [[2 * PIXELS, PIXELS]] * len(FIGURES)
+    assert len(images) >= 7
+    assert all(image == [2 * PIXELS, PIXELS] for image in images)
     assert wide == 1280
 
 
@@ -218,7 +213,8 @@ def test_docs_have_every_stated_number() -> None:
 
 def test_markdown_is_that_of_the_parts(page: tuple[Path, list[Made]]) -> None:
     text = markdown(page[1], "a form")
-    assert text.count("| verdict | because |") == sum(bool(each.found.verdicts) for each in page[1])
+    judged = [each for each in page[1] if each.found.verdicts]
+    assert text.count("| verdict | because |") == len(judged)
     assert "a form" in text
 
 
@@ -314,6 +310,17 @@ def test_errors_against_points_that_are_not_published() -> None:
         assert max(abs(x / measured - 1) for x in (237.828, 196.0)) <= 0.109 + 1e-12
     apart = v.possible("pressure", ("(19)", "cell"), (237.8, 181.5), (0.109, 0.109), "at 360°")
     assert apart.kept is False
+
+
+def test_a_lever_arm_that_leaves_room_for_both_errors() -> None:
+    of = {key: [1.0] * 5 for key in fig11.KEYS}
+    every = {"eq. (20)": of, fig11.HELD: {key: [1.0, 1.0, 1.05, 1.1, 1.1] for key in fig11.KEYS}}
+    low, high = fig11.levers(every, fig11.HELD)
+    for lever, part in ((low, 1.0), (high, 1.1)):
+        # at its ends a measured force is just between (20) and the body
+        ends = v.shared((15.0 / lever, part), fig11.ERRORS)
+        assert ends[0] == pytest.approx(ends[1])
+    assert low < 15 < high
 
 
 def test_places_that_no_measured_one_is_near() -> None:

@@ -37,8 +37,8 @@ def found(_runs: Runs) -> Found:
                 assumed_draw.prices(record.grid),
                 "One open matter at a time, all others as elsewhere on this page; above P(360°) of "
                 "the baseline, thick where P falls with the radius by 1 % and more at every step "
-                "from 6 to 12 mm, gray 196 kPa ±1.5 %; below the force at 200 kPa and 0°, gray what "
-                "the stated errors of both models leave to the simulation.",
+                "from 6 to 12 mm, gray 196 kPa ±1.5 %; below the force at 200 kPa and 0°, gray "
+                "what the stated errors of both models leave to the simulation.",
             ),
             Figure(
                 "assumed_best",

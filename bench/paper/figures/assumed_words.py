@@ -71,7 +71,7 @@ def _forces(record: Record) -> str:
         "that, whatever L_f is, since both have the same: no L_f explains the force, and the force "
         "does not determine L_f. A body whose crown a strip holds down, as the plate of Fig. 11, "
         f"has {held:.2f} times that with L_f = 15 mm: {_inside(held, low, high)}. Where a strip "
-        "holds it the force bounds L_f, from where to where is below. That the length does not "
+        "holds it the force bounds L_f: below at 200 kPa, with Fig. 11 at all its pressures. That the length does not "
         "matter follows from nothing that is open: a section does not know its length, and bodies "
         "do not show it (Fig. 11)."
     )

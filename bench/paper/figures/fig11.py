@@ -51,6 +51,11 @@ def found(runs: Runs) -> Found:
             "can leave, winding spread, elements 4 mm long (docs/contact.md)."
         )
         commands.append(runs.blocked.command)
+        words.append(
+            "One L_f for all three actuators and all of these pressures would leave room for both "
+            f"stated errors: {_lever(every, HELD)} with the tip held, {_lever(every, PUSHED)} with "
+            "it pushed."
+        )
     head = ("", "", *(f"{p:g} kPa" for p in PRESSURES))
     return Found(
         words=words,
@@ -110,8 +115,34 @@ def _error(stated: str, every: Forces, model: str, key: Key) -> Verdict:
     pairs = list(zip(every["eq. (20)"][key], every[model][key], strict=True))
     spans = [shared(pair, ERRORS) for pair in pairs]
     worst = int(np.argmax([low / high for low, high in spans]))
-    where = f"a = {key[0]:g}, L = {key[1]:g} mm at {PRESSURES[worst]:g} kPa:"
+    size = f"a = {key[0]:g}, L = {key[1]:g} mm"
+    where = f"{size} at {PRESSURES[worst]:g} kPa with L_f = {CAP.value:g} mm:"
     return possible(stated, ("eq. (20)", model), pairs[worst], ERRORS, where, "N")
+
+
+def levers(every: Forces, model: str) -> tuple[float, float]:
+    """Least and greatest L_f in mm with which both errors could hold everywhere.
+
+    F of (20) goes with 1/L_f. None is left where the first number is above the second.
+
+    Args:
+        every: forces, those of (20) with the cap as L_f.
+        model: of the bodies.
+    """
+    closed, solid = ERRORS
+    parts = [
+        a / b
+        for key in KEYS
+        for a, b in zip(every["eq. (20)"][key], every[model][key], strict=True)
+    ]
+    low = max(parts) * (1 - solid) / (1 + closed)
+    high = min(parts) * (1 + solid) / (1 - closed)
+    return low * CAP.value, high * CAP.value
+
+
+def _lever(every: Forces, model: str) -> str:
+    low, high = levers(every, model)
+    return f"{low:.1f} to {high:.1f} mm" if low <= high else "none"
 
 
 def lengths(every: Forces) -> list[Verdict]:

@@ -15,9 +15,10 @@ def found(runs: Runs) -> Found:
     """The paper's counts beside ours."""
     every = solved(runs)
     words = [
-        "The paper counts the nodes and elements of its tetrahedra and beams, and says neither how "
-        "long they took nor how far they bent. Ours are half models (x ≥ 0), so that a whole body "
-        "has twice the elements. Seconds are those of the solution alone, on this machine.",
+        "The paper counts the nodes and elements of its tetrahedra and beams, and does not say how "
+        "long they took; its Figs. 8 and 10 have all ten of them at 360°. Ours are half models "
+        "(x ≥ 0), so that a whole one has twice the elements. Seconds are those of the solution "
+        "alone, on this machine, other work beside it.",
     ]
     if runs.body is None:
         words.append(f"Bodies: `{FULL}`.")
