@@ -64,9 +64,7 @@ class Small:
     _newton: Newton
     _march: March
 
-    def __init__(
-        self, case: Case, like: Small | None = None, mesh: MeshData | None = None
-    ) -> None:
+    def __init__(self, case: Case, like: Small | None = None, mesh: MeshData | None = None) -> None:
         model = meshed(case)
         self._case = case
         if like is not None:

@@ -214,7 +214,8 @@ def test_the_page_says_what_the_record_has(tmp_path: object) -> None:
     assert f"misfit is {RECORD.ends.misfit:.2f}" in text
     by_caption = {table.caption.split(",")[0].split(";")[0]: table for table in found.tables}
     assert len(found.tables[0].rows) == len(RANGES) + len(CHOICES)
-    stated = found.tables[2]
+    stated = found.tables[3]
+    assert len(found.tables[2].rows) == len(RANGES) + len(CHOICES)
     assert len(stated.rows) == len(statements()) + 1
     assert stated.rows[-1][-2] == f"{best.misfit:.2f}"
     confirmed = found.tables[-1]

@@ -17,6 +17,7 @@ from bench.paper.figures.assumed_words import (
     misfit_of,
     number,
     other,
+    values,
     words,
 )
 from bench.paper.lines import kpa, printed
@@ -52,6 +53,7 @@ def found(_runs: Runs) -> Found:
         tables=[
             _open(),
             _prices(prices(record.grid)),
+            _combinations(record),
             _statements(record),
             _readings(record),
             _determined(record),
@@ -123,6 +125,14 @@ def _prices(found: list[Price]) -> Table:
         *(f"{fact.what}; paper {fact.printed}" for fact in signs),
     )
     return Table("What each costs, the baseline; all others as ours", head, rows)
+
+
+def _combinations(record: Record) -> Table:
+    names = [each.what for each in (*RANGES, *CHOICES)]
+    shown = [values(given) for given in (DEFAULT, record.best[0].given, record.ends.given)]
+    rows = [list(row) for row in zip(names, *shown, strict=True)]
+    head = ("open", "ours", "best", "best if of the radius only 6 and 12 mm count")
+    return Table("Combinations", head, rows)
 
 
 def _statements(record: Record) -> Table:

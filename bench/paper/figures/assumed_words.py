@@ -71,9 +71,9 @@ def _forces(record: Record) -> str:
         "that, whatever L_f is, since both have the same: no L_f explains the force, and the force "
         "does not determine L_f. A body whose crown a strip holds down, as the plate of Fig. 11, "
         f"has {held:.2f} times that with L_f = 15 mm: {_inside(held, low, high)}. Where a strip "
-        "holds it the force bounds L_f: below at 200 kPa, with Fig. 11 at all its pressures. That the length does not "
-        "matter follows from nothing that is open: a section does not know its length, and bodies "
-        "do not show it (Fig. 11)."
+        "holds it the force bounds L_f: below at 200 kPa, with Fig. 11 at all its pressures. That "
+        "the length does not matter follows from nothing that is open: a section does not know its "
+        "length, and bodies do not show it (Fig. 11)."
     )
 
 
@@ -130,7 +130,7 @@ def _outcome(record: Record) -> list[str]:
     cells = max(abs(one.grid / one.cell - 1) for one in record.cells)
     bodies = max(abs(one.grid / one.body - 1) for one in record.bodies)
     return [
-        f"The best combination within the bounds: {combination(best.given)}. Its misfit is "
+        "The best combination within the bounds is in the third table. Its misfit is "
         f"{best.misfit:.2f}, that of ours elsewhere on this page {misfit_of(record, DEFAULT):.2f}. "
         f"It explains {len(stated) - len(left)} of {len(stated)} statements. {unexplained} P is "
         f"{radii} kPa for radii of 6, 8, 10 and 12 mm. A wide floor gives way more than a narrow "
@@ -159,7 +159,7 @@ def _weaker(record: Record) -> str:
     return (
         "Table II has a sign and no steps; that each step counts is asked here, as the paper has "
         "four simulations over the radius. If only 6 and 12 mm are compared, the misfit is "
-        f"{ends.misfit:.2f}, for instance with {combination(ends.given)}, where P changes by "
+        f"{ends.misfit:.2f}, for instance with the last column of that table, where P changes by "
         f"{percent(float(found.fall()))} from 6 to 12 mm and by "
         f"{percent(float(found.steps('radius')[-1]))} from 10 to 12 mm. As good are, with all "
         f"others free: {'; '.join(spans)}; with a pitch of {DEFAULT.pitch:g} mm and all else as "
@@ -206,17 +206,15 @@ def misfit_of(record: Record, given: Combination) -> float:
     return math.sqrt(sum(float(one.misfit(at)) ** 2 for one in statements()))
 
 
-def combination(given: Combination) -> str:
-    """A combination in words."""
+def values(given: Combination) -> list[str]:
+    """Of everything that is open, in the order of `RANGES` and `CHOICES`."""
     numbers = [
-        f"{each.what} {each.words(float(getattr(given, each.key)))}"
+        "–"
+        if each.key in ("floor", "layer") and each.key != given.base
+        else each.words(float(getattr(given, each.key)))
         for each in RANGES
-        if each.key not in ("floor", "layer") or each.key == given.base
     ]
-    readings = [
-        f"{choice.what}: {choice.words(bool(getattr(given, choice.key)))}" for choice in CHOICES
-    ]
-    return "; ".join([*numbers, *readings])
+    return numbers + [choice.words(bool(getattr(given, choice.key))) for choice in CHOICES]
 
 
 def number(one: Statement, at: Predicted) -> str:
