@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 
 
 @dataclasses.dataclass(frozen=True)
@@ -69,9 +70,45 @@ class Answer:
         straight: by the wanted pressures, likewise.
         converged: all were found.
         reason: why not; empty where they were.
+        remarks: what casts doubt on the calibration of its winding, a line each.
+        calibration_error: percent of pressure and moment by which a calibration that was taken over
+            from a like case may be off; 0 of its own.
     """
 
     free: tuple[Point, ...] = ()
     straight: tuple[Point, ...] = ()
     converged: bool = True
+    reason: str = ""
+    remarks: tuple[str, ...] = ()
+    calibration_error: float = 0.0
+
+
+@dataclasses.dataclass(frozen=True)
+class Slopes:
+    """Derivatives of an answer.
+
+    Attributes:
+        answer: the states.
+        by_field: by the path of a number of the case, the same states with the derivative of each
+            of their quantities in its place, in its unit over that of the number: MPa/mm.
+    """
+
+    answer: Answer
+    by_field: Mapping[str, Answer]
+
+
+@dataclasses.dataclass(frozen=True)
+class BlockedForce:
+    """What a sweep reports as `blocked_force_N`.
+
+    Attributes:
+        force: N; None where it was not found.
+        named: whose force it is, as a table names it.
+        remark: how it compares with a body's, with the source; empty where it is one.
+        reason: why it was not found; empty where it was.
+    """
+
+    force: float | None
+    named: str
+    remark: str
     reason: str = ""
