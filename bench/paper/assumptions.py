@@ -189,8 +189,8 @@ PITCH = Range(
     "mm",
     1.5,
     6.0,
-    "Figs. 1 and 6 show single turns: at least four diameters of the fiber; at most three walls, "
-    "beyond which rubber bulges out between turns as if there were none",
+    "Figs. 1 and 6 show single turns: at least four diameters of the fiber; at most three "
+    "thicknesses of the wall, as far as calibrations are known (docs/evidence/calibration.md)",
     "effects.1.winding.pitch",
 )
 THICKNESS = Range(
@@ -205,7 +205,7 @@ THICKNESS = Range(
 )
 LAYER = Range(
     "layer",
-    "layer of the combined material under a floor of rubber, thickness",
+    "layer of the combined material under rubber, thickness",
     "mm",
     0.25,
     2.0,

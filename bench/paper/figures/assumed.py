@@ -5,6 +5,8 @@ Read from bench/paper/assumed/record.json, which `make paper ASSUME=1` makes aga
 
 from __future__ import annotations
 
+import math
+
 from bench.paper.assumed.flat import Directions
 from bench.paper.assumed.record import COMMAND, Record
 from bench.paper.assumptions import CHOICES, DEFAULT, RANGES
@@ -92,28 +94,26 @@ def _open() -> Table:
         for choice in CHOICES
     ]
     head = ("open", "ours", "bounds, or the other reading", "why", "fields of a case")
-    return Table("What is open", head, rows)
+    return Table("What is open", head, rows, words=True)
 
 
 def _prices(found: list[Price]) -> Table:
     ours = found[0]
     rows = []
     for one in found:
-        first = one is ours
-        change = "" if first else percent(one.pressure / ours.pressure - 1)
         rows.append(
             [
                 one.what,
                 one.reading,
                 f"{one.pressure:.1f}",
-                change,
+                _change(one.pressure, ours.pressure),
                 f"{one.force:.2f}",
-                "" if first else percent(one.force / ours.force - 1),
+                _change(one.force, ours.force),
                 f"{one.formula:.2f}",
                 *one.signs.values(),
             ]
         )
-    signs = [STATED[key] for key in SIGNS]
+    signs = [("F" if key.endswith("force") else "P", STATED[key]) for key in SIGNS]
     head = (
         "open",
         "at",
@@ -122,9 +122,19 @@ def _prices(found: list[Price]) -> Table:
         "F at 200 kPa, N",
         "change",
         "eq. (20), N",
-        *(f"{fact.what}; paper {fact.printed}" for fact in signs),
+        *(f"{what} over {fact.what.partition(' ')[0]} ({fact.printed})" for what, fact in signs),
     )
-    return Table("What each costs, the baseline; all others as ours", head, rows)
+    return Table(
+        "What each costs, the baseline, all others as ours; signs as of Table II, the paper's in "
+        "brackets",
+        head,
+        rows,
+        words=True,
+    )
+
+
+def _change(value: float, ours: float) -> str:
+    return "" if math.isclose(value, ours, rel_tol=1e-9) else percent(value / ours - 1)
 
 
 def _combinations(record: Record) -> Table:
@@ -132,7 +142,7 @@ def _combinations(record: Record) -> Table:
     shown = [values(given) for given in (DEFAULT, record.best[0].given, record.ends.given)]
     rows = [list(row) for row in zip(names, *shown, strict=True)]
     head = ("open", "ours", "best", "best if of the radius only 6 and 12 mm count")
-    return Table("Combinations", head, rows)
+    return Table("Combinations", head, rows, words=True)
 
 
 def _statements(record: Record) -> Table:
@@ -153,6 +163,7 @@ def _statements(record: Record) -> Table:
         "of it is a verdict, since the best combination was searched for",
         head,
         [*rows, total],
+        words=True,
     )
 
 
@@ -187,7 +198,7 @@ def _readings(record: Record) -> Table:
         "F over (20)",
         "misfit",
     )
-    return Table("The best with one reading turned around, all others free", head, rows)
+    return Table("The best with one reading turned around, all others free", head, rows, words=True)
 
 
 def _determined(record: Record) -> Table:
@@ -205,6 +216,7 @@ def _determined(record: Record) -> Table:
         "combination, the last the flattest",
         ("", "values, or direction", "part of the bounds, or scales"),
         rows,
+        words=True,
     )
 
 

@@ -109,9 +109,9 @@ def _outcome(record: Record) -> list[str]:
     left = [one for one in stated if float(one.misfit(given)) > KEPT]
     unkept = "; ".join(f"{one.what}: {number(one, given)}, stated {interval(one)}" for one in left)
     unexplained = (
-        f"Unexplained stays: {unkept}; within the bounds nothing explains all at once."
+        f"Not explained: {unkept}; within the bounds nothing explains all at once."
         if left
-        else "Nothing stays unexplained."
+        else "Nothing is left."
     )
     radii = _listed([float(given.pressures[key]) for key in SERIES["radius"]])
     at_end = [
