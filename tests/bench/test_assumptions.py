@@ -226,7 +226,7 @@ def test_the_page_says_what_the_record_has(tmp_path: object) -> None:
 
 
 def test_the_grid_is_near_sections_that_were_solved_beside_it() -> None:
-    """Within what a statement allows for: a pressure 1.5 %, a force 3 %; also by cells and bodies."""
+    """Within what statements allow for, a pressure 1.5 and a force 3 %; by cells and bodies too."""
     assert max(abs(part) for part in RECORD.held_out) < 0.01
     assert max(abs(one.grid / one.cell - 1) for one in RECORD.cells) < 0.01
     assert max(abs(one.grid / one.body - 1) for one in RECORD.bodies) < FORCE_OFF
