@@ -56,9 +56,9 @@ BASES: dict[str, tuple[dict[str, float], tuple[tuple[str, float], ...]]] = {
 """Cases by their numbers, and what is changed of each."""
 HEAD = """# What trials cost
 
-Written by `.venv/bin/python bench/trials.py`. `fiberbend.trial` of cases/section.yaml (1 764
-displacements and pressures are not many: most of a first solve looks for kernels) and of
-cases/cell.yaml, bent to 90, 180 and 270°; CPU seconds of one core.
+Written by `.venv/bin/python bench/trials.py`. cases/section.yaml (882 unknowns: most of a first solve
+looks for kernels) and cases/cell.yaml, bent to 90, 180 and 270° in one process, as `fiberbend.trial`
+does; CPU seconds of one core.
 """
 
 
