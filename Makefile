@@ -104,7 +104,8 @@ times: setup ## fit the times and memory of `fiberbend plan` to runs; an idle ma
 validate: setup ## figures beside those that no one here wrote, docs/validation.md; a few minutes
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m bench.validate
 
-paper: setup ## figures and tables of the paper with verdicts, runs/paper/index.html; FULL=1: bodies too
+paper: setup ## figures and tables of the paper with verdicts, runs/paper/index.html; FULL=1: bodies too; ASSUME=1: what it leaves open, anew
+	$(if $(ASSUME),OPENBLAS_NUM_THREADS=1 $(BIN)/python -m bench.paper.assumed)
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m bench.paper $(if $(FULL),--full)
 
 peers: setup ## bend the same actuator in CalculiX, felupe and plain dolfinx; half an hour

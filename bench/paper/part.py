@@ -33,11 +33,13 @@ class Table:
         caption: what they are, with units.
         head: of the columns.
         rows: texts; as many in each as in the head.
+        words: cells are sentences, which are wrapped, and not numbers below each other.
     """
 
     caption: str
     head: Sequence[str]
     rows: Sequence[Sequence[str]]
+    words: bool = False
 
     def __post_init__(self) -> None:
         for row in self.rows:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bench.paper.figures import (
+    assumed,
     fig4,
     fig6,
     fig8,
@@ -26,5 +27,6 @@ PARTS: tuple[Part, ...] = (
     Part("fig13", "Fig. 13: feedback control", fig13.found),
     Part("table1", "Table I: what it costs", table1.found),
     Part("table2", "Table II: trends", table2.found),
+    Part("assumed", "Open assumptions: what they cost, and what explains the paper", assumed.found),
     Part("inputs", "Inputs: dimensions, materials, procedures", inputs.found),
 )

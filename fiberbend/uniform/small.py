@@ -25,6 +25,7 @@ from fiberbend.case.symmetry import Symmetry
 from fiberbend.effects.effect import Effect
 from fiberbend.models.choice import meshed
 from fiberbend.models.parts import build
+from geometry.mesh.data import MeshData
 
 PRESSURE = "pressure"
 _SAME = 1e-9
@@ -75,6 +76,7 @@ class Small:
         case: model section or cell.
         likes: others: it takes over the scene of the first from which it differs by numbers and
             loads alone. What shares a scene is used one after another, the last one made.
+        mesh: in place of the model's own, for the first of those that share a scene.
 
     Attributes:
         scene: the compiled scene.
@@ -83,7 +85,7 @@ class Small:
 
     _stage: _Stage
 
-    def __init__(self, case: Case, *likes: Small) -> None:
+    def __init__(self, case: Case, *likes: Small, mesh: MeshData | None = None) -> None:
         model = meshed(case)
         self._case, self._model = case, model
         numbers, settings = _numbers(case), Settings(tolerance=case.solver.tolerance)
@@ -91,7 +93,10 @@ class Small:
             settings = effect.settings(settings)
         alike = [like._stage for like in likes if like._serves(case, settings)]
         stage = next((one for one in alike if one.numbers == numbers), None)
-        mesh = model.mesh(case) if stage is None else stage.scene.domain.data
+        if stage is not None:
+            mesh = stage.scene.domain.data
+        elif mesh is None:
+            mesh = model.mesh(case)
         parts = build(case, mesh, model)
         self._held = {k: v for term in parts.effects for k, v in term.fixed_scalars().items()}
         if stage is None:
