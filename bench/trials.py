@@ -12,15 +12,17 @@ import math
 import re
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from fiberbend.calibration.calibrate import calibrate, with_bulging
 from fiberbend.case.case import Case
 from fiberbend.reader.reader import read_case
 from fiberbend.trial.fields import number, with_number
+from fiberbend.trial.loads import bent, straight
 from fiberbend.trial.solve import Trials
 from fiberbend.trial.wanted import Wanted
+from materials.bulging import Bulging
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "evidence" / "trials.md"
@@ -45,6 +47,8 @@ CHANGES = (
     ("materials.wall.c2", 1.5),
     ("effects.1.winding.fiber.modulus", 0.5),
 )
+ANGLES, AT = tuple(math.radians(angle) for angle in (90, 180, 360)), (0.1,)
+"""States by which calibrations are compared: bent, rad, and kept straight, MPa."""
 FEW = ((PITCH, 1.1), ("actuator.floor", 1.2), ("actuator.radius", 0.9))
 BASES: dict[str, tuple[dict[str, float], tuple[tuple[str, float], ...]]] = {
     "baseline": ({}, CHANGES),
@@ -56,9 +60,9 @@ BASES: dict[str, tuple[dict[str, float], tuple[tuple[str, float], ...]]] = {
 """Cases by their numbers, and what is changed of each."""
 HEAD = """# What trials cost
 
-Written by `.venv/bin/python bench/trials.py`. cases/section.yaml (882 unknowns: most of a first solve
-looks for kernels) and cases/cell.yaml, bent to 90, 180 and 270° in one process, as `fiberbend.trial`
-does; CPU seconds of one core.
+Written by `.venv/bin/python bench/trials.py`. cases/section.yaml (882 unknowns: most of a first
+solve looks for kernels) and cases/cell.yaml, bent to 90, 180 and 270° in one process, as
+`fiberbend.trial` does; CPU seconds of one core.
 """
 
 
@@ -133,30 +137,37 @@ def calibrations() -> Iterator[str]:
     yield ""
     yield "| case | changed | factor | P at 90° | 180° | 360° | moment, 100 kPa | over the bulge |"
     yield "|---|---|---|---|---|---|---|---|"
-    angles = tuple(math.radians(angle) for angle in (90, 180, 360))
-    wanted, trials = Wanted(angles, (), (0.1,)), Trials()
+    trials = Trials()
     for name, (numbers, changes) in BASES.items():
         smeared = baseline("section")
         for path, value in numbers.items():
             smeared = with_number(smeared, path, value)
         winding = smeared.effects[1].model_copy(update={"representation": "calibrated"})
         case = smeared.model_copy(update={"effects": (smeared.effects[0], winding)})
-        taken = calibrate(case).found.bulging()
-
-        def values(one: Case) -> list[float]:
-            answer = trials.solve(one, wanted)
-            return [*(p.pressure for p in answer.free), answer.straight[0].moment]
-
-        def off(one: Case, right: Case) -> list[float]:
-            return [100 * (a / b - 1) for a, b in zip(values(one), values(right), strict=True)]
-
-        bulge = max(map(abs, off(smeared, case)))
+        # a case is calibrated for the kind of state that it asks for
+        taken = [calibrate(one).found.bulging() for one in (bent(case, ANGLES), straight(case, AT))]
+        bulge = _greatest(_off(_told(trials, case, []), _told(trials, smeared, [])))
         for path, factor in changes:
             other = changed(case, path, factor)
-            parts = off(with_bulging(other, taken), other)
-            rate = max(map(abs, parts)) / abs(math.log(factor)) / bulge
+            parts = _off(_told(trials, other, []), _told(trials, other, taken))
+            rate = _greatest(parts) / abs(math.log(factor)) / bulge
             told = " | ".join(f"{part:+.2f}" for part in parts)
             yield f"| {name} | {path} | {factor:g} | {told} | {rate:.1f} |"
+
+
+def _told(trials: Trials, case: Case, taken: Sequence[Bulging]) -> list[float]:
+    """Pressures and the moment, by a case's own calibrations, or by those of another one."""
+    free, kept = (with_bulging(case, b) for b in taken) if taken else (case, case)
+    pressures = [point.pressure for point in trials.solve(free, Wanted(ANGLES)).free]
+    return [*pressures, trials.solve(kept, Wanted(straight=AT)).straight[0].moment]
+
+
+def _off(right: Sequence[float], other: Sequence[float]) -> list[float]:
+    return [100 * (b / a - 1) for a, b in zip(right, other, strict=True)]
+
+
+def _greatest(parts: Sequence[float]) -> float:
+    return max(map(abs, parts))
 
 
 PARTS: dict[str, tuple[str, Callable[[], Iterator[str]]]] = {

@@ -14,7 +14,7 @@ from bench.paper.facts import BASELINE, CAP, MODULUS, STATED
 from bench.paper.runs import Key
 from fiberbend.drawing.style import empty
 from geometry.mesh.data import Floats
-from materials.named import named_material
+from materials.named.table import named_material
 
 WIDTH = 9.6
 """Of a figure in inches; 100 pixels each are shown on the page at 100 %."""

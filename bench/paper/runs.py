@@ -15,7 +15,7 @@ from fiberbend.api.calls import sweep
 from fiberbend.api.result import Result
 from fiberbend.api.sweep import Sweep
 from geometry.mesh.data import Floats
-from materials.fiber import FIBERS
+from materials.named.table import named_thread
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 SWEEPS = ROOT / "cases" / "sweeps"
@@ -157,7 +157,7 @@ class Runs:
     @functools.cached_property
     def whole_thread(self) -> Curve:
         """The baseline's cell with a thread of the whole radius, which is four times as stiff."""
-        thread = FIBERS["kevlar"]
+        thread = named_thread("kevlar")
         changes: dict[str, Any] = {
             "effects.1.winding.fiber": {
                 "modulus": f"{thread.modulus} MPa",

@@ -16,8 +16,8 @@ from materials.bulging import Bulging
 
 RATE = 3.5
 """Error of another case's calibration where the two cases differ by a factor e in one number, over
-all that the bulge between turns makes of the pressure: 1.5 to 2.6 of the pitch, with a factor of
-1.3 on it 3.3, and less of every other number (docs/evidence/trials.md)."""
+all that the bulge between turns makes of the pressure: 1.5 to 2.4 of the pitch, at most 1.2 of any
+other number, on five sections (docs/evidence/trials.md); the rest is a margin."""
 _RIGID = Bulging(1e12, 0.0, 0.0)
 """No bulge: the winding is the smeared one."""
 _NOTHING = {"length", "cap", "density", "representation", "bulging"}

@@ -7,8 +7,7 @@ from bench.paper.part import Erratum, Found
 from bench.paper.runs import ROOT, Runs
 from bench.paper.verdict import FLAT, Verdict, holds, percent, unknown, used
 from fiberbend.reader.reader import read_case
-from materials.fiber import FIBERS
-from materials.named import named_material
+from materials.named.table import named_material, named_thread
 
 CASE = "free_bending.yaml"
 """Of cases/: the baseline, from which all others here are made."""
@@ -45,7 +44,7 @@ def dimensions() -> list[Verdict]:
     where = f"cases/{CASE}"
     names = ("length", "wall", "radius", "cap", "sheath")
     made = [used(name, getattr(actuator, name), where) for name in names]
-    made.append(used("thread", FIBERS["kevlar"].diameter, "named fiber"))
+    made.append(used("thread", named_thread("kevlar").diameter, "named fiber"))
     radii = {size.radius for size in TABLE_I}
     size = STATED["diameter"].value
     made.append(
@@ -65,7 +64,7 @@ def materials() -> list[Verdict]:
     wall, soft, base = (
         named_material(name) for name in ("elastosil-m4601", "ecoflex-0030", "combined-base")
     )
-    thread = FIBERS["kevlar"]
+    thread = named_thread("kevlar")
     moduli = [m.initial_shear_modulus for m in (base, wall, soft)]
     young = [3e6 * value for value in moduli]
     where = "named material"
