@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from geometry.sections.size import MeshSize
 
 
-_NO_ANGLE = "no angle is reached where {} keeps the actuator straight, expected no value"
+_NO_ANGLE = "no angle is reached where {} keeps the actuator's bend, expected no value"
 _MOST_STEPS = 100_000
 """Steps of a run that takes hours where one takes tenths of a second."""
 

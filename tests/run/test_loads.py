@@ -263,3 +263,10 @@ def test_roof_post_and_clamp_hold_a_load_beside_a_blocked_tip(
 def _ends(result: Result) -> tuple[tuple[Any, float], tuple[Any, float]]:
     """The last row without the load, and that with all of it."""
     return ((result.rows[:0:-1], 0.0), (result.rows[::-1], 1.0))
+
+
+def test_no_angle_is_asked_of_a_bend_that_is_held() -> None:
+    """It may be held bent: straight it is not."""
+    hold, asked = {"hold": {"bend": "20 deg"}}, QUIET | {"at_angles": ["10 deg"]}
+    text = refused(SECTION, PRESSURE, WINDING, hold, output=asked)
+    assert "no angle is reached where effects.2.hold keeps the actuator's bend" in text
