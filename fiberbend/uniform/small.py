@@ -167,15 +167,15 @@ class Small:
     def reach(self) -> Reached:
         """The same by the angle or the pressure that was asked for; one of the two is."""
         found: dict[float, State] = {}
-        furthest = self.rest
+        furthest, value = self.rest, measure("value", PRESSURE)
         output, slack = self._case.output, 2 * self._case.solver.tolerance
         asked = [("control", goal) for goal in output.at_angles]
-        asked += [(measure("value", PRESSURE), goal) for goal in output.at_pressures]
+        asked += [(value, goal) for goal in output.at_pressures]
+        driven = value if output.at_pressures else "control"
 
         def keep(state: State, _outcome: Outcome) -> None:
             nonlocal furthest
-            key = asked[-1][0]
-            if abs(state.measures[key]) > abs(furthest.measures[key]):
+            if abs(state.measures[driven]) > abs(furthest.measures[driven]):
                 furthest = state
             for key, goal in asked:
                 near = slack if key == "control" else 0.0
