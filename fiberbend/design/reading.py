@@ -1,0 +1,235 @@
+"""From a design file to what is searched, all problems at once."""
+
+from __future__ import annotations
+
+import copy
+import dataclasses
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from fiberbend.case.case import Case
+from fiberbend.design.fields import Fields, Pairs, read_fields
+from fiberbend.design.file import DesignFile, Goal, Search, problems
+from fiberbend.design.quantities.quantity import Quantity
+from fiberbend.reader.reader import parse_case
+from fiberbend.reader.yaml_file import (
+    YamlContent,
+    apply_setting,
+    line_numbers,
+    located,
+    read_yaml,
+    setting_path,
+)
+from fiberbend.schema.paths import put, value_at
+from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.schema.units import KINDS, parse
+from fiberbend.schema.validation import from_pydantic
+
+
+@dataclasses.dataclass(frozen=True)
+class Design:
+    """A checked design.
+
+    Attributes:
+        title: a line for the reader.
+        data: the base case as a file has it.
+        base: the same, checked.
+        fields: what may change.
+        targets: what is wanted.
+        goals: what is best among cases that have it.
+        search: how it searches.
+        confirm: models in which the answer is confirmed.
+    """
+
+    title: str
+    data: dict[str, Any]
+    base: Case
+    fields: Fields
+    targets: tuple[Quantity[Any], ...]
+    goals: tuple[Goal, ...]
+    search: Search
+    confirm: str
+
+    @property
+    def quantities(self) -> tuple[Quantity[Any], ...]:
+        """All that is computed: what is wanted, then what is best."""
+        return (*self.targets, *(goal.quantity for goal in self.goals))
+
+    def changed(self, values: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+        """The base case with other values, as a file would have it.
+
+        Raises:
+            CaseError: there is no such path.
+        """
+        data = copy.deepcopy(self.data)
+        for path, value in values:
+            put(data, path, copy.deepcopy(value))
+        return data
+
+
+def read_design(path: Path | str, settings: Iterable[str] = ()) -> Design:
+    """Read a design file, and check its base case and the ends of all fields.
+
+    Args:
+        path: the YAML file.
+        settings: changes to the base case, `actuator.floor=3 mm`, after those of the file.
+
+    Raises:
+        CaseError: everything that is wrong with it.
+    """
+    path = Path(path)
+    source = read_yaml(path)
+    if "case" not in source.data and "actuator" in source.data:
+        raise CaseError([Problem(str(path), f"this is a case: fiberbend run {path}")])
+    wanted = {"targets", "goals"} & source.data.keys()
+    if not wanted and {"vary", "zip", "points"} & source.data.keys():
+        raise CaseError([Problem(str(path), f"this is a sweep: fiberbend sweep {path}")])
+    with line_numbers(source.lines):
+        return _checked(source, path, list(settings))
+
+
+def _checked(source: YamlContent, path: Path, settings: Sequence[str]) -> Design:
+    try:
+        file = DesignFile.model_validate(source.data)
+    except ValidationError as error:
+        raise CaseError(from_pydantic(error, DesignFile)) from None
+    wrong = list(problems(file))
+    fields = Fields((), ())
+    try:
+        fields = read_fields(file.vary)
+    except CaseError as error:
+        wrong += error.problems
+    if wrong:
+        raise CaseError(wrong)
+    own, where, changed = _base(file, source, path, settings)
+    data = own.data
+    try:
+        base = parse_case(data)
+    except CaseError as error:
+        raise CaseError(_reported(p, own, where, changed) for p in error.problems) from None
+    design = Design(
+        file.title,
+        data,
+        base,
+        fields,
+        file.targets,
+        file.goals,
+        file.search,
+        file.confirm,
+    )
+    wrong = [*_not_of_case(design), *_at_ends(design)]
+    if wrong:
+        raise CaseError(wrong)
+    return design
+
+
+def _base(
+    file: DesignFile, source: YamlContent, path: Path, settings: Sequence[str]
+) -> tuple[YamlContent, str, tuple[str, ...]]:
+    """The base case with its changes, what a message calls it, and what has changed."""
+    if isinstance(file.case, dict):
+        begin = "case."
+        lines = source.lines.items()
+        inner = {place.removeprefix(begin): n for place, n in lines if place.startswith(begin)}
+        where, own = "case", YamlContent(copy.deepcopy(file.case), inner)
+    else:
+        where, own = file.case, read_yaml(path.parent / file.case)
+    wrong: list[Problem] = []
+    for field, value in file.set.items():
+        try:
+            put(own.data, field, copy.deepcopy(value))
+        except CaseError as error:
+            wrong += (Problem(f"set.{p.path}", p.text) for p in error.problems)
+    for setting in settings:
+        try:
+            apply_setting(own.data, setting)
+        except CaseError as error:
+            wrong += error.problems
+    if wrong:
+        raise CaseError(wrong)
+    return own, where, (*file.set, *map(setting_path, settings))
+
+
+def _reported(
+    problem: Problem, own: YamlContent, where: str, changed: tuple[str, ...]
+) -> Problem:
+    """A problem of the base case, as one of a design."""
+    found = located(problem, own.lines, changed)
+    return dataclasses.replace(found, path=f"{where}: {found.path}")
+
+
+def _not_of_case(design: Design) -> Iterator[Problem]:
+    """Quantities that the base case does not have, and loads that nothing here gives."""
+    case = design.base
+    if case.inflation is None:
+        yield Problem("case", "no effect pressure, expected one: its value is chosen here")
+    for index, effect in enumerate(case.effects):
+        if effect.keeps_straight():
+            text = "keeps it straight, expected free bending: blocked-force keeps it straight itself"
+            yield Problem(f"case: effects.{index}.{effect.name}", text)
+        elif effect.load and effect.inflation() is None:
+            text = "a load beside the pressure, which the section of a design does not have"
+            yield Problem(f"case: effects.{index}.{effect.name}", text)
+    for index, target in enumerate(design.targets):
+        yield from target.wrong(f"targets.{index}.{target.name}", case)
+    for index, goal in enumerate(design.goals):
+        key = "minimise" if goal.sign > 0 else "maximise"
+        yield from goal.quantity.wrong(f"goals.{index}.{key}.{goal.quantity.name}", case)
+
+
+def _at_ends(design: Design) -> Iterator[Problem]:
+    """What the schema says of the ends of every field and of every choice.
+
+    Each is put into the base case alone: values that do not fit each other are the search's.
+    """
+    for field in design.fields.varied:
+        for key, value in (("from", field.low), ("to", field.high)):
+            values = ((field.path, field.text(value)),)
+            yield from _alone(design, values, f"{field.path}.{key}", Case.model_validate)
+    for choice in design.fields.choices:
+        for index, value in enumerate(choice.values):
+            yield from _alone(design, ((choice.path, value),), f"{choice.path}.{index}", parse_case)
+
+
+def _alone(
+    design: Design, values: Pairs, origin: str, check: Callable[[dict[str, Any]], Case]
+) -> Iterator[Problem]:
+    ((path, _),) = values
+    try:
+        check(design.changed(values))
+    except ValidationError as error:
+        wrong = list(from_pydantic(error, Case))
+    except CaseError as error:
+        wrong = list(error.problems)
+    else:
+        return
+    for problem in wrong:
+        # pydantic names the part that has no such key
+        if f"{problem.path}.".startswith(f"{path}."):
+            yield Problem(f"vary.{origin}{problem.path.removeprefix(path)}", problem.text)
+        elif f"{path}.".startswith(f"{problem.path}."):
+            yield Problem(f"vary.{origin}", f"{problem.path}: {problem.text}")
+
+
+def own_numbers(design: Design) -> list[float | None]:
+    """Values of the varied numbers in the base case, in internal units; None: it has none."""
+    resolved = design.base.resolved()
+    return [
+        _number(value_at(resolved, field.path), field.unit) for field in design.fields.varied
+    ]
+
+
+def _number(value: object, unit: str) -> float | None:
+    if isinstance(value, int | float) and not isinstance(value, bool) and not unit:
+        return float(value)
+    if isinstance(value, str) and unit:
+        for kind in KINDS:
+            try:
+                parse(f"1 {unit}", kind)
+                return parse(value, kind)
+            except ValueError:
+                continue
+    return None
