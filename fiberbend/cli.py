@@ -21,7 +21,7 @@ from fiberbend.version import __version__
 from machine.folders import MachineError
 
 WRONG_INPUT = 1
-COMPUTING = ("run", "sweep", "control", "accuracy")
+COMPUTING = ("run", "sweep", "control", "accuracy", "design")
 """Commands whose results are in a folder, whatever becomes of the lines that they print."""
 
 app = App(
@@ -80,6 +80,13 @@ app.command(
     name="accuracy",
     help="Show what accuracy costs in time: a case by every model and mesh.",
     help_epilogue=EXAMPLES["accuracy"],
+)
+
+app.command(
+    "fiberbend.commands.design:design",
+    name="design",
+    help="Find the case that does what is wanted, and confirm it by the whole body.",
+    help_epilogue=EXAMPLES["design"],
 )
 
 app.command(

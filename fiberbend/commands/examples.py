@@ -37,6 +37,10 @@ EXAMPLES = {
   fiberbend accuracy cases/free_bending.yaml --within 30s
   fiberbend accuracy cases/section.yaml --only section --only cell
 """,
+    "design": """Examples:
+  fiberbend design cases/designs/bend_at_pressure.yaml
+  fiberbend design cases/designs/blocked_force.yaml --set actuator.length="80 mm"
+""",
     "report": """Examples:
   fiberbend report runs/section --open
   fiberbend report runs/section --out section.html

@@ -51,7 +51,7 @@ class Varied:
 
     @property
     def step(self) -> float:
-        """A small change that a maker would notice: 0.1 of a length in mm, else 1 % of the range."""
+        """A small change that a maker would notice: 0.1 mm, else 1 % of the range."""
         if self.unit and _is_length(self.unit):
             return 0.1
         return 0.01 * (self.high - self.low)

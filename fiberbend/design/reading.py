@@ -21,6 +21,7 @@ from fiberbend.reader.yaml_file import (
     line_numbers,
     located,
     read_yaml,
+    root_paths,
     setting_path,
 )
 from fiberbend.schema.paths import put, value_at
@@ -135,8 +136,10 @@ def _base(
         lines = source.lines.items()
         inner = {place.removeprefix(begin): n for place, n in lines if place.startswith(begin)}
         where, own = "case", YamlContent(copy.deepcopy(file.case), inner)
+        root_paths(own.data, path.parent)
     else:
         where, own = file.case, read_yaml(path.parent / file.case)
+        root_paths(own.data, (path.parent / file.case).parent)
     wrong: list[Problem] = []
     for field, value in file.set.items():
         try:
@@ -153,9 +156,7 @@ def _base(
     return own, where, (*file.set, *map(setting_path, settings))
 
 
-def _reported(
-    problem: Problem, own: YamlContent, where: str, changed: tuple[str, ...]
-) -> Problem:
+def _reported(problem: Problem, own: YamlContent, where: str, changed: tuple[str, ...]) -> Problem:
     """A problem of the base case, as one of a design."""
     found = located(problem, own.lines, changed)
     return dataclasses.replace(found, path=f"{where}: {found.path}")
@@ -168,7 +169,9 @@ def _not_of_case(design: Design) -> Iterator[Problem]:
         yield Problem("case", "no effect pressure, expected one: its value is chosen here")
     for index, effect in enumerate(case.effects):
         if effect.keeps_straight():
-            text = "keeps it straight, expected free bending: blocked-force keeps it straight itself"
+            text = (
+                "keeps it straight, expected free bending: blocked-force keeps it straight itself"
+            )
             yield Problem(f"case: effects.{index}.{effect.name}", text)
         elif effect.load and effect.inflation() is None:
             text = "a load beside the pressure, which the section of a design does not have"
@@ -217,9 +220,7 @@ def _alone(
 def own_numbers(design: Design) -> list[float | None]:
     """Values of the varied numbers in the base case, in internal units; None: it has none."""
     resolved = design.base.resolved()
-    return [
-        _number(value_at(resolved, field.path), field.unit) for field in design.fields.varied
-    ]
+    return [_number(value_at(resolved, field.path), field.unit) for field in design.fields.varied]
 
 
 def _number(value: object, unit: str) -> float | None:

@@ -1,4 +1,4 @@
-"""Every quantity that a design can ask for. A new one is a class in a file here and a line below."""
+"""Every quantity that a design can ask for; a new one is a class here and a line below."""
 
 from __future__ import annotations
 

@@ -47,7 +47,9 @@ class WorkTo(Quantity[Energy]):
         if (self.at is None) == (self.angle is None):
             yield Problem(path, "expected one of at (a pressure) and angle")
         elif self.angle is not None and case.zones:
-            yield Problem(f"{path}.angle", "the case has zones, which share a pressure: expected at")
+            yield Problem(
+                f"{path}.angle", "the case has zones, which share a pressure: expected at"
+            )
 
 
 class VolumeAt(Quantity[Volume]):

@@ -13,14 +13,14 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from fiberbend.design.solving.body import Body
-from fiberbend.design.solving.models import Cell, States, Unsolved
 from fiberbend.design.quantities.quantity import Quantity
 from fiberbend.design.quantities.seen import Reading, Seen, State
 from fiberbend.design.reading import Design
 from fiberbend.design.search.search import Found, Search
-from fiberbend.design.solving.tries import Tries
 from fiberbend.design.search.wishes import Correction
+from fiberbend.design.solving.body import Body
+from fiberbend.design.solving.models import Cell, States, UnsolvedError
+from fiberbend.design.solving.tries import Tries
 from fiberbend.schema.problems import CaseError
 
 CELL, BODY = "cell", "body"
@@ -173,7 +173,7 @@ class Confirmer:
         begun = time.process_time()
         try:
             states, warnings = solve()
-        except (Unsolved, CaseError) as error:
+        except (UnsolvedError, CaseError) as error:
             reason = str(error).splitlines()[0]
             return Check(model, nothing, foreseen, reason, time.process_time() - begun)
         case = self._tries.case(found.chosen, found.x)

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from fiberbend.design.fields import Pairs
-from fiberbend.design.search.minimum import Minimum, Values, descend
 from fiberbend.design.reading import Design
-from fiberbend.design.solving.tries import Tries
+from fiberbend.design.search.minimum import Minimum, Values, descend
 from fiberbend.design.search.wishes import TOLERANCE, Cap, Correction, Wishes
+from fiberbend.design.solving.tries import Tries
 
 Floats = Any
 Say = Callable[[str], None]

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from fiberbend.design.fields import Pairs
-from fiberbend.design.search.minimum import Slopes, Values
 from fiberbend.design.reading import Design
+from fiberbend.design.search.minimum import Slopes, Values
 from fiberbend.design.solving.tries import Tries
 
 Floats = Any

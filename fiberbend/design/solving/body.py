@@ -8,9 +8,9 @@ from typing import Any
 
 from fiberbend import columns as col
 from fiberbend.case.case import Case
-from fiberbend.design.solving.models import States, Unsolved
 from fiberbend.design.quantities.quantity import Quantity
 from fiberbend.design.quantities.seen import Reading, State
+from fiberbend.design.solving.models import States, UnsolvedError
 from fiberbend.effects.pressure import PressureEffect
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case
@@ -21,55 +21,61 @@ FREE, BENT, BLOCKED = "", "_by_angle", "_blocked"
 """Ends of the names of a body's cases: under pressure, bent to an angle, with its tip blocked."""
 _OUTPUT = {"pictures": False, "fields": False, "report": False}
 _SAME = 1e-6
-_SHOWN = ("title", "accuracy", "compare")
+_BESIDE = ("accuracy", "compare")
+"""What a body of a design is not asked for."""
 Run = Callable[[Case], RunResult]
 
 
-def body_cases(
-    data: Mapping[str, Any], quantities: Sequence[Quantity[Any]], wanted: Sequence[State]
-) -> dict[str, Case]:
-    """The cases of a body that has all states, by the ends of their names.
+def body_data(
+    data: Mapping[str, Any],
+    quantities: Sequence[Quantity[Any]],
+    wanted: Sequence[State],
+    model: str | None = MODEL,
+) -> dict[str, dict[str, Any]]:
+    """The cases of a body that has all states, as files have them, by the ends of their names.
 
     Args:
         data: the case as a file has it.
         quantities: of the design.
         wanted: their states.
-
-    Raises:
-        CaseError: there is no such body.
+        model: that solves them; None: the case's own.
     """
     kinds: dict[str, list[float]] = {"pressure": [], "angle": [], "straight": []}
     for kind, value in wanted:
         kinds[kind].append(value)
-    found: dict[str, Case] = {}
+    found: dict[str, dict[str, Any]] = {}
     if pressures := kinds["pressure"]:
         end = max(pressures, key=abs)
         asked = {"at_pressures": [show(p, "pressure") for p in sorted(pressures, key=abs)]}
-        found[FREE] = _case(data, {"to": show(end, "pressure")}, asked)
+        found[FREE] = _data(data, {"to": show(end, "pressure")}, asked, model)
     if angles := kinds["angle"]:
         end = max(angles, key=abs)
         asked = {"at_angles": [show(a, "angle") for a in sorted(angles, key=abs)]}
-        found[BENT] = _case(data, {"angle": show(end, "angle")}, asked)
+        found[BENT] = _data(data, {"angle": show(end, "angle")}, asked, model)
     blocked = next((by for each in quantities if (by := each.blocked_by())), None)
     if blocked is not None:
         pressures = [s.value for q in quantities if q.blocked_by() for s in q.states()]
         asked = {"at_pressures": [show(p, "pressure") for p in sorted({*pressures})]}
-        found[BLOCKED] = _case(data, {"to": show(max(pressures), "pressure")}, asked, blocked)
+        # no other model has ends
+        load = {"to": show(max(pressures), "pressure")}
+        found[BLOCKED] = _data(data, load, asked, MODEL, blocked)
     return found
 
 
-def _case(
+def _data(
     data: Mapping[str, Any],
     load: Mapping[str, str],
     asked: Mapping[str, Any],
+    model: str | None,
     blocked: Mapping[str, Any] | None = None,
-) -> Case:
+) -> dict[str, Any]:
     name = PressureEffect.name
     effects = [{name: dict(load)} if name in entry else entry for entry in data["effects"]]
     if blocked is not None:
         effects.append(dict(blocked))
-    left = {key: value for key, value in data.items() if key not in _SHOWN}
-    return parse_case({**left, "model": MODEL, "effects": effects, "output": _OUTPUT | asked})
+    left = {key: value for key, value in data.items() if key not in _BESIDE}
+    solved_by = {} if model is None else {"model": model}
+    return {**left, **solved_by, "effects": effects, "output": dict(asked)}
 
 
 class Body:
@@ -95,7 +101,7 @@ class Body:
 
         Raises:
             CaseError: there is no such body.
-            Unsolved: a run ended before it had them.
+            UnsolvedError: a run ended before it had them.
         """
         found: dict[State, tuple[Reading, ...]] = {}
         warnings: list[str] = []
@@ -104,8 +110,8 @@ class Body:
             BENT: ("angle", col.ANGLE, math.degrees(1)),
             BLOCKED: ("straight", col.PRESSURE, 1e3),
         }
-        for end, case in body_cases(data, self._quantities, wanted).items():
-            result = self._run(case)
+        for end, given in body_data(data, self._quantities, wanted).items():
+            result = self._run(parse_case(given | {"output": given["output"] | _OUTPUT}))
             warnings += result.run.get("warnings") or ()
             kind, column, factor = keys[end]
             goals = [state for state in wanted if state.kind == kind]
@@ -114,7 +120,9 @@ class Body:
                 if row is None:
                     if end == BLOCKED:
                         continue
-                    raise Unsolved(result.reason or f"the body has no state at {state.value:g}")
+                    raise UnsolvedError(
+                        result.reason or f"the body has no state at {state.value:g}"
+                    )
                 found[state] = _readings(row, result.rows[0], zones)
         return found, list(dict.fromkeys(warnings))
 

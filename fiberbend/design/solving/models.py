@@ -22,7 +22,7 @@ Slopes = Mapping[str, States]
 """By the path of a field, what every reading changes by when the field does."""
 
 
-class Unsolved(Exception):
+class UnsolvedError(Exception):
     """A case has no such states, or they were not found; the text says why."""
 
 
@@ -37,7 +37,7 @@ class Model(Protocol):
             wanted: the states.
 
         Raises:
-            Unsolved: one of them is not there.
+            UnsolvedError: one of them is not there.
             CaseError: the model does not have the case.
         """
 
@@ -103,7 +103,7 @@ def _by_zones(cases: Sequence[Case], wanted: Sequence[State]) -> States:
 def _solved(case: Case, wanted: Sequence[State]) -> dict[State, Reading]:
     answer = solve(case, asked(wanted))
     if not answer.converged:
-        raise Unsolved(answer.reason)
+        raise UnsolvedError(answer.reason)
     return readings(answer, wanted)
 
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from fiberbend.case.case import Case
 from fiberbend.design.fields import Pairs
-from fiberbend.design.solving.models import Model, Slopes, States, Unsolved
 from fiberbend.design.quantities.seen import Reading, Seen, State
 from fiberbend.design.reading import Design, own_numbers
+from fiberbend.design.solving.models import Model, Slopes, States, UnsolvedError
 from fiberbend.reader.reader import parse_case
 from fiberbend.schema.problems import CaseError
 
@@ -137,7 +137,7 @@ class Tries:
         try:
             states = self._states(case)
             values = self._read(case, states)
-        except (Unsolved, CaseError) as error:
+        except (UnsolvedError, CaseError) as error:
             self.counted.failed += 1
             return Try(number, chosen, x, case, None, _first_line(error))
         return Try(number, chosen, x, case, values, "", states)
@@ -163,7 +163,7 @@ class Tries:
     def _read(self, case: Case, states: States) -> tuple[float, ...]:
         values = tuple(each.read(Seen(case, states)) for each in self.design.quantities)
         if not np.all(np.isfinite(values)):
-            raise Unsolved("a quantity is not finite")
+            raise UnsolvedError("a quantity is not finite")
         return values
 
     # --- derivatives -----------------------------------------------------------------------------
@@ -233,7 +233,7 @@ class Tries:
                 case = parse_case(self.design.changed(self.pairs(here.chosen, x)))
                 self.counted.beside += 1
                 values = np.array(self._read(case, self._states(case)))
-            except (CaseError, Unsolved):
+            except (CaseError, UnsolvedError):
                 continue
             return (values - np.array(here.quantities)) / (sign * _STEP)
         return None
