@@ -223,12 +223,15 @@ def from_owners(space: Any, numbers: npt.NDArray[np.integer]) -> npt.NDArray[np.
 
 
 def cell_field(mesh: Any, values: npt.NDArray[np.float64]) -> Any:
-    """A piecewise constant field of one value a local cell; bridges dofmaps."""
-    space = _space(mesh, ("DG", 0))
-    function = dfem.Function(space)
-    dofs = _rows(space.dofmap.list, len(input_cells(mesh)))[:, 0]
-    function.x.array[dofs] = values
+    """A piecewise constant field of one value a local cell; bridged by `set_cell_field`."""
+    function = dfem.Function(_space(mesh, ("DG", 0)))
+    set_cell_field(function, values)
     return function
+
+
+def set_cell_field(function: Any, values: npt.NDArray[np.float64]) -> None:
+    """Give a piecewise constant field one value a local cell; bridges dofmaps."""
+    function.x.array[_rows(function.function_space.dofmap.list, len(values))[:, 0]] = values
 
 
 def cell_dofs(space: Any) -> npt.NDArray[np.int32]:

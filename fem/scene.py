@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import ufl
 from petsc4py import PETSc
 
 from fem import compat
 from fem.assembly import Assembler
-from fem.effects.effect import Constraint, Discrete, Effect, opposite_free
-from fem.kernels import compiling, differentiate, upper_tangent
+from fem.derivatives import derivatives
+from fem.effects.effect import Discrete, Effect, fixed_dofs, opposite_free, structures
+from fem.kernels import compiling
 from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
 from fem.kinematics.kinematics import Kinematics
@@ -23,8 +23,12 @@ from fem.matrix import may_free
 from fem.own_code import OwnCode
 from fem.ranks import total
 from fem.round_off import probed, summed_noise
+from geometry.mesh.data import MeshData
 
 Floats = npt.NDArray[np.float64]
+
+FLOOR = 1e-30
+"""Scale of forces where there are none, N."""
 
 
 class Scene(OwnCode):
@@ -44,8 +48,10 @@ class Scene(OwnCode):
         effects: the effects by these names.
         natural: global scalars in which the potential is stationary at an equilibrium.
         force_scale: scale of the forces in the last residual, N.
+        volume_scale: norm of ∫ φ dX over the pressure field's test functions, mm³.
         force_noise: norm of the forces that round-off in all potentials makes at rest, N.
         solid_noise: the part of it that is not of potentials with own code, N.
+        volumetric: owned dofs of the pressure field, (owned,).
         free: local dofs (owned and ghosts) that no constraint fixes, (local,).
         free_opposite: the same for modes of the symmetry opposite to that of half a body; None of
             a whole one, and where they cannot be told.
@@ -70,13 +76,12 @@ class Scene(OwnCode):
         self.domain = domain
         self.body = kinematics(domain, (name for effect in ordered for name in effect.fields))
         self.force_scale = 1.0
-        self._force_floor = 1e-30
+        self._force_floor = FLOOR
         self._second: dict[tuple[str, str], float] = {}
         self._loads: dict[str, Floats] = {}
         self._at: Floats | None = None
         self.discrete: dict[str, Discrete] = {}
         potentials: dict[str, Any] = {}
-        constraints: list[Constraint] = []
         for effect in ordered:
             form = effect.potential(self.body)
             if form is not None:
@@ -84,17 +89,66 @@ class Scene(OwnCode):
             discrete = effect.discrete(self.body)
             if discrete is not None:
                 self.discrete[effect.key] = discrete
-            constraints += effect.constraints()
-        fixed: dict[str, float] = {}
-        for effect in ordered:
-            fixed |= effect.fixed_scalars()
+        fixed = {k: v for effect in ordered for k, v in effect.fixed_scalars().items()}
         self.take_in()
+        self._rest = {name: float(item.value) for name, item in self.body.scalars.items()}
         self.hold(fixed)
         self._compile(potentials)
-        self._constrain(constraints)
+        constraints = [item for effect in ordered for item in effect.constraints()]
+        self.free, self._fixed, self._fixed_values = fixed_dofs(self.body, constraints)
+        self.volumetric = self.body.volumetric()
+        self._measure()
+        self.free_opposite = opposite_free(ordered, self.body)
+
+    def refit(self, effects: Iterable[Effect], data: MeshData) -> bool:
+        """Take effects that differ by numbers alone, and a mesh by its nodes; at rest; one rank.
+
+        No kernel is looked for, which takes most of the time of a small scene.
+
+        Args:
+            effects: those that the scene is to have.
+            data: its mesh.
+
+        Returns:
+            Whether it could; where it could not, nothing has changed.
+        """
+        ordered = sorted(effects, key=lambda effect: effect.key)
+        mine, theirs = (structures(given) for given in (self.effects.values(), ordered))
+        if None in theirs.values() or mine != theirs or not self.domain.like(data):
+            return False
+        body = self.body
+        self.effects |= {effect.key: effect for effect in ordered}
+        self.domain.move(data)
+        body.moved()
+        body.numbers.again()
+        for effect in ordered:
+            effect.potential(body)
+        for key, old in self.discrete.items():
+            new = self.effects[key].discrete(body)
+            assert new is not None, "of one structure"
+            self.discrete[key] = new
+            if not np.array_equal(new.block_dofs, old.block_dofs):
+                self._couplings[key] = self._assembler.blocks(new.block_dofs)
+        self.begin()
+        self._measure()
+        return True
+
+    def begin(self) -> None:
+        """Go back to rest, without a load and without what was met since."""
+        for name, value in self._rest.items():
+            self.set_scalar(name, value)
+        self._forget()
+        self._force_floor = FLOOR
+        self.set(np.zeros(self.body.owned))
+        self.predict(None)
+
+    def _measure(self) -> None:
+        """What volumes are measured by, and what round-off makes of forces, at rest."""
+        self.volume_scale = 1.0
+        if "volume" in self._forms:
+            self.volume_scale = self.norm(self._sum(self._forms["volume"], ())[0])
         self.solid_noise = self._solid_noise()
         self.force_noise = float(np.hypot(self._noise(), self.solid_noise))
-        self.free_opposite = opposite_free(ordered, self.body)
 
     def __del__(self) -> None:
         if hasattr(self, "matrix") and may_free(self.matrix):
@@ -104,32 +158,8 @@ class Scene(OwnCode):
 
     def _compile(self, potentials: dict[str, Any]) -> None:
         body, mesh = self.body, self.domain.mesh
-        whole = sum(potentials.values(), ufl.Form([]))
-        test, trial = ufl.TestFunction(body.space), ufl.TrialFunction(body.space)
-        residual = ufl.derivative(whole, body.w, test)
-        # frozen values, as Ogden's law has, take minutes to compile by components
-        whole_tangent = ufl.derivative(residual, body.w, trial)
-        tangent = whole_tangent if body.stand_ins else upper_tangent(whole, body.w)
-        forms: dict[str, Any] = {"residual": residual, "tangent": tangent}
-        for key, form in potentials.items():
-            forms[f"energy {key}"] = form
-            if self.effects[key].outside:
-                forms[f"force {key}"] = ufl.derivative(form, body.w, test)
-        lowered = ufl.algorithms.apply_algebra_lowering.apply_algebra_lowering(whole)
-        for i, name in enumerate(body.scalars):
-            conjugate = differentiate(lowered, body.scalar(name))
-            if conjugate is None:
-                continue  # only potentials with own code have it
-            forms[f"conjugate {name}"] = conjugate
-            forms[f"load {name}"] = ufl.derivative(conjugate, body.w, test)
-            for other in list(body.scalars)[i:] if body.natural else ():
-                second = differentiate(conjugate, body.scalar(other))
-                if second is not None:
-                    forms[f"second {name} {other}"] = second
-        if body.pressure_field is not None:
-            forms["volume"] = body.part(test, body.pressure_field)[0] * body.dx()
-        if body.stand_ins:
-            forms = {name: ufl.replace(form, body.stand_ins) for name, form in forms.items()}
+        outside = {key for key, effect in self.effects.items() if effect.outside}
+        forms = derivatives(body, potentials, outside)
         with compiling(mesh.comm):
             self._forms = {name: compat.compile_form(mesh, form) for name, form in forms.items()}
         self.signatures = {name: form.signature() for name, form in forms.items()}
@@ -141,35 +171,6 @@ class Scene(OwnCode):
         }
         self._vector = compat.create_vector(self._forms["residual"])
         self._det_f = body.det_f()
-        self.volume_scale = 1.0
-        """Norm of ∫ φ dX over the pressure field's test functions, mm³."""
-        if "volume" in self._forms:
-            self.volume_scale = self.norm(self._sum(self._forms["volume"], ())[0])
-
-    def _constrain(self, constraints: list[Constraint]) -> None:
-        body = self.body
-        self.free = np.ones(body.local, dtype=bool)
-        self._fixed: dict[str, npt.NDArray[np.int32]] = {}
-        self._fixed_values = np.zeros(body.local)
-        for constraint in constraints:
-            nodes = self.domain.surface_nodes(constraint.surface)
-            dofs = body.node_dofs[nodes, constraint.component]
-            dofs = dofs[dofs >= 0]
-            self.free[dofs] = False
-            self._fixed_values[dofs] = constraint.value
-            old = self._fixed.get(constraint.name, np.zeros(0, dtype=np.int32))
-            self._fixed[constraint.name] = np.union1d(old, dofs).astype(np.int32)
-        if body.pins:
-            dofs = np.array([body.node_dofs[pin] for pin in body.pins], dtype=np.int32)
-            self.free[dofs] = False
-            self._fixed["pin"] = dofs
-        follow, lead = body.ties
-        self.free[follow] = self.free[lead]
-        self.volumetric = np.zeros(body.owned, dtype=bool)
-        if body.pressure_field is not None:
-            p = body.dofs(body.pressure_field)
-            self.volumetric[p[p < body.owned]] = True
-        """Owned dofs of the pressure field."""
 
     def place(self) -> Place:
         """Where the unknowns lie, at the present state."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from typing import Any, ClassVar
 
 from fem.effects.effect import Effect
@@ -23,6 +24,10 @@ class ChamberPressure(Effect):
 
     def __init__(self, surface: str = "chamber") -> None:
         self.surface = surface
+
+    def structure(self) -> Hashable:
+        """The surface on which it acts."""
+        return (self.surface,)
 
     def potential(self, body: Kinematics) -> Any:
         """−P V as a form over the cavity's surface."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from typing import Any, ClassVar, Protocol
 
 import numpy as np
@@ -158,6 +158,16 @@ class Effect:
         """Its signed potential as own code, or None."""
         return None
 
+    def structure(self) -> Hashable:
+        """What its form, its constraints and its own code hang on beside numbers.
+
+        Numbers within forms are those of `body.coefficient` and `body.constants`; own code may
+        have any. Effects of one key and one structure differ by numbers alone: a compiled scene
+        takes those of one in place of the other's. None: not known, it is compiled anew. Empty:
+        there is nothing but scalars that are held.
+        """
+        return None
+
     def constraints(self) -> tuple[Constraint, ...]:
         """Displacement components that it fixes."""
         return ()
@@ -172,6 +182,43 @@ class Effect:
     def fixed_scalars(self) -> dict[str, float]:
         """Natural unknowns of the kinematics, such as the curvature, that it fixes at a value."""
         return {}
+
+
+def structures(effects: Iterable[Effect]) -> dict[str, Hashable]:
+    """By key, what effects hang on beside numbers; without those that hold scalars alone."""
+    found = {effect.key: effect.structure() for effect in effects}
+    return {key: structure for key, structure in found.items() if structure != ()}
+
+
+def fixed_dofs(
+    body: Kinematics, constraints: Iterable[Constraint]
+) -> tuple[npt.NDArray[np.bool_], dict[str, npt.NDArray[np.int32]], Floats]:
+    """Local dofs that constraints and pins leave free, what each name fixes, and at which values.
+
+    Args:
+        body: the kinematics.
+        constraints: of all effects.
+
+    Returns:
+        (local,), by name (n,), and (local,) in mm.
+    """
+    free, values = np.ones(body.local, dtype=bool), np.zeros(body.local)
+    fixed: dict[str, npt.NDArray[np.int32]] = {}
+    for constraint in constraints:
+        nodes = body.domain.surface_nodes(constraint.surface)
+        dofs = body.node_dofs[nodes, constraint.component]
+        dofs = dofs[dofs >= 0]
+        free[dofs] = False
+        values[dofs] = constraint.value
+        old = fixed.get(constraint.name, np.zeros(0, dtype=np.int32))
+        fixed[constraint.name] = np.union1d(old, dofs).astype(np.int32)
+    if body.pins:
+        dofs = np.array([body.node_dofs[pin] for pin in body.pins], dtype=np.int32)
+        free[dofs] = False
+        fixed["pin"] = dofs
+    follow, lead = body.ties
+    free[follow] = free[lead]
+    return free, fixed, values
 
 
 def opposite_free(effects: Iterable[Effect], body: Kinematics) -> npt.NDArray[np.bool_] | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from typing import Any
 
 from fem.effects.effect import Effect
@@ -37,6 +38,10 @@ class Elastic(Effect):
     def key(self) -> str:
         """Elastic energy is labelled by its law."""
         return f"Elastic[{self.law.name}]"
+
+    def structure(self) -> Hashable:
+        """The law, and which of its terms any region has."""
+        return self.law.name, tuple(sorted(self.law.used(self.regions.values())))
 
     def potential(self, body: Kinematics) -> Any:
         """The energy as a form; parameters are piecewise constant fields.

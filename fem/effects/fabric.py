@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
+
 from fem.effects.effect import Effect
 from fem.effects.embedded_fibers import FiberPotential
 from fem.kinematics.kinematics import Kinematics
@@ -42,6 +44,10 @@ class Strip(Effect):
     def key(self) -> str:
         """Each by its name."""
         return f"Strip[{self.name}]"
+
+    def structure(self) -> Hashable:
+        """Whether it goes slack: all else of it is own code."""
+        return ("strip", self.tension_only)
 
     def discrete(self, body: Kinematics) -> FabricPotential:
         """Its potential on this body."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from typing import Any, ClassVar
 
 import ufl
@@ -24,6 +25,10 @@ class Incompressible(Effect):
         if bulk and min(bulk.values()) <= 0:
             raise ValueError("a bulk modulus must be positive")
         self.bulk = bulk
+
+    def structure(self) -> Hashable:
+        """Whether anything is compressible."""
+        return ("compressible",) if self.bulk else ("exact",)
 
     def potential(self, body: Kinematics) -> Any:
         """The constraint's Lagrangian as a form."""

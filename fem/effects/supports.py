@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
+
 from fem.effects.effect import Constraint, Effect
 
 
@@ -44,6 +46,10 @@ class Symmetry(Effect):
         """Several mirror planes may exist, one a surface."""
         return f"Symmetry[{self.surface}]"
 
+    def structure(self) -> Hashable:
+        """All that it fixes."""
+        return self.constraints(), self.opposite()
+
     def constraints(self) -> tuple[Constraint, ...]:
         """No displacement across the plane."""
         return (Constraint("symmetry", self.surface, self.component),)
@@ -69,6 +75,10 @@ class TwofoldAxis(Effect):
     def __init__(self, surface: str = "symmetry") -> None:
         self.surface = surface
 
+    def structure(self) -> Hashable:
+        """All that it fixes."""
+        return self.constraints(), self.opposite()
+
     def constraints(self) -> tuple[Constraint, ...]:
         """No displacement across the plane, and none along z in it."""
         return tuple(Constraint("symmetry", self.surface, i) for i in (0, 2))
@@ -87,6 +97,10 @@ class StraightAxis(Effect):
 
     def __init__(self, stretch: bool = False) -> None:
         self.stretch = stretch
+
+    def structure(self) -> Hashable:
+        """It holds scalars, and no more."""
+        return ()
 
     def fixed_scalars(self) -> dict[str, float]:
         """k_x = k_y = 0, and λ0 = 1."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
+
 import numpy as np
 
 from fem.effects.bulging_fibers import BulgingPotential
@@ -33,6 +35,10 @@ class _Fibers(Effect):
         self.segments = segments
         self.stiffness = stiffness
         self.tension_only = tension_only
+
+    def structure(self) -> Hashable:
+        """Whether its fibers go slack: all else of it is own code."""
+        return type(self).__name__, self.tension_only
 
     def discrete(self, body: Kinematics) -> FiberPotential:
         """The fibers' potential on this body."""

@@ -51,6 +51,13 @@ class Cell(Uniform):
             pairs = np.unique(np.column_stack([end.ravel(), start.ravel()]), axis=0)
             self.ties = (self.node_dofs[pairs[:, 0]].ravel(), self.node_dofs[pairs[:, 1]].ravel())
 
+    def moved(self) -> None:
+        """The slice may have another length."""
+        super().moved()
+        extent = float(np.ptp(self.domain.data.nodes[:, 2]))
+        self.symmetry_factor *= self.extent / extent
+        self.extent = extent
+
     def _relative(self) -> tuple[Any, Any]:
         position, u = ufl.SpatialCoordinate(self.domain.mesh), self.u
         x = ufl.as_vector([position[0] + u[0], position[1] + u[1], u[2]])

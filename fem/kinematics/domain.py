@@ -42,6 +42,32 @@ class Domain:
         self.local_cell[self.cells[: self.owned]] = np.arange(self.owned)
         self._facet_tags, self._facet_ids = self._tag_facets()
 
+    def like(self, data: MeshData) -> bool:
+        """Whether another mesh differs from this one by the places of its nodes alone."""
+        mine = self.data
+        return (
+            mine.cell_type == data.cell_type
+            and mine.half == data.half
+            and mine.regions == data.regions
+            and mine.points == data.points
+            and mine.nodes.shape == data.nodes.shape
+            and np.array_equal(mine.cells, data.cells)
+            and np.array_equal(mine.cell_region, data.cell_region)
+            and mine.facets.keys() == data.facets.keys()
+            and all(np.array_equal(mine.facets[name], data.facets[name]) for name in mine.facets)
+        )
+
+    def move(self, data: MeshData) -> None:
+        """Put the nodes where another mesh has them; on one rank.
+
+        Args:
+            data: a mesh that is `like` this one.
+        """
+        self.data = data
+        points, corners = compat.coordinates(self.mesh)
+        order = compat.node_permutation(data.cell_type)
+        points[corners, : data.nodes.shape[1]] = data.nodes[data.cells[self.cells][:, order]]
+
     def _tag_facets(self) -> tuple[Any, dict[str, tuple[int, ...]]]:
         """Tag every boundary facet with its combination of names; a facet may have several."""
         data = self.data

@@ -14,6 +14,7 @@ from mpi4py import MPI
 
 from fem import compat
 from fem.kinematics.domain import Domain
+from fem.kinematics.numbers import Numbers
 from fem.kinematics.regions import continuous_by_region
 
 Floats = npt.NDArray[np.float64]
@@ -78,12 +79,13 @@ class Kinematics:
         ties: local dofs that follow others, and these; on one rank only.
         symmetry_factor: how many of what is modelled make up the whole actuator: two halves, or a
             length over that of a slice.
+        numbers: those within the effects' forms.
         stand_ins: constants that stand for frozen scalars while forms are differentiated, and
             these; whoever compiles a form replaces them.
     """
 
     def __init__(self, domain: Domain, fields: Iterable[str], components: int) -> None:
-        self.domain = domain
+        self.domain, self.numbers = domain, Numbers(domain)
         self.components = components
         self.natural: tuple[str, ...] = ()
         self.pins: tuple[tuple[int, int], ...] = ()
@@ -170,6 +172,9 @@ class Kinematics:
         """Density per reference area of the volume that a closed cavity surface encloses."""
         raise NotImplementedError
 
+    def moved(self) -> None:
+        """Follow the nodes of the mesh, which have been put to other places at rest."""
+
     def carry(self) -> Carry | None:
         """How the axis carries positions along z at the present state; None in a 3-D body."""
         return None
@@ -197,11 +202,11 @@ class Kinematics:
 
     def coefficient(self, by_region: dict[str, float]) -> Any:
         """A material constant as a piecewise constant field, one value per region."""
-        return compat.cell_field(self.domain.mesh, self.domain.cell_values(by_region))
+        return self.numbers.field(by_region)
 
     def constants(self, values: Sequence[float]) -> Any:
         """Numbers that are no code: other ones do not recompile."""
-        return dfem.Constant(self.domain.mesh, [float(value) for value in values])
+        return self.numbers.constants(values)
 
     def scalar(self, name: str) -> Any:
         """The UFL variable of a global scalar, such as the chamber pressure in MPa."""
@@ -212,8 +217,9 @@ class Kinematics:
 
     def frozen(self, value: Any) -> Any:
         """A UFL scalar by its present value alone: no derivative goes through it."""
-        stand_in = ufl.Constant(self.domain.mesh)
-        self.stand_ins[stand_in] = value
+        stand_in, new = self.numbers.stand_in()
+        if new:
+            self.stand_ins[stand_in] = value
         return stand_in
 
     def astray(self) -> Floats:
@@ -245,6 +251,14 @@ class Kinematics:
     def dofs(self, field: str) -> Dofs:
         """Local dofs of a field for every local cell, (cells, nodes, components), basix order."""
         return self._dofs[field]
+
+    def volumetric(self) -> npt.NDArray[np.bool_]:
+        """Which owned dofs are pressures, (owned,)."""
+        found = np.zeros(self.owned, dtype=bool)
+        if self.pressure_field is not None:
+            p = self.dofs(self.pressure_field)
+            found[p[p < self.owned]] = True
+        return found
 
     def displacement(self) -> Floats:
         """Displacement of the owned nodes in mm, (len(owned_nodes), components)."""

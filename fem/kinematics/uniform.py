@@ -151,6 +151,15 @@ class Uniform(Kinematics):
         """ω by values of the natural scalars, (3,); what is none of them is zero."""
         return np.array([scalars[name] if name in self.natural else 0.0 for name in AXES])
 
+    def moved(self) -> None:
+        """Centroid and axes are those of the section as it is now."""
+        self.__dict__.pop("fit", None)
+
+    def resize(self, length: float) -> None:
+        """Stand for another length L of the actuator, mm."""
+        self.symmetry_factor *= length / self.length
+        self.length = length
+
     def carry(self) -> Carry:
         """Stretch and spin at the present state."""
         values = {name: float(self.scalars[name].value) for name in self.natural}

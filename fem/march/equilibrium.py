@@ -206,11 +206,11 @@ class Equilibrium:
             if turned:
                 raise RefusedError(f"a limit point of {scalar}, where negative pivots must be told")
             return
-        modes = self._modes()
+        modes = self.modes()
         if exactly or turned or modes != before.measures.get(MODES, 0):
             # not by an old factor, nor with forces that were predicted
             near = self.perturbed(state, scalar)
-            modes = self._modes()
+            modes = self.modes()
             change = [near.measures[name] - state.measures[name] for name in kinds]
             state.measures[rate] = change[0] / change[1]
         state.measures[MODES] = modes
@@ -263,6 +263,7 @@ class Equilibrium:
         start[body.node_dofs[nodes]] = values[nodes]
         return start
 
-    def _modes(self) -> int:
+    def modes(self) -> int:
+        """Unstable modes by the last tangent, with the loads at given values."""
         pivots = self.newton.negative_pivots(self.scene.natural)
         return pivots - self._volumetric - self.scene.multipliers

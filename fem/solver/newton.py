@@ -99,10 +99,9 @@ class Newton:
 
     def __init__(self, problem: Problem, comm: MPI.Comm, settings: Settings) -> None:
         self.problem = problem
-        # under a load too small to be told from round-off, all is as good as converged
-        problem.raise_force_floor(problem.solid_noise / settings.tolerance)
         self.comm = comm
         self.settings = settings
+        self.begin()
         owned = len(problem.volumetric)
         free = problem.free[:owned]
         self.factor: LinearSolver
@@ -117,6 +116,11 @@ class Newton:
         self.spares = problem.mixed and problem.matrix.getSize()[0] >= settings.large
         self.schur: Floats = np.zeros((0, 0))
         """Schur complement of the unknown scalars at the last tangent, in the order given."""
+
+    def begin(self) -> None:
+        """Begin with the problem as it is, at rest: what was met before counts no more."""
+        # under a load too small to be told from round-off, all is as good as converged
+        self.problem.raise_force_floor(self.problem.solid_noise / self.settings.tolerance)
 
     def spend(self, phase: str, seconds: float) -> None:
         """Add to the wall time of a phase."""

@@ -184,9 +184,8 @@ class _Sections:
             end = max(r.pressure for r in cell.bent)
             asked.append((cases.straight_section(wound, reach, end), cell.straight))
         self._parts: list[tuple[Small, list[State], Sequence[Reading]]] = []
-        small: Small | None = None
         for small_case, readings in asked:
-            small = Small(small_case, small)
+            small = Small(small_case, *(part[0] for part in self._parts))
             states, report = small.march()
             if len(states) < len(readings):
                 raise CalibrationError(

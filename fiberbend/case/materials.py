@@ -63,6 +63,17 @@ class MaterialSpec(_Coefficients):
             off = {*off, "density"}
         return self.model_copy(update=dict.fromkeys(off)) if off else self
 
+    def by_numbers(self) -> Self:
+        """Law, coefficients and bulk modulus of a named one."""
+        if self.name is None:
+            return self
+        from materials.named import named_material
+
+        found = named_material(self.name)
+        bulk = found.bulk if self.bulk is None else self.bulk
+        update = {"name": None, "law": found.law, "bulk": bulk, **found.parameters}
+        return self.model_copy(update=update)
+
     @model_validator(mode="before")
     @classmethod
     def _from_name(cls, data: Any) -> Any:

@@ -1,81 +1,107 @@
-"""A case of uniform bending solved in this process, without a run folder."""
+"""Cases of uniform bending solved in this process, one after another, without a run folder."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from fiberbend.calibration.calibrate import calibrate, waits, with_bulging
 from fiberbend.case.case import Case
 from fiberbend.columns import UNIFORM
-from fiberbend.models.choice import choose_model, problems
+from fiberbend.models.choice import choose_model
 from fiberbend.schema.problems import CaseError, Problem
-from fiberbend.trial import loads
-from fiberbend.trial.reading import Reader
-from fiberbend.trial.wanted import Answer, Point, Wanted
-from fiberbend.uniform.small import Small
+from fiberbend.trial.slopes import Touched
+from fiberbend.trial.wanted import Answer, Point, Slopes, Wanted
+from fiberbend.trial.ways import MAKE, Goal, Ways
 
 
-def solve(case: Case, wanted: Wanted) -> Answer:
-    """Solve a case of model section or cell at the states that are wanted, on this rank alone.
+class Trials:
+    """Solves cases one after another, and keeps scenes that serve again.
 
-    Its own load and what keeps it straight are replaced by those of the states; all else is the
-    case's. A winding that waits for its calibration is calibrated first, from the store or anew.
-
-    Args:
-        case: a checked case.
-        wanted: the states.
-
-    Raises:
-        CaseError: the case is none of uniform bending, or its winding cannot be calibrated.
+    An answer is that of a case alone, to the tolerance of the solver.
     """
-    _uniform(case)
-    if waits(case):
-        case = with_bulging(case, calibrate(case).found.bulging())
-    found: dict[tuple[str, float], Point] = {}
-    reasons: list[str] = []
-    ways = [
-        *(("angles", signed) for signed in by_sign(wanted.angles)),
-        *(("pressures", signed) for signed in by_sign(wanted.pressures)),
-        *(("straight", signed) for signed in by_sign(wanted.straight)),
-    ]
-    make = {"angles": loads.bent, "pressures": loads.inflated, "straight": loads.straight}
-    small: Small | None = None
-    for kind, values in ways:
-        loaded = make[kind](case, values)
-        objections = [f"{path}: {text}" for path, text in problems(loaded)]
-        if objections:
-            reasons += objections[:1]
-            continue
-        small = Small(loaded, small)
-        reader = Reader(small)
-        states, report = small.march()
-        asked = sorted(values, key=abs)
-        found |= {
-            (kind, value): reader.point(state) for value, state in zip(asked, states, strict=False)
+
+    def __init__(self) -> None:
+        self._ways = Ways()
+
+    def solve(self, case: Case, wanted: Wanted) -> Answer:
+        """Solve a case of model section or cell at the states that are wanted, on this rank alone.
+
+        Its own load and what keeps it straight are replaced by those of the states; all else is the
+        case's. A winding that waits for its calibration is calibrated first, from the store or
+        anew.
+
+        Args:
+            case: a checked case.
+            wanted: the states.
+
+        Raises:
+            CaseError: the case is none of uniform bending, or its winding cannot be calibrated.
+        """
+        found: dict[Goal, Point] = {}
+        reasons: list[str] = []
+        for way in self._ways.to(_ready(case), wanted):
+            found |= way.points()
+            reasons.append(way.reason)
+        return _answer(wanted, found, reasons)
+
+    def sensitivities(self, case: Case, wanted: Wanted, fields: Iterable[str]) -> Slopes:
+        """What a case answers, and its derivatives with respect to numbers of the case.
+
+        By the tangent at each state: no state is solved for again. A winding that is calibrated
+        keeps the numbers of its calibration.
+
+        Args:
+            case: a checked case.
+            wanted: the states.
+            fields: dotted paths, such as `actuator.wall`, `materials.wall.c1` of a material by its
+                name too, or `effects.1.winding.pitch`.
+
+        Raises:
+            CaseError: the same; or a path leads to no number.
+        """
+        found: dict[Goal, Point] = {}
+        reasons: list[str] = []
+        touched = Touched()
+        for way in self._ways.to(_ready(case), wanted):
+            points = way.points()
+            touched.touch(way, points)
+            found |= points
+            reasons.append(way.reason)
+        by_field = {
+            field: _answer(wanted, touched.along(field), reasons) for field in dict.fromkeys(fields)
         }
-        if report.status != "converged" or len(states) < len(asked):
-            reasons.append(report.reason or "not all states lie on the way")
-    free = [("angles", angle) for angle in wanted.angles]
-    free += [("pressures", pressure) for pressure in wanted.pressures]
-    kept = [("straight", pressure) for pressure in wanted.straight]
+        return Slopes(_answer(wanted, found, reasons), by_field)
+
+
+def _answer(wanted: Wanted, found: Mapping[Goal, Point], reasons: Sequence[str]) -> Answer:
+    told = [Goal(kind, value) for kind in MAKE for value in getattr(wanted, kind)]
+    points = [(goal.kind == "straight", found[goal]) for goal in told if goal in found]
+    reason = "; ".join(dict.fromkeys(text for text in reasons if text))
     return Answer(
-        free=tuple(found[one] for one in free if one in found),
-        straight=tuple(found[one] for one in kept if one in found),
-        converged=not reasons,
-        reason="; ".join(dict.fromkeys(reasons)),
+        free=tuple(point for kept, point in points if not kept),
+        straight=tuple(point for kept, point in points if kept),
+        converged=not reason,
+        reason=reason,
     )
 
 
-def by_sign(values: Iterable[float]) -> list[tuple[float, ...]]:
-    """The values above zero and those below, each once, without what is empty."""
-    given: Sequence[float] = tuple(dict.fromkeys(values))
-    parts = (tuple(v for v in given if v > 0), tuple(v for v in given if v < 0))
-    return [part for part in parts if part]
-
-
-def _uniform(case: Case) -> None:
-    """Refuse what is no section and no cell."""
+def _ready(case: Case) -> Case:
+    """A case of uniform bending whose winding waits for nothing."""
     model, _ = choose_model(case)
     if UNIFORM not in model.fills or case.zones is not None:
         where = "model" if case.zones is None else "zones"
         raise CaseError([Problem(where, f"{model.name}, expected section or cell without zones")])
+    return with_bulging(case, calibrate(case).found.bulging()) if waits(case) else case
+
+
+_TRIALS = Trials()
+
+
+def solve(case: Case, wanted: Wanted) -> Answer:
+    """As `Trials.solve`, with the scenes that this process keeps."""
+    return _TRIALS.solve(case, wanted)
+
+
+def sensitivities(case: Case, wanted: Wanted, fields: Iterable[str]) -> Slopes:
+    """As `Trials.sensitivities`, with the scenes that this process keeps."""
+    return _TRIALS.sensitivities(case, wanted, fields)

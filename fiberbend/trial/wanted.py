@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
 
 
 @dataclasses.dataclass(frozen=True)
@@ -75,3 +76,17 @@ class Answer:
     straight: tuple[Point, ...] = ()
     converged: bool = True
     reason: str = ""
+
+
+@dataclasses.dataclass(frozen=True)
+class Slopes:
+    """Derivatives of an answer.
+
+    Attributes:
+        answer: the states.
+        by_field: by the path of a number of the case, the same states with the derivative of each
+            of their quantities in its place, in its unit over that of the number: MPa/mm.
+    """
+
+    answer: Answer
+    by_field: Mapping[str, Answer]

@@ -11,7 +11,7 @@ from mpi4py import MPI
 
 from fem.effects.effect import Discrete
 from fem.kinematics.domain import Domain
-from fem.kinematics.uniform import CURVATURE, STRETCH
+from fem.kinematics.uniform import CURVATURE, STRETCH, Uniform
 from fem.march.hooks import AfterStep
 from fem.march.march import March
 from fem.march.records import Report, Rules, State, measure
@@ -21,12 +21,15 @@ from fem.solver.newton import Newton, Outcome, Settings
 from fem.solver.side_conditions import Functional, GivenFunctional, Stationary
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.case.symmetry import Symmetry
 from fiberbend.effects.effect import Effect
 from fiberbend.models.choice import meshed
 from fiberbend.models.parts import build
 
 PRESSURE = "pressure"
 _SAME = 1e-9
+_FAR = 0.5
+"""Part of a neighbour's displacement by which a state may differ from it."""
 _FIRST, _GROW = math.radians(45), 3.0
 """Steps of uniform bending without contact: the first, and how fast they grow."""
 
@@ -50,34 +53,60 @@ class Reading:
     angle: float
 
 
+@dataclasses.dataclass
+class _Stage:
+    """A compiled scene with its solver.
+
+    Attributes:
+        scene: the scene.
+        newton: its solver.
+        numbers: of the case that it stands for at present.
+    """
+
+    scene: Scene
+    newton: Newton
+    numbers: tuple[object, ...]
+
+
 class Small:
     """A case of uniform bending on this rank alone, compiled and at rest.
 
     Args:
         case: model section or cell.
-        like: the same section with the same winding under another load, whose scene it shares.
+        likes: others: it takes over the scene of the first from which it differs by numbers and
+            loads alone. What shares a scene is used one after another, the last one made.
+
+    Attributes:
+        scene: the compiled scene.
+        observables: what is read off its states.
     """
 
-    scene: Scene
-    _newton: Newton
-    _march: March
+    _stage: _Stage
 
-    def __init__(self, case: Case, like: Small | None = None) -> None:
+    def __init__(self, case: Case, *likes: Small) -> None:
         model = meshed(case)
-        self._case, mesh = case, model.mesh(case) if like is None else like.scene.domain.data
-        self.parts = parts = build(case, mesh, model)
+        self._case, self._model = case, model
+        numbers, settings = _numbers(case), Settings(tolerance=case.solver.tolerance)
+        for effect in case.acting:
+            settings = effect.settings(settings)
+        alike = [like._stage for like in likes if like._serves(case, settings)]
+        stage = next((one for one in alike if one.numbers == numbers), None)
+        mesh = model.mesh(case) if stage is None else stage.scene.domain.data
+        parts = build(case, mesh, model)
         self._held = {k: v for term in parts.effects for k, v in term.fixed_scalars().items()}
-        if like is None:
-            self.scene = Scene(Domain(mesh, MPI.COMM_SELF), parts.effects, model.kinematics(case))
-            settings = Settings(tolerance=case.solver.tolerance)
-            for effect in case.acting:
-                settings = effect.settings(settings)
-            self._newton = Newton(self.scene, MPI.COMM_SELF, settings)
+        if stage is None:
+            stage = next((one for one in alike if one.scene.refit(parts.effects, mesh)), None)
         else:
-            self.scene, self._newton = like.scene, like._newton
-            like._march.equilibrium.restore(like._march.rest)
-            self.scene.predict(None)
-            self.scene.hold(self._held)
+            stage.scene.begin()
+        if stage is None:
+            scene = Scene(Domain(mesh, MPI.COMM_SELF), parts.effects, model.kinematics(case))
+            stage = _Stage(scene, Newton(scene, MPI.COMM_SELF, settings), numbers)
+        else:
+            stage.numbers = numbers
+            _bent(stage.scene).resize(case.actuator.length)
+            stage.newton.begin()
+        self._stage, self.scene, self._newton = stage, stage.scene, stage.newton
+        self.scene.hold(self._held)
         self._ramps = parts.ramps(self.scene.body.symmetry_factor)
         self.observables = model.observables(case, self.scene)
         self._control: Functional = self.observables.control
@@ -92,6 +121,12 @@ class Small:
         for effect in case.acting:
             rules = effect.rules(rules, case.straight)
         self._march = March(self.scene, self._newton, rules, control=self._control)
+
+    def _serves(self, case: Case, settings: Settings) -> bool:
+        """Whether its unknowns and its solver are those of another case."""
+        mine, theirs = (Symmetry.of(given.acting) for given in (self._case, case))
+        alike = mine.scalars() == theirs.scalars() and mine.halved == theirs.halved
+        return alike and self._model is meshed(case) and self._newton.settings == settings
 
     @property
     def rest(self) -> State:
@@ -150,6 +185,64 @@ class Small:
         outcome = self._newton.solve(state.w, unknown, conditions)
         return self._march.equilibrium.capture() if outcome.converged else None
 
+    def conditions(
+        self, state: State, kind: str, goal: float | None = None
+    ) -> tuple[list[str], list[SideCondition]]:
+        """Put the scene to a state, and say which scalars are found there, by which conditions.
+
+        Args:
+            state: of this case, or of a like one that had this scene before.
+            kind: what is given: 'control' or 'value'.
+            goal: the angle in rad, or the pressure in MPa; that of the state by default.
+        """
+        scene = self.scene
+        self.put(state)
+        scene.predict(None)
+        unknown = list(scene.natural)
+        conditions: list[SideCondition] = [Stationary(scene, name) for name in unknown]
+        if kind == "control":
+            unknown.append(PRESSURE)
+            goal = state.measures["control"] if goal is None else goal
+            conditions.append(GivenFunctional(self._control, goal))
+        elif goal is not None:
+            scene.set_scalar(PRESSURE, goal)
+        return unknown, conditions
+
+    def capture(self) -> State:
+        """The present state of the scene."""
+        return self._march.equilibrium.capture()
+
+    def from_neighbour(self, state: State, kind: str, goal: float) -> State | None:
+        """A state found from that of a like case, with its stability; None: not by this way.
+
+        What is found so is the state to which a march leads where both are stable and lie near each
+        other, and no path to either has lost its stability.
+
+        Args:
+            state: of a case that had this scene before.
+            kind: what is given: 'control' or 'value'.
+            goal: the angle in rad, or the pressure in MPa.
+        """
+        equilibrium = self._march.equilibrium
+        unknown, conditions = self.conditions(state, kind, goal)
+        outcome = self._newton.solve(state.w, unknown, conditions)
+        if not outcome.converged or not equilibrium.tells_stability:
+            return None
+        new = equilibrium.capture()
+        moved = equilibrium.displacements
+        way, size = (np.linalg.norm(w[moved]) for w in (new.w - state.w, state.w))
+        if way > _FAR * size:
+            return None
+        if not outcome.factorisations:
+            self._newton.assemble()
+            self._newton.factorise(unknown, conditions)
+        return new if equilibrium.modes() == 0 else None
+
+    def keeps_symmetry(self, state: State) -> bool:
+        """Whether half of what is modelled does not buckle out of its symmetry at a state."""
+        self.put(state)
+        return not self._march.equilibrium.opposite_modes(state, self.rest)
+
     def near(self, state: State, others: Sequence[Mapping[str, Discrete]]) -> Iterator[State]:
         """A state with windings of slightly other numbers, by a step with one tangent.
 
@@ -176,12 +269,20 @@ class Small:
 
     def _back(self, state: State) -> tuple[list[str], list[SideCondition]]:
         """Put the scene to a state; the scalars that are found there, by which conditions."""
-        scene = self.scene
-        self.put(state)
-        scene.predict(None)
-        unknown = list(scene.natural)
-        conditions: list[SideCondition] = [Stationary(scene, name) for name in unknown]
-        if not self._case.straight:
-            unknown.append(PRESSURE)
-            conditions.append(GivenFunctional(self._control, state.measures["control"]))
-        return unknown, conditions
+        return self.conditions(state, "value" if self._case.straight else "control")
+
+
+def _bent(scene: Scene) -> Uniform:
+    body = scene.body
+    assert isinstance(body, Uniform), "model section or cell"
+    return body
+
+
+def _numbers(case: Case) -> tuple[object, ...]:
+    """All of a case that a scene is compiled from but its loads, which are scalars."""
+    effects = tuple(
+        effect
+        for effect in case.effects
+        if effect.inflation() is None and not effect.keeps_straight()
+    )
+    return case.model, case.actuator, case.materials, case.mesh, effects

@@ -56,6 +56,14 @@ class FiberSpec(Named):
             return self.model_copy(update={"radius_factor": 1.0})
         return self
 
+    def by_numbers(self) -> FiberSpec:
+        """Modulus, diameter and the part that carries of a named one."""
+        if self.name is None:
+            return self
+        thread = self.thread()
+        names = ("modulus", "diameter", "radius_factor")
+        return self.model_copy(update={"name": None, **{n: getattr(thread, n) for n in names}})
+
     def problems(self, path: str) -> Iterator[Problem]:
         """What is missing, unknown or without effect."""
         own = ("modulus", "diameter", "radius_factor")
