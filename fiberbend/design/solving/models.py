@@ -14,7 +14,7 @@ from fiberbend.effects.effect import Effect
 from fiberbend.effects.pressure import inflate
 from fiberbend.models.choice import problems
 from fiberbend.schema.problems import CaseError, Problem
-from fiberbend.trial.solve import solve
+from fiberbend.trial.solve import sensitivities, solve
 from fiberbend.trial.wanted import Answer, Point, Wanted
 
 States = Mapping[State, Sequence[Reading]]
@@ -41,6 +41,15 @@ class Model(Protocol):
             CaseError: the model does not have the case.
         """
 
+    def slopes(self, case: Case, wanted: Sequence[State], fields: Sequence[str]) -> Slopes | None:
+        """Derivatives of the states by numbers of the case; None: cases beside are to be solved.
+
+        Args:
+            case: the whole case, whose states were found.
+            wanted: the states.
+            fields: paths of the numbers.
+        """
+
 
 class Section:
     """The section, its winding spread over its surface.
@@ -62,6 +71,38 @@ class Section:
         section = as_section(zone.model_copy(update={"effects": effects}), inflate(to=1.0))
         mesh = section.mesh.model_copy(update={"section": self._mesh})
         return section.model_copy(update={"mesh": mesh})
+
+    def slopes(self, case: Case, wanted: Sequence[State], fields: Sequence[str]) -> Slopes | None:
+        """Derivatives of the states by numbers of a case, by the tangent at each state.
+
+        None where the section does not give them: of a case with zones, and of a field with which
+        its mesh jumps or that it does not have.
+        """
+        if case.zones:
+            return None
+        section = self.case_of(case)
+        inner = {path: self._inner(case, path) for path in fields}
+        try:
+            found = sensitivities(section, asked(wanted), inner.values())
+        except CaseError:
+            return None
+        if not found.answer.converged:
+            return None
+        return {
+            path: {
+                state: (one,) for state, one in readings(found.by_field[own], wanted).items()
+            }
+            for path, own in inner.items()
+        }
+
+    def _inner(self, case: Case, path: str) -> str:
+        """A path of the case in its section, whose load stands first."""
+        parts = path.split(".")
+        if parts[0] != "effects":
+            return path
+        kept = [i for i, e in enumerate(case.effects) if (s := _spread(e)) and s.beside()]
+        place = kept.index(int(parts[1])) if int(parts[1]) in kept else -1
+        return ".".join(["effects", str(1 + place), *parts[2:]])
 
 
 class Cell:

@@ -20,8 +20,6 @@ from fiberbend.schema.problems import CaseError
 Floats = Any
 _STEP = 1e-3
 """Part of the range of a field by which derivatives of what is in closed form are taken."""
-SlopesOf = Callable[[Case, Sequence[State], Sequence[str], States], Slopes | None]
-"""Derivatives of states by fields; None where a model has none and cases beside are solved."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -72,7 +70,6 @@ class Tries:
     Args:
         design: the design.
         model: the model.
-        slopes_of: its derivatives; by default cases beside are solved.
         tell: takes every try.
     """
 
@@ -80,7 +77,6 @@ class Tries:
         self,
         design: Design,
         model: Model,
-        slopes_of: SlopesOf | None = None,
         tell: Callable[[Try], None] = lambda _try: None,
     ) -> None:
         self.design, self.model = design, model
@@ -88,7 +84,7 @@ class Tries:
         self.counted = Counted()
         self._known: dict[tuple[Pairs, tuple[float, ...]], Try] = {}
         self._slopes: dict[tuple[Pairs, tuple[float, ...]], Floats | None] = {}
-        self._slopes_of, self._tell = slopes_of, tell
+        self._tell = tell
         states = (state for quantity in design.quantities for state in quantity.states())
         self.wanted = tuple(dict.fromkeys(states))
 
@@ -103,7 +99,7 @@ class Tries:
         """Values of the varied numbers in internal units, rounded as a file has them."""
         fields = self.design.fields.varied
         return tuple(
-            float(f"{field.low + part * (field.high - field.low):.10g}")
+            float(f"{field.low + part * (field.high - field.low):.8g}")
             for field, part in zip(fields, x, strict=True)
         )
 
@@ -187,11 +183,10 @@ class Tries:
         if not fields:
             return np.zeros(count)
         assert here.case is not None
-        own = None
-        if self.wanted and self._slopes_of is not None:
+        own: Slopes | None = None
+        if self.wanted:
             begun = time.process_time()
-            paths = [field.path for field in fields]
-            own = self._slopes_of(here.case, self.wanted, paths, here.states)
+            own = self.model.slopes(here.case, self.wanted, [field.path for field in fields])
             self.counted.cpu_s += time.process_time() - begun
             self.counted.slopes += own is not None
         columns = [self._column(here, index, own) for index in range(len(fields))]
