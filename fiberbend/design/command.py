@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from fiberbend.design.reading import Design, read_design
 from fiberbend.process.lock import FolderLock, HeldError
@@ -15,6 +16,14 @@ from fiberbend.process.signals import Interrupted, stop_of
 from fiberbend.results.folder import DESIGN, FILES, REPORT, RunFolder
 from fiberbend.running import launch
 from fiberbend.schema.problems import CaseError, Problem
+
+if TYPE_CHECKING:
+    from fiberbend.design.search.confirm import Confirmed
+    from fiberbend.design.search.front import Front
+    from fiberbend.design.search.search import Found
+    from fiberbend.design.search.wishes import Correction
+    from fiberbend.design.told.outcome import Outcome, Times
+    from fiberbend.design.told.sensitivity import Row
 
 Say = Callable[[str], None]
 
@@ -89,7 +98,10 @@ class _Made:
         from fiberbend.design.told.sensitivity import sensitivities
 
         stop: Interrupted | None = None
-        done, front, table, times = None, None, [], Times()
+        done: Confirmed | None = None
+        front: Front | None = None
+        table: list[Row] = []
+        times = Times()
         begun = time.process_time()
         try:
             found, front = self._find(self._none)
@@ -101,6 +113,7 @@ class _Made:
                 table = sensitivities(self._design, done.found)
         except KeyboardInterrupt as error:
             stop = stop_of(error)
+            times = times if done else Times(search=time.process_time() - begun)
             if done is None and self._search.best is not None:
                 done = Confirmed(self._search.best, self._none)
         made = outcome(self._design, self._tries, done, table, front, times, stop is not None)
@@ -109,7 +122,7 @@ class _Made:
             return stop.code
         return launch.FAILED if made.status in (FAILED, UNCONFIRMED) else 0
 
-    def _find(self, corrections):  # type: ignore[no-untyped-def]
+    def _find(self, corrections: Sequence[Correction]) -> tuple[Found | None, Front | None]:
         """The best case, and the trade-off where there are two goals."""
         from fiberbend.design.search.front import Front, trade_off
 
@@ -121,7 +134,9 @@ class _Made:
             return found.found[found.knee], found
         return found, None
 
-    def _confirmed(self, done, front, times):  # type: ignore[no-untyped-def]
+    def _confirmed(
+        self, done: Confirmed, front: Front | None, times: Times
+    ) -> tuple[Confirmed, Front | None, Times]:
         """An answer that cell and body agree with; a trade-off once more with what they say."""
         from fiberbend.design.search.confirm import Confirmer
         from fiberbend.design.solving.body import Body
@@ -135,7 +150,7 @@ class _Made:
         if front is not None and done.checks:
             begun = time.process_time()
             found, again = self._find(done.corrections)
-            if again is not None:
+            if again is not None and found is not None:
                 front = again
                 moved = dataclasses.replace(done, found=found, checks=())
                 done = confirmer.confirm(moved)
@@ -144,7 +159,7 @@ class _Made:
         spent = sum(check.cpu_s for check in done.checks)
         return done, front, dataclasses.replace(times, confirmed=spent)
 
-    def _write(self, made, pictures: bool) -> None:  # type: ignore[no-untyped-def]
+    def _write(self, made: Outcome, pictures: bool) -> None:
         from fiberbend.answer.answer import lines
         from fiberbend.design.told.outcome import FAILED, MET, answer
         from fiberbend.design.told.picture import draw

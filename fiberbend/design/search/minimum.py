@@ -143,8 +143,7 @@ def descend(
     slopes = functions.slopes(x)
     steps, whole = 1, False
     while slopes is not None and steps < _MOST_STEPS:
-        multipliers = lean(x, values, slopes, goal)
-        penalty = max(penalty, 3 * _greatest(multipliers))
+        penalty = max(penalty, 3 * _greatest(lean(x, values, slopes, goal, 0.0)))
         step, foreseen = _step(x, values, slopes, curved, penalty, radius, goal)
         before = _merit(values, penalty, goal)
         falls = before - foreseen
@@ -167,13 +166,13 @@ def descend(
         new = functions.slopes(moved)
         steps += 1
         if new is not None:
-            after = lean(moved, there, new, goal)
+            after = lean(moved, there, new, goal, penalty)
             turn = _lagrangian(new, after, goal) - _lagrangian(slopes, after, goal)
             curved = _bfgs(curved, moved - x, turn)
         tell(steps, there)
         x, values, slopes = moved, there, new
-    multipliers = None if slopes is None else lean(x, values, slopes, goal)
-    return Minimum(x, values, slopes, multipliers, steps, whole)
+    known = None if slopes is None else lean(x, values, slopes, goal)
+    return Minimum(x, values, slopes, known, steps, whole)
 
 
 def _greatest(multipliers: Multipliers) -> float:
@@ -281,21 +280,22 @@ def _bfgs(curved: Floats, step: Floats, turn: Floats) -> Floats:
     return curved - np.outer(along, along) / whole + np.outer(turn, turn) / float(step @ turn)
 
 
-def lean(x: Floats, values: Values, slopes: Slopes, goal: bool) -> Multipliers:
+def lean(
+    x: Floats, values: Values, slopes: Slopes, goal: bool, penalty: float = 1.0
+) -> Multipliers:
     """Multipliers of what is active at a point, by least squares with their signs.
 
-    Without the goal they balance the miss: its slope is that of the conditions that are missed.
+    A condition that is missed pulls with the penalty, whatever else is active; without the goal
+    these pulls are all there is, and what balances them stops the miss from falling.
     """
-    n, m, k = len(x), len(values.below), len(values.zero)
+    n = len(x)
     eye = np.eye(n)
     at_low, at_high = x <= _ACTIVE, x >= 1 - _ACTIVE
-    if goal:
-        pull = slopes.goal
-        active, held = values.below > -_ACTIVE, np.ones(k, dtype=bool)
-    else:
-        missed, off = values.below > _ACTIVE, np.abs(values.zero) > _ACTIVE
-        pull = slopes.below[missed].sum(axis=0) + np.sign(values.zero[off]) @ slopes.zero[off]
-        active, held = (np.abs(values.below) <= _ACTIVE), ~off
+    missed, off = values.below > _ACTIVE, np.abs(values.zero) > _ACTIVE
+    below = np.where(missed, penalty, 0.0)
+    zero = np.where(off, penalty * np.sign(values.zero), 0.0)
+    pull = below @ slopes.below + zero @ slopes.zero + (slopes.goal if goal else np.zeros(n))
+    active, held = np.abs(values.below) <= _ACTIVE, ~off
     columns = [slopes.below[active].T, slopes.zero[held].T, -eye[:, at_low], eye[:, at_high]]
     matrix = np.hstack(columns)
     sizes = [int(active.sum()), int(held.sum()), int(at_low.sum()), int(at_high.sum())]
@@ -305,6 +305,6 @@ def lean(x: Floats, values: Values, slopes: Slopes, goal: bool) -> Multipliers:
         least[sizes[0] : sizes[0] + sizes[1]] = -np.inf
         found = lsq_linear(matrix, -pull, (least, np.inf)).x
     parts = np.split(found, np.cumsum(sizes)[:-1])
-    below, zero, low, high = np.zeros(m), np.zeros(k), np.zeros(n), np.zeros(n)
+    low, high = np.zeros(n), np.zeros(n)
     below[active], zero[held], low[at_low], high[at_high] = parts
     return Multipliers(below, zero, low, high)

@@ -89,9 +89,7 @@ class Section:
         if not found.answer.converged:
             return None
         return {
-            path: {
-                state: (one,) for state, one in readings(found.by_field[own], wanted).items()
-            }
+            path: {state: (one,) for state, one in readings(found.by_field[own], wanted).items()}
             for path, own in inner.items()
         }
 

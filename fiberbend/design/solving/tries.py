@@ -11,7 +11,7 @@ import numpy as np
 
 from fiberbend.case.case import Case
 from fiberbend.design.fields import Pairs
-from fiberbend.design.quantities.seen import Reading, Seen, State
+from fiberbend.design.quantities.seen import Reading, Seen
 from fiberbend.design.reading import Design, own_numbers
 from fiberbend.design.solving.models import Model, Slopes, States, UnsolvedError
 from fiberbend.reader.reader import parse_case
@@ -102,6 +102,10 @@ class Tries:
             float(f"{field.low + part * (field.high - field.low):.8g}")
             for field, part in zip(fields, x, strict=True)
         )
+
+    def middle(self) -> tuple[Pairs, tuple[float, ...]]:
+        """Some point: the first choices, and the middle of all ranges."""
+        return self.design.fields.combinations()[0], (0.5,) * len(self.design.fields.varied)
 
     def start(self) -> tuple[float, ...]:
         """The base case's own numbers, moved between the ends."""

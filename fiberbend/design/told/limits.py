@@ -14,6 +14,8 @@ from fiberbend.design.search.search import Found
 
 _COUNTS = 1e-4
 """A multiplier, of functions of order one over ranges of one, that is more than round-off."""
+_MISSED = 1e-3
+"""Part of a target by which it is missed."""
 _PART = 0.01
 """Part of a target by which it is thought to give way."""
 
@@ -47,9 +49,12 @@ def limits(design: Design, found: Found) -> list[Limit]:
         ):
             if weight > _COUNTS:
                 lines.append(_of_end(field, float(weight), end, side, way, gains))
-    values = [*known.below, *known.zero]
-    for (index, key), weight in zip(found.wishes.conditions(), values, strict=True):
-        if index >= 0 and abs(weight) > _COUNTS:
+    values = found.minimum.values
+    missed = [*(values.below > _MISSED), *(abs(values.zero) > _MISSED)]
+    weights = [*known.below, *known.zero]
+    for (index, key), weight, off in zip(found.wishes.conditions(), weights, missed, strict=True):
+        # what is missed is what the others stop
+        if index >= 0 and abs(weight) > _COUNTS and not off:
             lines.append(_of_target(design.targets[index], key, float(weight), gains))
     return sorted(lines, key=lambda line: -abs(line.weight))
 
@@ -126,5 +131,5 @@ def missed_targets(design: Design, found: Found) -> Iterator[tuple[Quantity[Any]
     for target, value in zip(design.targets, found.quantities(), strict=False):
         low, high = target.bounds()
         off = max(0.0, value - high, low - value)
-        if off > 1e-3 * target.scale:
+        if off > _MISSED * target.scale:
             yield target, value

@@ -71,8 +71,10 @@ def outcome(
 ) -> Outcome:
     """Judge an answer."""
     if done is None:
-        status = INTERRUPTED if interrupted else FAILED
-        return Outcome(design, status, _no_case(tries), None, (), (), (), None, tries, times)
+        status, why = FAILED, _no_case(tries)
+        if interrupted:
+            status, why = INTERRUPTED, "interrupted before the first search had ended"
+        return Outcome(design, status, why, None, (), (), (), None, tries, times)
     found = told(design, done)
     held = limits(design, done.found)
     status, reason = _judged(design, done, found, held)
@@ -109,8 +111,6 @@ def _judged(
 def _no_case(tries: Tries) -> str:
     """Why nothing is found, by the commonest reason."""
     reasons = [each.reason for each in tries.all if each.reason]
-    if not reasons:
-        return "no case was tried"
     common = max(dict.fromkeys(reasons), key=reasons.count)
     return f"none of {len(tries.all)} cases has an answer; most often: {common}"
 
@@ -136,7 +136,8 @@ def answer(made: Outcome) -> Answer:
 
 def _sentence(made: Outcome) -> str:
     if made.status != MET:
-        return f"{made.status}: {made.reason.split('; what stops it')[0]}"
+        text = made.reason.split("; what stops it")[0]
+        return f"{text[0].upper()}{text[1:]}."
     assert made.done is not None
     finest = next((n for n in (BODY, CELL) if made.done.last(n) is not None), None)
     if finest is None:

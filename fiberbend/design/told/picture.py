@@ -142,10 +142,11 @@ def _front(made: Outcome) -> Any:
     across, up = (f"{goal.quantity.words()} ({goal.quantity.unit})" for goal in (first, second))
     page, axes = new_axes(PAGE, design.title, None, across, up)
     scale = PAGE.scale
-    points = []
+    points: list[tuple[float, float]] = []
     for found in made.front.found:
         values = found.quantities()[count:]
-        points.append(tuple(g.quantity.plain(v) for g, v in zip(design.goals, values, strict=True)))
+        one, other = (g.quantity.plain(v) for g, v in zip(design.goals, values, strict=True))
+        points.append((one, other))
     axes.plot(
         *zip(*points, strict=True),
         "o-",
@@ -159,8 +160,8 @@ def _front(made: Outcome) -> Any:
     fit(axes, PAGE)
     free = Room(axes, PAGE)
     legend(axes, PAGE, free)
-    for found, point in zip(made.front.found, points, strict=True):
-        free.write(_fields(made, found), *point, size=9)
+    for found, (x, y) in zip(made.front.found, points, strict=True):
+        free.write(_fields(made, found), x, y, size=9)
     return page
 
 

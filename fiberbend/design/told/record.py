@@ -157,7 +157,7 @@ def _column(quantity: Quantity[Any]) -> str:
 
 def _tries(made: Outcome) -> Iterator[list[Any]]:
     quantities = made.design.quantities
-    fields = [each.path for each in (*made.design.fields.choices, *made.design.fields.varied)]
+    fields = [path for path, _ in made.tries.pairs(*made.tries.middle())]
     yield ["try", *fields, *map(_column, quantities), "reason"]
     for each in made.tries.all:
         pairs = [value for _, value in made.tries.pairs(each.chosen, each.x)]
