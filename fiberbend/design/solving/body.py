@@ -136,7 +136,10 @@ def _row(rows: Sequence[col.Row], column: str, goal: float) -> col.Row | None:
 
 
 def _readings(row: col.Row, rest: col.Row, zones: int) -> tuple[Reading, ...]:
-    """What is read of a body; sums of all zones stand in the first."""
+    """What is read of a body; sums of all zones stand in the first.
+
+    It tells the stretch of its whole centre-line: every zone has that.
+    """
     whole = Reading(
         pressure=1e-3 * row[col.PRESSURE],
         angle=math.radians(row[col.ANGLE]),
@@ -154,7 +157,6 @@ def _readings(row: col.Row, rest: col.Row, zones: int) -> tuple[Reading, ...]:
     parts = [
         whole._replace(
             angle=math.radians(row[col.zone(number, "angle_deg")]),
-            stretch=row[col.zone(number, "stretch")],
             volume=whole.volume if number == 0 else 0.0,
             rest=whole.rest if number == 0 else 0.0,
             work=whole.work if number == 0 else 0.0,

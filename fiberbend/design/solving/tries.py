@@ -212,7 +212,7 @@ class Tries:
             except CaseError:
                 continue
             change = sign * _STEP * (field.high - field.low)
-            states = here.states if own is None else _moved(here.states, own[field.path], change)
+            states = here.states if own is None else moved(here.states, own[field.path], change)
             sides.append((sign * _STEP, np.array(self._read(case, states))))
         if not sides:
             return None
@@ -238,7 +238,7 @@ class Tries:
         return None
 
 
-def _moved(states: States, slopes: States, change: float) -> States:
+def moved(states: States, slopes: States, change: float) -> States:
     """States after a change of one field, to first order."""
     return {
         state: tuple(

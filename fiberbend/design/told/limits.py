@@ -14,6 +14,8 @@ from fiberbend.design.search.search import Found
 
 _COUNTS = 1e-4
 """A multiplier, of functions of order one over ranges of one, that is more than round-off."""
+_OF_MOST = 0.01
+"""Part of the strongest below which a limit is not told."""
 _MISSED = 1e-3
 """Part of a target by which it is missed."""
 _PART = 0.01
@@ -56,7 +58,9 @@ def limits(design: Design, found: Found) -> list[Limit]:
         # what is missed is what the others stop
         if index >= 0 and abs(weight) > _COUNTS and not off:
             lines.append(_of_target(design.targets[index], key, float(weight), gains))
-    return sorted(lines, key=lambda line: -abs(line.weight))
+    most = max((abs(line.weight) for line in lines), default=0.0)
+    told = [line for line in lines if abs(line.weight) > _OF_MOST * most]
+    return sorted(told, key=lambda line: -abs(line.weight))
 
 
 def _of_end(field: Varied, weight: float, end: float, side: str, way: str, gains: _Gains) -> Limit:

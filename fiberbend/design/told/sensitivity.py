@@ -9,11 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from fiberbend.case import convert
+from fiberbend.case.case import Case
 from fiberbend.design.fields import Varied
 from fiberbend.design.quantities.seen import Seen
 from fiberbend.design.reading import Design
 from fiberbend.design.search.search import Found
 from fiberbend.design.solving.models import UnsolvedError
+from fiberbend.design.solving.tries import moved
 from fiberbend.reader.reader import parse_case
 from fiberbend.schema.paths import put
 from fiberbend.schema.problems import CaseError
@@ -72,7 +75,28 @@ def sensitivities(design: Design, found: Found) -> list[Row]:
         column = None if beside is None else _beside(design, found, beside, parse_of(text))
         if beside is not None and column is not None and np.any(np.abs(column) > 0):
             rows.append(_row(design, found, beside, names[path], text, column, varied=False))
-    return rows
+    return [*rows, *_of_laws(design, found, case)]
+
+
+def _of_laws(design: Design, found: Found, case: Case) -> Iterator[Row]:
+    """Coefficients of materials that are given by a name, as far as the model tells."""
+    tries = found.wishes.tries
+    here = tries.at(found.chosen, found.x)
+    for part, spec in dict(case.materials).items():
+        known = {} if spec is None or spec.name is None else convert.material(spec).parameters
+        for key, value in known.items():
+            path = f"materials.{part}.{key}"
+            slopes = tries.model.slopes(case, tries.wanted, [path]) if value else None
+            if slopes is None:
+                continue
+            sides = []
+            for sign in (1.0, -1.0):
+                change = sign * _SMALL * abs(value)
+                seen = Seen(case, moved(here.states, slopes[path], change))
+                sides.append(np.array([q.read(seen) for q in design.quantities]))
+            column = (sides[0] - sides[1]) / (2 * _SMALL * abs(value))
+            field = Varied(path, f"{part} {key}", value, 2 * value)
+            yield _row(design, found, field, field.label, value, column, varied=False)
 
 
 def _row(
