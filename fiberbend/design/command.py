@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from fiberbend.design.told.sensitivity import Row
 
 Say = Callable[[str], None]
+_CRASHED = ("error.log", "error.rank*.log")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -193,10 +194,12 @@ def _held(path: Path, overwrite: bool) -> Iterator[RunFolder]:
 
     try:
         names = remains.entries(path) if path.exists() else []
-        if names and not overwrite:
+        # of a design that has crashed before it wrote anything
+        crashed = all(remains.matches(name, _CRASHED) for name in names)
+        if names and not overwrite and not crashed:
             text = "exists, expected a new folder, or --overwrite"
             raise CaseError([Problem(str(path), text)])
-        if names and DESIGN not in names:
+        if not crashed and DESIGN not in names:
             text = "contains no design, expected the folder of a design"
             raise CaseError([Problem(str(path), text)])
         path.mkdir(parents=True, exist_ok=True)

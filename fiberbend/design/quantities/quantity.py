@@ -19,7 +19,8 @@ V = TypeVar("V")
 
 WITHIN = 0.02
 """Part of a value within which it is met, where a file does not say."""
-_SIGNS = {"deg": "°"}
+_SIGNS = {"deg": "°", "N*mm": " N mm"}
+"""Units as a person writes them, with what stands before."""
 
 
 class Quantity(Spec, Generic[V]):

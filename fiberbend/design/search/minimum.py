@@ -2,9 +2,10 @@
 
 Fletcher's Sℓ1QP (Practical Methods of Optimization, 2nd ed. 1987, 14.3): a step d minimises
 
-    gᵀd + ½ dᵀB d + ν Σ max(0, c + A d) + ν Σ |h + C d|    for  |d| ≤ Δ, low ≤ x + d ≤ high
+    gᵀd + ½ dᵀB d + ν w Σ max(0, c + A d) + ν Σ |h + C d|    for  |d| ≤ Δ, low ≤ x + d ≤ high
 
-and is taken where f + ν Σ max(0, c) + ν Σ |h| falls. The subproblem always has a solution, so that
+and is taken where f + ν w Σ max(0, c) + ν Σ |h| falls. Bounds c ≤ 0 weigh w times as much as aims
+h = 0: where not all can be met, aims are missed. The subproblem always has a solution, so that
 a target out of reach ends at the least miss; a case that cannot be solved halves Δ, which a line
 search along an undefined function could not. B is that of BFGS, damped by Powell. scipy's SLSQP
 solves the subproblem, which costs no case.
@@ -23,6 +24,8 @@ Floats = Any
 
 _FIRST, _LEAST = 0.2, 2e-4
 """Radius Δ of the region of trust: at first, and where it gives up; variables run from 0 to 1."""
+BOUNDS = 30.0
+"""w: so many times what is missed of an aim counts what is missed of a bound."""
 _GROW, _SHRINK = 2.0, 0.35
 _MOST_STEPS = 40
 _FALLS = 1e-5
@@ -47,8 +50,8 @@ class Values:
 
     @property
     def miss(self) -> float:
-        """Σ max(0, c) + Σ |h|."""
-        return float(np.maximum(self.below, 0).sum() + np.abs(self.zero).sum())
+        """w Σ max(0, c) + Σ |h|."""
+        return float(BOUNDS * np.maximum(self.below, 0).sum() + np.abs(self.zero).sum())
 
 
 @dataclasses.dataclass(frozen=True)
@@ -207,7 +210,7 @@ def _step(
         ]
     )
     right = np.concatenate([-values.below, -values.zero, values.zero])
-    weights = np.concatenate([np.zeros(n), np.full(m + k, penalty)])
+    weights = penalty * np.concatenate([np.zeros(n), np.full(m, BOUNDS), np.ones(k)])
 
     def merit(z: Floats) -> float:
         d = z[:n]
@@ -292,7 +295,7 @@ def lean(
     eye = np.eye(n)
     at_low, at_high = x <= _ACTIVE, x >= 1 - _ACTIVE
     missed, off = values.below > _ACTIVE, np.abs(values.zero) > _ACTIVE
-    below = np.where(missed, penalty, 0.0)
+    below = np.where(missed, BOUNDS * penalty, 0.0)
     zero = np.where(off, penalty * np.sign(values.zero), 0.0)
     pull = below @ slopes.below + zero @ slopes.zero + (slopes.goal if goal else np.zeros(n))
     active, held = np.abs(values.below) <= _ACTIVE, ~off

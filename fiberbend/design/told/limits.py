@@ -10,6 +10,7 @@ from typing import Any
 from fiberbend.design.fields import Varied
 from fiberbend.design.quantities.quantity import Quantity
 from fiberbend.design.reading import Design
+from fiberbend.design.search.minimum import BOUNDS
 from fiberbend.design.search.search import Found
 
 _COUNTS = 1e-4
@@ -127,7 +128,9 @@ class _Gains:
         if len(missed) != 1:
             return "miss less"
         ((target, _),) = missed
-        return f"bring {target.words()} {target.shown(amount * target.scale)} nearer"
+        low, high = target.bounds()
+        size = target.scale if low == high else target.scale / BOUNDS
+        return f"bring {target.words()} {target.shown(amount * size)} nearer"
 
 
 def missed_targets(design: Design, found: Found) -> Iterator[tuple[Quantity[Any], float]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -22,6 +23,7 @@ FRONT = "design_front.png"
 PAGE = Style(height=150.0)
 _PARTS = (0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0)
 _COLORS = (BLUE, "#e69f00", "#009e73", "#7a4a8c")
+_UNITS = {"deg": "°", "N*mm": "N mm"}
 _MARKS = {CELL: ("s", 9.0), BODY: ("o", 9.0)}
 _NAMES = {SECTION: "section", CELL: "cell", BODY: "body"}
 
@@ -56,7 +58,7 @@ def _groups(made: Outcome) -> dict[str, list[Told]]:
 def _curves(made: Outcome, kind: str, group: Sequence[Told]) -> Any | None:
     """Quantities over pressure by the section, and at their targets by every model."""
     unit = KINDS[kind].shown
-    up = f"{KINDS[kind].name.split(' ', 1)[1]} ({'°' if unit == 'deg' else unit})"
+    up = f"{KINDS[kind].name.split(' ', 1)[1]} ({_UNITS.get(unit, unit)})"
     reason = None if not made.reason else made.reason.split(";")[0]
     page, axes = new_axes(PAGE, made.design.title, None, "pressure P (kPa)", up)
     if reason:
@@ -98,24 +100,36 @@ def _curves(made: Outcome, kind: str, group: Sequence[Told]) -> Any | None:
                     label=label,
                     zorder=4,
                 )
-        for bound in dict.fromkeys(each.quantity.bounds()):
-            if abs(bound) != float("inf"):
-                label = None if "wanted" in drawn else "wanted"
-                drawn.add("wanted")
-                axes.plot(
-                    [at],
-                    [each.quantity.plain(bound)],
-                    "+",
-                    markersize=15 * scale,
-                    markeredgewidth=2 * scale,
-                    color=RED,
-                    label=label,
-                    zorder=5,
-                )
+        for mark, name, bound in _wanted(each.quantity):
+            label = None if name in drawn else name
+            drawn.add(name)
+            axes.plot(
+                [at],
+                [each.quantity.plain(bound)],
+                mark,
+                markersize=13 * scale,
+                markeredgewidth=2 * scale,
+                markerfacecolor="none",
+                color=RED,
+                label=label,
+                zorder=5,
+            )
     axes.margins(0.06)
     fit(axes, PAGE)
     legend(axes, PAGE, Room(axes, PAGE))
     return page
+
+
+def _wanted(quantity: Quantity[Any]) -> Iterator[tuple[str, str, float]]:
+    """Mark, name in the legend, and value of what is wanted of a quantity."""
+    low, high = quantity.bounds()
+    if low == high:
+        yield "+", "wanted", low
+        return
+    if math.isfinite(high):
+        yield "v", "at most", high
+    if math.isfinite(low):
+        yield "^", "at least", low
 
 
 def _curve(made: Outcome, quantity: Quantity[Any]) -> Iterator[tuple[float, float]]:
@@ -139,7 +153,10 @@ def _front(made: Outcome) -> Any:
     assert made.front is not None
     design, count = made.design, len(made.design.targets)
     first, second = design.goals
-    across, up = (f"{goal.quantity.words()} ({goal.quantity.unit})" for goal in (first, second))
+    across, up = (
+        f"{goal.quantity.words()} ({_UNITS.get(goal.quantity.unit, goal.quantity.unit)})"
+        for goal in (first, second)
+    )
     page, axes = new_axes(PAGE, design.title, None, across, up)
     scale = PAGE.scale
     points: list[tuple[float, float]] = []
