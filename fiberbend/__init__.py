@@ -28,11 +28,13 @@ _PLACES = {
     "plan": "fiberbend.api.calls",
     "validate": "fiberbend.api.calls",
     "sweep": "fiberbend.api.calls",
+    "trial": "fiberbend.api.trial",
     "Case": "fiberbend.case.case",
     "CaseError": "fiberbend.schema.problems",
     "Result": "fiberbend.api.result",
     "Style": "fiberbend.drawing.style",
     "Sweep": "fiberbend.api.sweep",
+    "Trial": "fiberbend.api.trial",
     "__version__": "fiberbend.version",
 }
 """Public names, and the modules that are imported when they are asked for."""
@@ -46,6 +48,8 @@ if TYPE_CHECKING:
     from fiberbend.api.calls import validate as validate
     from fiberbend.api.result import Result as Result
     from fiberbend.api.sweep import Sweep as Sweep
+    from fiberbend.api.trial import Trial as Trial
+    from fiberbend.api.trial import trial as trial
     from fiberbend.case.case import Case as Case
     from fiberbend.drawing.style import Style as Style
     from fiberbend.schema.problems import CaseError as CaseError
@@ -57,17 +61,19 @@ __all__ = [
     "Result",
     "Style",
     "Sweep",
+    "Trial",
     "__version__",
     "load",
     "plan",
     "run",
     "sweep",
+    "trial",
     "validate",
 ]
 
 
 class _Package(type(sys)):  # type: ignore[misc]
-    """This module, in which the folders plan/ and sweep/ do not hide the functions."""
+    """This module, in which the folders plan/, sweep/ and trial/ do not hide the functions."""
 
     def __setattr__(self, name: str, value: object) -> None:
         if not (name in __all__ and isinstance(value, type(sys))):

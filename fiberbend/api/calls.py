@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fiberbend.models.result import RunResult
     from fiberbend.plan.plan import Plan
 
-_TURN = threading.RLock()
+TURN = threading.RLock()
 """Held by the call that solves: MPI and PETSc serve one at a time, threads take turns."""
 AnyCase = Case | Mapping[str, Any] | Path | str
 """A checked case, a mapping as its YAML gives it, or the path of a case file."""
@@ -76,7 +76,7 @@ def run(
         raise CaseError([Problem("run", "overwrite and resume together, expected one of them")])
     if resume and out is None:
         raise CaseError([Problem("out", "nothing, expected the folder of a run to resume")])
-    with _TURN, contextlib.closing(Progress(quiet=quiet)) as progress:
+    with TURN, contextlib.closing(Progress(quiet=quiet)) as progress:
         launch.start_mpi()
         from fiberbend.running.runner import run_case
 
@@ -161,7 +161,7 @@ def sweep(
     given = jobs is not None
     if given and (isinstance(jobs, bool) or not isinstance(jobs, int) or jobs < 1):
         raise CaseError([Problem("jobs", f"{found(jobs)}, expected a whole number from 1 on")])
-    with _TURN, _as_file(file) as path:
+    with TURN, _as_file(file) as path:
         code = run_sweep(
             path, Path(out), list(settings), jobs, retry, force, say=_silent if quiet else print
         )

@@ -61,7 +61,7 @@ class Touched:
                 goal: Tangent(small, state, MAKE[goal.kind][1])
                 for goal, state in way.states.items()
             }
-            self._touched.append(_States(way.case, small, tangents, points))
+            self._touched.append(_States(way.ready.case, small, tangents, points))
 
     def along(self, field: str) -> dict[Goal, Point]:
         """By state, the derivative of everything that is told of it.

@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 
-from fiberbend.calibration.calibrate import calibrate, waits, with_bulging
 from fiberbend.case.case import Case
 from fiberbend.columns import UNIFORM
 from fiberbend.models.choice import choose_model
 from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.trial.calibrations import Calibrations
+from fiberbend.trial.fields import number
 from fiberbend.trial.slopes import Touched
 from fiberbend.trial.wanted import Answer, Point, Slopes, Wanted
-from fiberbend.trial.ways import MAKE, Goal, Ways
+from fiberbend.trial.ways import KEPT, MAKE, Goal, Way, Ways
 
 
 class Trials:
     """Solves cases one after another, and keeps scenes that serve again.
 
     An answer is that of a case alone, to the tolerance of the solver.
+
+    Args:
+        calibration_error: percent of pressure and moment by which a winding that waits for its
+            calibration may be off where it takes over that of a like case; 0: each has its own,
+            which takes about two seconds unless it is kept.
     """
 
-    def __init__(self) -> None:
-        self._ways = Ways()
+    def __init__(self, calibration_error: float = 0.0) -> None:
+        self._ways = Ways(Calibrations(calibration_error))
 
     def solve(self, case: Case, wanted: Wanted) -> Answer:
         """Solve a case of model section or cell at the states that are wanted, on this rank alone.
@@ -37,12 +43,10 @@ class Trials:
         Raises:
             CaseError: the case is none of uniform bending, or its winding cannot be calibrated.
         """
-        found: dict[Goal, Point] = {}
-        reasons: list[str] = []
-        for way in self._ways.to(_ready(case), wanted):
-            found |= way.points()
-            reasons.append(way.reason)
-        return _answer(wanted, found, reasons)
+        found = _Found(wanted)
+        for way in self._to(case, wanted):
+            found.add(way, way.points())
+        return found.answer(found.points)
 
     def sensitivities(self, case: Case, wanted: Wanted, fields: Iterable[str]) -> Slopes:
         """What a case answers, and its derivatives with respect to numbers of the case.
@@ -59,39 +63,55 @@ class Trials:
         Raises:
             CaseError: the same; or a path leads to no number.
         """
-        found: dict[Goal, Point] = {}
-        reasons: list[str] = []
-        touched = Touched()
-        for way in self._ways.to(_ready(case), wanted):
+        for field in (fields := tuple(dict.fromkeys(fields))):
+            number(case, field)
+        found, touched = _Found(wanted), Touched()
+        for way in self._to(case, wanted):
             points = way.points()
+            found.add(way, points)
             touched.touch(way, points)
-            found |= points
-            reasons.append(way.reason)
-        by_field = {
-            field: _answer(wanted, touched.along(field), reasons) for field in dict.fromkeys(fields)
-        }
-        return Slopes(_answer(wanted, found, reasons), by_field)
+        by_field = {field: found.answer(touched.along(field)) for field in fields}
+        return Slopes(found.answer(found.points), by_field)
+
+    def _to(self, case: Case, wanted: Wanted) -> Iterator[Way]:
+        model, _ = choose_model(case)
+        if UNIFORM not in model.fills or case.zones is not None:
+            where = "model" if case.zones is None else "zones"
+            text = f"{model.name}, expected section or cell without zones"
+            raise CaseError([Problem(where, text)])
+        return self._ways.to(case, wanted)
 
 
-def _answer(wanted: Wanted, found: Mapping[Goal, Point], reasons: Sequence[str]) -> Answer:
-    told = [Goal(kind, value) for kind in MAKE for value in getattr(wanted, kind)]
-    points = [(goal.kind == "straight", found[goal]) for goal in told if goal in found]
-    reason = "; ".join(dict.fromkeys(text for text in reasons if text))
-    return Answer(
-        free=tuple(point for kept, point in points if not kept),
-        straight=tuple(point for kept, point in points if kept),
-        converged=not reason,
-        reason=reason,
-    )
+class _Found:
+    """What several ways have found of what is wanted."""
 
+    def __init__(self, wanted: Wanted) -> None:
+        self._goals = [Goal(kind, value) for kind in MAKE for value in getattr(wanted, kind)]
+        self._ways: list[Way] = []
+        self.points: dict[Goal, Point] = {}
 
-def _ready(case: Case) -> Case:
-    """A case of uniform bending whose winding waits for nothing."""
-    model, _ = choose_model(case)
-    if UNIFORM not in model.fills or case.zones is not None:
-        where = "model" if case.zones is None else "zones"
-        raise CaseError([Problem(where, f"{model.name}, expected section or cell without zones")])
-    return with_bulging(case, calibrate(case).found.bulging()) if waits(case) else case
+    def add(self, way: Way, points: Mapping[Goal, Point]) -> None:
+        """Take in a way, and what is told of its states."""
+        self._ways.append(way)
+        self.points |= points
+
+    def answer(self, points: Mapping[Goal, Point]) -> Answer:
+        """The answer in the order in which it was asked for.
+
+        Args:
+            points: what is to be told of the states.
+        """
+        reason = "; ".join(dict.fromkeys(way.reason for way in self._ways if way.reason))
+        told = [(goal.kind, points[goal]) for goal in self._goals if goal in points]
+        remarks = (line for way in self._ways for line in way.ready.remarks)
+        return Answer(
+            free=tuple(point for kind, point in told if kind != KEPT),
+            straight=tuple(point for kind, point in told if kind == KEPT),
+            converged=not reason,
+            reason=reason,
+            remarks=tuple(dict.fromkeys(remarks)),
+            calibration_error=max((way.ready.error for way in self._ways), default=0.0),
+        )
 
 
 _TRIALS = Trials()

@@ -70,12 +70,17 @@ class Answer:
         straight: by the wanted pressures, likewise.
         converged: all were found.
         reason: why not; empty where they were.
+        remarks: what casts doubt on the calibration of its winding, a line each.
+        calibration_error: percent of pressure and moment by which a calibration that was taken over
+            from a like case may be off; 0 of its own.
     """
 
     free: tuple[Point, ...] = ()
     straight: tuple[Point, ...] = ()
     converged: bool = True
     reason: str = ""
+    remarks: tuple[str, ...] = ()
+    calibration_error: float = 0.0
 
 
 @dataclasses.dataclass(frozen=True)

@@ -10,6 +10,7 @@ from fem.march.records import State
 from fiberbend.case.case import Case
 from fiberbend.models.choice import problems
 from fiberbend.trial import loads
+from fiberbend.trial.calibrations import Calibrations, Ready
 from fiberbend.trial.reading import Reader
 from fiberbend.trial.wanted import Point, Wanted
 from fiberbend.uniform.small import Small
@@ -21,16 +22,20 @@ STATES = 64
 
 
 class Goal(NamedTuple):
-    """A state by how it is loaded, 'angles', 'pressures' or 'straight', and by its value."""
+    """A state by how it is loaded, as `Wanted` names it, and by its value."""
 
     kind: str
     value: float
 
 
+_SOME = 1e-3
+"""A load that is not put on, rad or MPa."""
+KEPT = "straight"
+"""Kind of the states that are kept straight."""
 MAKE: dict[str, tuple[Callable[[Case, tuple[float, ...]], Case], str]] = {
     "angles": (loads.bent, "control"),
     "pressures": (loads.inflated, "value"),
-    "straight": (loads.straight, "value"),
+    KEPT: (loads.straight, "value"),
 }
 """By the kind of a state, the case that has it and what is given there."""
 
@@ -40,13 +45,13 @@ class Way:
     """States that one march has found; read before another begins.
 
     Attributes:
-        case: under the load of the march.
+        ready: the case under the load of the march.
         small: its scene; None where the case has no such states.
         states: by goal, from rest on.
         reason: why not all that are wanted are there; empty where they are.
     """
 
-    case: Case
+    ready: Ready
     small: Small | None
     states: dict[Goal, State]
     reason: str = ""
@@ -78,27 +83,48 @@ class _Scene:
 
 
 class Ways:
-    """Finds states, and keeps what is dear: compiled scenes, and states of the last cases."""
+    """Finds states, and keeps what is dear: compiled scenes, and states of the last cases.
 
-    def __init__(self) -> None:
+    Args:
+        calibrations: what gives a winding the numbers that it waits for.
+    """
+
+    def __init__(self, calibrations: Calibrations) -> None:
+        self._calibrations = calibrations
         self._scenes: list[_Scene] = []
 
     def to(self, case: Case, wanted: Wanted) -> Iterator[Way]:
         """States of one kind and sign after another.
 
         Args:
-            case: a case of uniform bending; its winding is calibrated.
+            case: a case of uniform bending.
             wanted: the states.
+
+        Raises:
+            CaseError: its winding cannot be calibrated.
         """
         for kind in MAKE:
-            for values in by_sign(getattr(wanted, kind)):
-                yield self._way(case, kind, values)
+            values = getattr(wanted, kind)
+            if 0 in values:
+                yield self._at_rest(case, kind)
+            for signed in by_sign(values):
+                yield self._way(case, kind, signed)
+
+    def _at_rest(self, case: Case, kind: str) -> Way:
+        """The state without a load."""
+        ready = self._calibrations.ready(MAKE[kind][0](case, (_SOME,)))
+        for path, text in problems(ready.case):
+            return Way(ready, None, {}, f"{path}: {text}")
+        small = Small(ready.case, *(scene.small for scene in self._scenes))
+        self._scene(small)
+        return Way(ready, small, {Goal(kind, 0.0): small.rest})
 
     def _way(self, case: Case, kind: str, values: tuple[float, ...]) -> Way:
         make, given = MAKE[kind]
-        loaded = make(case, values)
+        ready = self._calibrations.ready(make(case, values))
+        loaded = ready.case
         for path, text in problems(loaded):
-            return Way(loaded, None, {}, f"{path}: {text}")
+            return Way(ready, None, {}, f"{path}: {text}")
         small = Small(loaded, *(scene.small for scene in self._scenes))
         goals = [Goal(kind, value) for value in sorted(values, key=abs)]
         scene, reason = self._scene(small), ""
@@ -111,9 +137,9 @@ class Ways:
             if report.critical:
                 # beside it another branch may be the one to which a way leads
                 scene.found.clear()
-                return Way(loaded, small, states, reason)
+                return Way(ready, small, states, reason)
         scene.keep(states)
-        return Way(loaded, small, states, reason)
+        return Way(ready, small, states, reason)
 
     def _scene(self, small: Small) -> _Scene:
         """The scene of a case, now the first of those that are kept."""

@@ -12,7 +12,7 @@ import pytest
 import fiberbend
 from tests.conftest import ROOT
 
-FUNCTIONS = ("load", "plan", "run", "sweep", "validate")
+FUNCTIONS = ("load", "plan", "run", "sweep", "trial", "validate")
 
 
 def test_names() -> None:

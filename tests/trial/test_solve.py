@@ -6,7 +6,9 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 import pytest
+from scipy.integrate import simpson
 
 from fiberbend import columns as col
 from fiberbend.columns import Row
@@ -115,3 +117,27 @@ def test_what_is_beyond_reach_is_said() -> None:
     assert not answer.converged
     assert answer.reason
     assert [point.angle for point in answer.free] == pytest.approx(radians(40), rel=1e-9)
+
+
+def test_at_rest() -> None:
+    """Zero is asked for like any other value."""
+    case = checked(under(BENT["hemicircle"], angle="100 deg"))
+    answer = solve(case, Wanted((0.0, 0.5), (0.0,), (0.0,)))
+    assert answer.converged
+    for point in (answer.free[0], answer.free[2], answer.straight[0]):
+        assert (point.pressure, point.angle, point.stretch) == (0.0, 0.0, 1.0)
+        assert point.volume == point.volume_at_rest
+        assert point.work == pytest.approx(0.0, abs=1e-12)
+        assert point.strain == pytest.approx(0.0, abs=1e-12)
+
+
+def test_work_is_that_of_the_pressure() -> None:
+    """∫ p dV by Simpson's rule through 33 states; of what is kept straight too."""
+    case = checked(under(BENT["hemicircle"], angle="100 deg"))
+    parts = [i / 32 for i in range(1, 33)]
+    answer = solve(case, Wanted(tuple(1.5 * x for x in parts), (), tuple(0.05 * x for x in parts)))
+    for points in (answer.free, answer.straight):
+        p = np.array([0.0, *(point.pressure for point in points)])
+        v = np.array([points[0].volume_at_rest, *(point.volume for point in points)])
+        work = simpson(p * np.gradient(v, edge_order=2), dx=1.0)
+        assert points[-1].work == pytest.approx(work, rel=2e-4)
