@@ -40,6 +40,8 @@ from fiberbend.sweep.fields import (
 from fiberbend.sweep.file import ReportSpec, SweepFile, contradictions
 
 _REACH = "; the pressure of the base case has to reach it, effects: pressure: {to: …}"
+_DESIGN = frozenset({"targets", "goals"})
+"""Keys of a design file."""
 _OWN_FILES = ("pictures", "fields", "report")
 """Output that a point leaves where the base case or the sweep file asks for it by name."""
 
@@ -131,6 +133,8 @@ def read_sweep(path: Path | str, settings: Iterable[str] = ()) -> Sweep:
     source = read_yaml(path)
     if "case" not in source.data and "actuator" in source.data:
         raise CaseError([Problem(str(path), f"this is a case: fiberbend run {path}")])
+    if not _DESIGN.isdisjoint(source.data):
+        raise CaseError([Problem(str(path), f"this is a design: fiberbend design {path}")])
     with line_numbers(source.lines):
         return _checked(source, path, list(settings))
 

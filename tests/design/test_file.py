@@ -7,8 +7,13 @@ from typing import Any
 
 import pytest
 
+from fiberbend.design.reading import read_design
+from fiberbend.reader.reader import read_case
 from fiberbend.schema.problems import CaseError
-from tests.design.made_up import design
+from fiberbend.sweep.points import read_sweep
+from tests.design.made_up import ROOT, SECTION, design
+
+DESIGNS = sorted((ROOT / "cases" / "designs").glob("*.yaml"))
 
 VARY = {"actuator.wall": {"from": "1 mm", "to": "3 mm"}}
 TARGETS = [{"angle": {"at": "60 kPa", "is": "90 deg"}}]
@@ -105,3 +110,19 @@ def test_a_quantity_that_the_case_does_not_have(tmp_path: Path) -> None:
     loads = {"effects.0": {"pressure": {"to": "60 kPa"}}, "effects.2": {"straight": {}}}
     straight = {"set": {**loads, "output": {}, "compare": []}}
     assert any("keeps it straight" in text for text in problems(tmp_path, **straight).values())
+
+
+def test_other_commands_know_a_design(tmp_path: Path) -> None:
+    made = str(ROOT / "cases" / "designs" / "impossible.yaml")
+    for read in (read_case, read_sweep):
+        with pytest.raises(CaseError, match="this is a design: fiberbend design"):
+            read(made)
+    with pytest.raises(CaseError, match="this is a case: fiberbend run"):
+        read_design(SECTION)
+    with pytest.raises(CaseError, match="this is a sweep: fiberbend sweep"):
+        read_design(ROOT / "cases" / "sweeps" / "table1.yaml")
+
+
+@pytest.mark.parametrize("path", DESIGNS, ids=lambda path: path.stem)
+def test_example_designs_are_valid(path: Path) -> None:
+    assert read_design(path).quantities

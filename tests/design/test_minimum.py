@@ -54,15 +54,14 @@ def test_an_inner_minimum() -> None:
 
 
 def test_multipliers_are_the_slopes_of_the_minimum_by_its_conditions() -> None:
-    def at(radius: float) -> Any:
-        below = lambda x: [x[0] ** 2 + x[1] ** 2 - radius]  # noqa: E731
-        return descend(Known(lambda x: -x[0] - 2 * x[1], below), [0.1, 0.1])
-
-    found, wider = at(0.9), at(0.909)
-    np.testing.assert_allclose(found.x, np.sqrt(0.9 / 5) * np.array([1, 2]), atol=3e-3)
+    functions = Known(lambda x: -x[0] - 2 * x[1], lambda x: [x[0] ** 2 + x[1] ** 2 - 0.9])
+    found = descend(functions, [0.1, 0.1])
+    assert found is not None
+    assert found.multipliers is not None
+    # the minimum is −√(5 R) where x² + y² ≤ R
     assert found.values.goal == pytest.approx(-np.sqrt(4.5), rel=1e-5)
-    slope = (found.values.goal - wider.values.goal) / 0.009
-    assert found.multipliers.below[0] == pytest.approx(slope, rel=0.01)
+    np.testing.assert_allclose(found.x, np.sqrt(0.9 / 5) * np.array([1, 2]), atol=3e-3)
+    assert found.multipliers.below[0] == pytest.approx(np.sqrt(5 / 0.9) / 2, rel=1e-3)
     assert not found.multipliers.low.any()
     assert not found.multipliers.high.any()
 
