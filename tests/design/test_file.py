@@ -61,7 +61,7 @@ def test_goals_have_a_side_and_no_bounds(tmp_path: Path) -> None:
     wrong = problems(tmp_path, goals=goals)
     assert "expected one of minimise and maximise" in wrong["goals.0"]
     assert "expected it under targets" in wrong["goals.1.minimise.rubber.most"]
-    same = [{"minimise": {"rubber": {}}}, {"maximise": {"rubber": {}}}]
+    same: list[dict[str, Any]] = [{"minimise": {"rubber": {}}}, {"maximise": {"rubber": {}}}]
     assert "expected another" in problems(tmp_path, goals=same)["goals.1"]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,7 +33,7 @@ def test_one_number_is_what_a_scan_finds(tmp_path: Path) -> None:
 
 
 def test_the_least_of_a_goal_lies_at_an_end_that_is_told(tmp_path: Path) -> None:
-    goals = [{"minimise": {"rubber": {}}}]
+    goals: list[dict[str, Any]] = [{"minimise": {"rubber": {}}}]
     made = design(tmp_path, vary=RADIUS | WALL, targets=[ANGLE], goals=goals)
     tried = search(made)
     found = tried.whole(none(made), 0)
@@ -121,7 +122,7 @@ def test_cases_without_states_are_no_answer(tmp_path: Path) -> None:
 
 
 def test_dimensions_that_do_not_fit_are_no_answer(tmp_path: Path) -> None:
-    goals = [{"minimise": {"rubber": {}}}]
+    goals: list[dict[str, Any]] = [{"minimise": {"rubber": {}}}]
     pitch = {"effects.1.winding.pitch": {"from": "0.01 mm", "to": "4 mm"}}
     made = design(tmp_path, vary=pitch | WALL, targets=[], goals=goals)
     tried = search(made)

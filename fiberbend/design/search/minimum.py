@@ -14,6 +14,7 @@ solves the subproblem, which costs no case.
 from __future__ import annotations
 
 import dataclasses
+import warnings
 from collections.abc import Callable
 from typing import Any, Protocol
 
@@ -221,15 +222,20 @@ def _step(
         found[:n] += rises + curved @ z[:n]
         return found
 
-    solved = minimize(
-        merit,
-        first,
-        jac=rise,
-        method="SLSQP",
-        bounds=[*zip(low, high, strict=True), *[(0.0, None)] * (m + k)],
-        constraints=[{"type": "ineq", "fun": lambda z: rows @ z + right, "jac": lambda z: rows}],
-        options={"ftol": 1e-10, "maxiter": 200},
-    )
+    with warnings.catch_warnings():
+        # of numbers that it has moved into their bounds
+        warnings.simplefilter("ignore", RuntimeWarning)
+        solved = minimize(
+            merit,
+            first,
+            jac=rise,
+            method="SLSQP",
+            bounds=[*zip(low, high, strict=True), *[(0.0, None)] * (m + k)],
+            constraints=[
+                {"type": "ineq", "fun": lambda z: rows @ z + right, "jac": lambda z: rows}
+            ],
+            options={"ftol": 1e-10, "maxiter": 200},
+        )
     step = np.clip(solved.x[:n], low, high)
     if not np.all(np.isfinite(step)):
         step = np.zeros(n)

@@ -107,10 +107,7 @@ class Search:
     ) -> Found | None:
         """Go down from a case."""
         wishes = self._wishes(chosen, corrections, goal, cap)
-        with warnings.catch_warnings():
-            # of numbers that scipy has moved into their bounds
-            warnings.simplefilter("ignore", RuntimeWarning)
-            minimum = self._minimum(wishes, start, True)
+        minimum = self._minimum(wishes, start, True)
         return None if minimum is None else Found(chosen, minimum, wishes, _met(minimum))
 
     def _minimum(self, wishes: Wishes, start: Sequence[float], goal: bool) -> Minimum | None:
