@@ -92,7 +92,7 @@ app.command(
 app.command(
     "fiberbend.commands.report:report",
     name="report",
-    help="Write report.html of a run or a sweep again.",
+    help="Write report.html of a run, a sweep or a design again.",
     help_epilogue=EXAMPLES["report"],
 )
 

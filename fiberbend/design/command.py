@@ -165,7 +165,7 @@ class _Made:
         from fiberbend.design.told.outcome import FAILED, MET, answer
         from fiberbend.design.told.picture import draw
         from fiberbend.design.told.record import write
-        from fiberbend.report.design_page import write_design_report
+        from fiberbend.report.design_page import write_design_page
         from fiberbend.running.outputs import page
 
         cases = write(self._folder, made)
@@ -174,7 +174,7 @@ class _Made:
             with page(self._say):
                 draw(self._folder, made)
         with page(self._say):
-            write_design_report(self._folder)
+            write_design_page(self._folder.path)
         for line in lines(answer(made)):
             self._say(line)
         if made.status != MET:

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from fiberbend.report.page import beside, citation, inside, link, picture, render
+from fiberbend.report.page import beside, citation, inside, link, links_to, picture, render
 from fiberbend.results.folder import DESIGN, REPORT, RunFolder
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.version import __version__
@@ -16,9 +16,26 @@ _TABLES = ("front.csv", "sensitivity.csv", "tries.csv")
 _MOST_ROWS = 400
 
 
-def write_design_report(folder: RunFolder) -> None:
-    """Write report.html into the folder of a design."""
-    folder.write_text(REPORT, design_report(folder.path))
+def write_design_page(folder: Path, out: Path | None = None) -> Path:
+    """Write the page of a design.
+
+    Args:
+        folder: of the design.
+        out: the file; report.html in the folder by default.
+
+    Returns:
+        Where it is.
+
+    Raises:
+        CaseError: the folder has no design.
+    """
+    if out is None:
+        RunFolder(folder).write_text(REPORT, design_report(folder))
+        return folder / REPORT
+    page = design_report(folder, links_to(folder, out))
+    out.parent.mkdir(parents=True, exist_ok=True)
+    out.write_text(page, encoding="utf-8")
+    return out
 
 
 def design_report(path: Path, links: str = "") -> str:

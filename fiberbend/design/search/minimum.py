@@ -222,6 +222,8 @@ def _step(
         found[:n] += rises + curved @ z[:n]
         return found
 
+    bounds = [*zip(low, high, strict=True), *[(0.0, None)] * (m + k)]
+    kept = {"type": "ineq", "fun": lambda z: rows @ z + right, "jac": lambda _z: rows}
     with warnings.catch_warnings():
         # of numbers that it has moved into their bounds
         warnings.simplefilter("ignore", RuntimeWarning)
@@ -230,10 +232,8 @@ def _step(
             first,
             jac=rise,
             method="SLSQP",
-            bounds=[*zip(low, high, strict=True), *[(0.0, None)] * (m + k)],
-            constraints=[
-                {"type": "ineq", "fun": lambda z: rows @ z + right, "jac": lambda z: rows}
-            ],
+            bounds=bounds,
+            constraints=[kept],
             options={"ftol": 1e-10, "maxiter": 200},
         )
     step = np.clip(solved.x[:n], low, high)

@@ -39,9 +39,10 @@ class Limit:
 
 
 def limits(design: Design, found: Found) -> list[Limit]:
-    """What holds an answer, the strongest first; nothing where that is not known."""
+    """What holds an answer, the strongest first; none where nothing would be better elsewhere."""
     known = found.minimum.multipliers
-    if known is None:
+    if known is None or (found.met and found.wishes.goal is None):
+        # nothing would be better
         return []
     gains = _Gains(design, found)
     lines: list[Limit] = []
@@ -68,8 +69,7 @@ def _of_end(field: Varied, weight: float, end: float, side: str, way: str, gains
     step = _nice(field)
     gain = gains.of(weight * step / (field.high - field.low))
     text = f"{field.label} is at its {side} limit {field.shown(end)}"
-    if gain:
-        text += f"; {field.shown(step)} {way} would {gain}"
+    text += f"; {field.shown(step)} {way} would {gain}"
     return Limit(field.path, text, weight)
 
 
@@ -86,9 +86,7 @@ def _of_target(target: Quantity[Any], key: str, weight: float, gains: _Gains) ->
         low, high = target.bounds()
         bound = target.shown(high if key == "most" else low)
         text = f"{target.words()} is at its limit, at {key} {bound}"
-    if gain:
-        # what changes is a difference, which may be small
-        text += f"; {target.shown(abs(step))} {way} would {gain}"
+    text += f"; {target.shown(abs(step))} {way} would {gain}"
     return Limit(target.name, text, weight)
 
 
@@ -111,12 +109,11 @@ class _Gains:
         self._design, self._found = design, found
 
     def of(self, amount: float) -> str:
-        """Words for a fall of what was minimised, of order one; empty where they say nothing."""
+        """Words for a fall of what was minimised, of order one."""
         if not self._found.met:
             return self._nearer(amount)
         goal = self._found.wishes.goal
-        if goal is None:
-            return ""
+        assert goal is not None
         wanted = self._design.goals[goal]
         value = wanted.quantity.shown(amount * self._found.wishes.scales[goal])
         verb = "save" if wanted.sign > 0 else "give"
