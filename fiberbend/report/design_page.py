@@ -67,7 +67,7 @@ def design_report(path: Path, links: str = "") -> str:
         models=models,
         tables=tables,
         pictures=[
-            picture(file, file.stem.replace("_", " ").removeprefix("design "))
+            picture(file, _caption(file.stem.removeprefix("design_")))
             for file in sorted(path.glob("design_*.png"))
         ],
         cases=[(name, link(path / name, path, links)) for name in about["cases"]],
@@ -79,6 +79,13 @@ def design_report(path: Path, links: str = "") -> str:
         cite=citation(),
         version=__version__,
     )
+
+
+def _caption(kind: str) -> str:
+    """What a picture shows, by its name."""
+    if kind == "front":
+        return "The trade-off between both goals."
+    return f"{kind[0].upper()}{kind[1:]} over pressure, and what is wanted of it."
 
 
 def _table(path: Path) -> dict[str, Any]:

@@ -28,11 +28,13 @@ class Ready(NamedTuple):
         case: the case.
         error: percent by which a calibration that was taken over may be off; 0 of its own.
         remarks: what casts doubt on its calibration.
+        waited: the case as it waited for its numbers; None where it has them from its file.
     """
 
     case: Case
     error: float = 0.0
     remarks: tuple[str, ...] = ()
+    waited: Case | None = None
 
 
 class Calibrations:
@@ -60,7 +62,7 @@ class Calibrations:
             return Ready(case)
         if not self._percent:
             own = calibrate(case)
-            return Ready(with_bulging(case, own.found.bulging()), 0.0, own.remarks)
+            return Ready(with_bulging(case, own.found.bulging()), 0.0, own.remarks, case)
         numbers = dict(_enters(case))
         kept = known(case)
         if kept is None:
@@ -72,10 +74,24 @@ class Calibrations:
             ]
             if near:
                 error, found = min(near, key=lambda one: one[0])
-                return Ready(with_bulging(case, found.bulging()), error)
+                return Ready(with_bulging(case, found.bulging()), error, (), case)
         own = kept or calibrate(case)
         self._made.append((numbers, own.found))
-        return Ready(with_bulging(case, own.found.bulging()), 0.0, own.remarks)
+        return Ready(with_bulging(case, own.found.bulging()), 0.0, own.remarks, case)
+
+
+def recalibrated(waited: Case, other: Case) -> Case:
+    """A case with the numbers that another one would have; both wait for them.
+
+    Raises:
+        CaseError: the winding of the other cannot be calibrated.
+    """
+    return with_bulging(waited, calibrate(other).found.bulging())
+
+
+def enters(case: Case, other: Case) -> bool:
+    """Whether what two cases differ by enters the calibration of their windings."""
+    return dict(_enters(case)) != dict(_enters(other))
 
 
 def _enters(case: Case) -> Iterator[tuple[str, Any]]:

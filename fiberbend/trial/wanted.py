@@ -95,3 +95,20 @@ class Slopes:
 
     answer: Answer
     by_field: Mapping[str, Answer]
+
+
+@dataclasses.dataclass(frozen=True)
+class BlockedForce:
+    """What a sweep reports as `blocked_force_N`.
+
+    Attributes:
+        force: N; None where it was not found.
+        named: whose force it is, as a table names it.
+        remark: how it compares with a body's, with the source; empty where it is one.
+        reason: why it was not found; empty where it was.
+    """
+
+    force: float | None
+    named: str
+    remark: str
+    reason: str = ""

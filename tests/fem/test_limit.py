@@ -292,7 +292,7 @@ class _Told(Equilibrium):
     def tells_stability(self) -> bool:
         return True
 
-    def _modes(self) -> int:
+    def modes(self) -> int:
         return 1
 
     def perturbed(self, base: State, scalar: str, sign: float = 1.0) -> State:

@@ -116,3 +116,22 @@ def test_what_needs_no_calibration_is_left_alone() -> None:
     ready = Calibrations(1.0).ready(case)
     assert ready.case is case
     assert not ready.error
+
+
+def test_derivatives_have_the_change_of_the_calibration_in_them(made: list[Case]) -> None:
+    """The pitch acts by the calibration alone, all but; the length not at all."""
+    case, wanted, path = checked(DATA), Wanted(radians(90), (), (0.03,)), "effects.1.winding.pitch"
+    trials = Trials()
+    found = trials.sensitivities(case, wanted, [path, "actuator.length"])
+    assert {number(one, "actuator.length") for one in made} == {160.0}
+    more, less = (trials.solve(times(case, path, factor), wanted) for factor in (1.05, 0.95))
+    held = wound(DATA, **WINDING, bulging={"stiffness": "0.6 MPa/mm"})
+    frozen = trials.sensitivities(checked(held), wanted, [path]).by_field[path]
+    for name, kind in (("pressure", "free"), ("moment", "straight")):
+        up, down, slope, alone = (
+            getattr(getattr(one, kind)[0], name)
+            for one in (more, less, found.by_field[path], frozen)
+        )
+        whole = (up - down) / (0.1 * 3.0)
+        assert slope == pytest.approx(whole, rel=2e-2), name
+        assert abs(alone - whole) > 0.3 * abs(whole)

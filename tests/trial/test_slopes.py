@@ -68,12 +68,6 @@ def test_they_are_differences_of_whole_solves(name: str) -> None:
                 assert got == pytest.approx(whole, rel=1e-4, abs=scale + 1e-12), (field, item.name)
 
 
-def test_a_calibrated_winding_keeps_its_numbers() -> None:
-    case = checked(under(BENT["calibrated"], angle="100 deg"))
-    found = Trials().sensitivities(case, Wanted(radians(50)), ["actuator.wall"])
-    assert found.by_field["actuator.wall"].free[0].pressure > 0
-
-
 def test_where_the_mesh_jumps_the_other_side_tells() -> None:
     """A longer pitch has one more layer of elements, a shorter one has not."""
     pitch = "effects.1.winding.pitch"

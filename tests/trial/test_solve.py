@@ -8,12 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from scipy.integrate import simpson
 
+import fiberbend
 from fiberbend import columns as col
 from fiberbend.columns import Row
 from fiberbend.schema.problems import CaseError
-from fiberbend.trial.solve import solve
+from fiberbend.trial.solve import blocked_force, solve
 from fiberbend.trial.wanted import Point, Wanted
 from tests.trial.cases import Data, checked, radians, run, shipped, under, wound
 
@@ -141,3 +143,23 @@ def test_work_is_that_of_the_pressure() -> None:
         v = np.array([points[0].volume_at_rest, *(point.volume for point in points)])
         work = simpson(p * np.gradient(v, edge_order=2), dx=1.0)
         assert points[-1].work == pytest.approx(work, rel=2e-4)
+
+
+def test_the_blocked_force_of_a_sweep(tmp_path: Path) -> None:
+    """One point of a sweep that reports it, and the case of that point."""
+    data = under(BENT["hemicircle"], to="60 kPa")
+    case = tmp_path / "case.yaml"
+    case.write_text(yaml.safe_dump(data), encoding="utf-8")
+    sweep = {"case": "case.yaml", "vary": {"actuator.wall": ["2.5 mm"]}}
+    file = tmp_path / "sweep.yaml"
+    report = {"force_at": "50 kPa"}
+    file.write_text(yaml.safe_dump(sweep | {"report": report}), encoding="utf-8")
+    (row,) = fiberbend.sweep(file, tmp_path / "out").rows
+    data["actuator"] = data["actuator"] | {"wall": "2.5 mm"}
+    found = blocked_force(checked(data), 0.05)
+    assert found.force == pytest.approx(row["blocked_force_N"], rel=1e-6)
+    assert found.named == row["blocked_force_model"]
+    assert "twice" in found.remark
+    twisting = blocked_force(checked(under(BENT["single helix"], to="60 kPa")), 0.05)
+    assert twisting.force is None
+    assert twisting.reason

@@ -126,15 +126,16 @@ def answer(made: Outcome) -> Answer:
             warnings += check.warnings
     return Answer(
         title=made.design.title,
-        sentence=_sentence(made),
+        sentence=sentence(made),
         entries=tuple(_entries(made)),
-        trust=_cost(made),
+        trust=cost(made),
         comparisons=(),
         warnings=tuple(dict.fromkeys(warnings)),
     )
 
 
-def _sentence(made: Outcome) -> str:
+def sentence(made: Outcome) -> str:
+    """How it has ended."""
     if made.status != MET:
         text = made.reason.split("; what stops it")[0]
         return f"{text[0].upper()}{text[1:]}."
@@ -191,7 +192,7 @@ def _note(each: Told) -> str:
     return f"{wanted}; {models}"
 
 
-def _cost(made: Outcome) -> str:
+def cost(made: Outcome) -> str:
     """What it took, the search and its confirmation each by itself."""
     counted, times = made.tries.counted, made.times
     parts = [f"{counted.solved} sections in {number(times.search + times.corrected, 1)} s"]

@@ -57,20 +57,11 @@ def _groups(made: Outcome) -> dict[str, list[Told]]:
 
 def _curves(made: Outcome, kind: str, group: Sequence[Told]) -> Any | None:
     """Quantities over pressure by the section, and at their targets by every model."""
+    assert made.done is not None
     unit = KINDS[kind].shown
     up = f"{KINDS[kind].name.split(' ', 1)[1]} ({_UNITS.get(unit, unit)})"
-    reason = None if not made.reason else made.reason.split(";")[0]
-    page, axes = new_axes(PAGE, made.design.title, None, "pressure P (kPa)", up)
-    if reason:
-        axes.text(
-            0.5,
-            1.01,
-            "not all targets are met",
-            transform=axes.transAxes,
-            ha="center",
-            color=RED,
-            fontsize=11,
-        )
+    title = made.design.title if made.done.found.met else f"{made.design.title} (not met)"
+    page, axes = new_axes(PAGE, title, None, "pressure P (kPa)", up)
     scale = PAGE.scale
     drawn: set[str] = set()
     for number, each in enumerate(group):
