@@ -29,6 +29,9 @@ from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.units import KINDS, parse
 from fiberbend.schema.validation import from_pydantic
 
+_MADE = ("actuator", "materials", "effects", "zones")
+"""Parts of a case that are made of something."""
+
 
 @dataclasses.dataclass(frozen=True)
 class Design:
@@ -176,11 +179,26 @@ def _not_of_case(design: Design) -> Iterator[Problem]:
         elif effect.load and effect.inflation() is None:
             text = "a load beside the pressure, which the section of a design does not have"
             yield Problem(f"case: effects.{index}.{effect.name}", text)
+    yield from _idle(design)
     for index, target in enumerate(design.targets):
         yield from target.wrong(f"targets.{index}.{target.name}", case)
     for index, goal in enumerate(design.goals):
         key = "minimise" if goal.sign > 0 else "maximise"
         yield from goal.quantity.wrong(f"goals.{index}.{key}.{goal.quantity.name}", case)
+
+
+def _idle(design: Design) -> Iterator[Problem]:
+    """Fields that vary and say nothing of what an actuator is."""
+    paths = [each.path for each in design.fields.varied]
+    paths += [each.path for each in design.fields.choices]
+    for path in paths:
+        if path.split(".")[0] not in _MADE:
+            text = f"says nothing of the actuator, expected a field of {', '.join(_MADE)}"
+            yield Problem(f"vary.{path}", text)
+        for index, effect in enumerate(design.base.effects):
+            if effect.inflation() is not None and f"{path}.".startswith(f"effects.{index}."):
+                text = "no effect: targets and goals say at which pressure or angle"
+                yield Problem(f"vary.{path}", text)
 
 
 def _at_ends(design: Design) -> Iterator[Problem]:

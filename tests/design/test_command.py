@@ -12,7 +12,9 @@ import yaml
 
 import fiberbend
 from fiberbend.cli import main
+from fiberbend.design.solving.models import UnsolvedError
 from fiberbend.results.folder import DESIGN
+from fiberbend.schema.problems import CaseError, Problem
 from tests.design.made_up import ROOT
 
 DESIGNS = ROOT / "cases" / "designs"
@@ -109,3 +111,46 @@ def test_tables_and_the_trade_off(tmp_path: Path) -> None:
     # another design in its place is asked for
     assert main(["design", file, "--out", str(out), "--quiet"]) == 1
     assert main(["design", file, "--out", str(tmp_path), "--overwrite"]) == 1
+
+
+def test_a_case_without_a_cell_is_told_by_its_section(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / "out"
+    near = [{"angle": {"at": "20 kPa", "is": "30 deg"}}]
+    parts = {"targets": near, "confirm": "cell", "search": {"starts": 2, "descents": 1}}
+    file = changed(tmp_path, "impossible", **parts)
+
+    def none(*_: object) -> None:
+        raise CaseError([Problem("model", "no cell")])
+
+    monkeypatch.setattr("fiberbend.design.solving.models.Cell.states", none)
+    assert main(["design", file, "--out", str(out), "--quiet"]) == 0
+    found = made(out)
+    assert found["status"] == "met"
+    assert found["sentence"] == "All targets are met; the section alone has said so."
+    assert found["checks"][0]["reason"] == "model: no cell"
+
+    def fails(*_: object) -> None:
+        raise UnsolvedError("it ends before")
+
+    monkeypatch.setattr("fiberbend.design.solving.models.Cell.states", fails)
+    assert main(["design", file, "--out", str(out), "--quiet", "--overwrite"]) == 2
+    assert made(out)["status"] == "not confirmed"
+    assert made(out)["reason"] == "cell: it ends before"
+
+
+def test_ctrl_c_leaves_what_was_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    out = tmp_path / "out"
+    file = changed(tmp_path, "impossible", search={"starts": 2, "descents": 1})
+
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fiberbend.design.search.confirm.Confirmer.confirm", stopped)
+    assert main(["design", file, "--out", str(out), "--quiet"]) == 130
+    found = made(out)
+    assert found["status"] == "interrupted"
+    assert found["fields"]
+    assert (out / "nearest.yaml").exists()
+    assert (out / "tries.csv").exists()

@@ -101,6 +101,16 @@ def test_too_many_combinations_are_refused(tmp_path: Path) -> None:
     assert "100 whole numbers" in problems(tmp_path, vary=whole)["vary.mesh.section"]
 
 
+def test_fields_that_make_no_other_actuator_are_refused(tmp_path: Path) -> None:
+    vary = {
+        "effects.0.pressure.angle": {"from": "10 deg", "to": "90 deg"},
+        "mesh.axial": {"from": "1 mm", "to": "3 mm"},
+    }
+    wrong = problems(tmp_path, vary=vary)
+    assert "targets and goals say" in wrong["vary.effects.0.pressure.angle"]
+    assert "says nothing of the actuator" in wrong["vary.mesh.axial"]
+
+
 def test_a_quantity_that_the_case_does_not_have(tmp_path: Path) -> None:
     targets = [{"angle": {"zone": 2, "at": "60 kPa", "is": "90 deg"}}]
     wrong = problems(tmp_path, targets=targets)

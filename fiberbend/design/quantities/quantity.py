@@ -19,6 +19,8 @@ V = TypeVar("V")
 
 WITHIN = 0.02
 """Part of a value within which it is met, where a file does not say."""
+SIZE_WITHIN = 1e-3
+"""The same of what dimensions give, in which no model is off."""
 _SIGNS = {"deg": "°", "N*mm": " N mm"}
 """Units as a person writes them, with what stands before."""
 
@@ -82,16 +84,19 @@ class Quantity(Spec, Generic[V]):
     @property
     def scale(self) -> float:
         """Size of what is wanted, by which misses are measured; never zero."""
+        return max(self.small, self._size)
+
+    @property
+    def _size(self) -> float:
         given = (self.is_, self.least, self.most)
-        sizes = [abs(float(value)) for value in given if isinstance(value, float)]
-        return max([self.small, *sizes])
+        return max((abs(value) for value in given if isinstance(value, float)), default=0.0)
 
     @property
     def slack(self) -> float:
         """How far from `is` it may be, or beyond a bound, and be met."""
         if isinstance(self.within, float):
             return self.within
-        return WITHIN * self.scale
+        return (WITHIN if self.states() else SIZE_WITHIN) * (self._size or self.small)
 
     def bounds(self) -> tuple[float, float]:
         """Least and greatest value that are wanted; ±inf where there is no bound."""

@@ -42,6 +42,7 @@ class Check:
         reason: why it has no values; empty where it has.
         cpu_s: processor time.
         warnings: of its runs.
+        absent: there is no such model of the case, as no cell without a winding.
     """
 
     model: str
@@ -50,6 +51,7 @@ class Check:
     reason: str = ""
     cpu_s: float = 0.0
     warnings: tuple[str, ...] = ()
+    absent: bool = False
 
     @property
     def whole(self) -> bool:
@@ -103,9 +105,11 @@ class Confirmer:
             return done
         done = self._settle(done, CELL)
         if self.design.confirm == BODY:
+            first = done.last(CELL)
             done = self._settle(done, BODY)
-            # where the body has moved the answer
-            done = self._add(done, self._cell(done.found), correct=False)
+            if first is None or not first.absent:
+                # where the body has moved the answer
+                done = self._add(done, self._cell(done.found), correct=False)
         return done
 
     def _settle(self, done: Confirmed, model: str) -> Confirmed:
@@ -175,7 +179,9 @@ class Confirmer:
             states, warnings = solve()
         except (UnsolvedError, CaseError) as error:
             reason = str(error).splitlines()[0]
-            return Check(model, nothing, foreseen, reason, time.process_time() - begun)
+            spent = time.process_time() - begun
+            absent = model == CELL and isinstance(error, CaseError)
+            return Check(model, nothing, foreseen, reason, spent, absent=absent)
         case = self._tries.case(found.chosen, found.x)
         zones = max(1, len(case.zones or ()))
         values = [

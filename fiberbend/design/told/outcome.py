@@ -87,7 +87,8 @@ def _judged(
     design: Design, done: Confirmed, found: Sequence[Told], held: Sequence[Limit]
 ) -> tuple[str, str]:
     missed = [each for each in found if not each.met]
-    failed = [check for name in (CELL, BODY) if (check := done.last(name)) and not check.whole]
+    last = [check for name in (CELL, BODY) if (check := done.last(name)) is not None]
+    failed = [check for check in last if not check.whole and not check.absent]
     if missed and not done.found.met:
         parts = ", ".join(
             f"{each.quantity.words()} {each.quantity.shown(each.value)} where "
@@ -140,7 +141,8 @@ def sentence(made: Outcome) -> str:
         text = made.reason.split("; what stops it")[0]
         return f"{text[0].upper()}{text[1:]}."
     assert made.done is not None
-    finest = next((n for n in (BODY, CELL) if made.done.last(n) is not None), None)
+    checks = {n: made.done.last(n) for n in (BODY, CELL)}
+    finest = next((n for n, c in checks.items() if c is not None and c.whole), None)
     if finest is None:
         by = "the section alone has said so" if made.tries.wanted else "from its dimensions"
         return f"All targets are met; {by}."
