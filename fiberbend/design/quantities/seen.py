@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping, Sequence
 from typing import Literal, NamedTuple
 
@@ -41,6 +42,10 @@ class Reading(NamedTuple):
     """∫ P dV since rest, N mm."""
     force: float = 0.0
     """Of a body whose tip is blocked, N; zero where a moment stands for it."""
+    tip_y: float = math.nan
+    """Of a body the height of its tip, mm; nan where arcs give it."""
+    tip_z: float = math.nan
+    """The same along the axis, mm."""
 
 
 @dataclasses.dataclass(frozen=True)

@@ -12,6 +12,7 @@ from fiberbend.design.quantities.force import BlockedForceAt, StraightMomentAt
 from fiberbend.design.quantities.material import StrainAt
 from fiberbend.design.quantities.quantity import Quantity
 from fiberbend.design.quantities.size import Height, Rubber, WholeLength, Width
+from fiberbend.design.quantities.tip import TipY, TipZ
 from fiberbend.design.quantities.work import VolumeAt, WorkTo
 from fiberbend.schema.quantities import Spec
 
@@ -21,6 +22,8 @@ QUANTITIES: dict[str, type[Quantity[Any]]] = {
         AngleAt,
         PressureAt,
         CurvatureAt,
+        TipY,
+        TipZ,
         BlockedForceAt,
         StraightMomentAt,
         StrainAt,

@@ -151,6 +151,8 @@ def _readings(row: col.Row, rest: col.Row, zones: int) -> tuple[Reading, ...]:
         rest=rest[col.VOLUME],
         work=row[col.WORK],
         force=row.get(col.TIP_FORCE) or 0.0,
+        tip_y=row[col.TIP_Y],
+        tip_z=row[col.TIP_Z],
     )
     if not zones:
         return (whole,)
