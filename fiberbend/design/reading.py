@@ -176,8 +176,8 @@ def _not_of_case(design: Design) -> Iterator[Problem]:
                 "keeps it straight, expected free bending: blocked-force keeps it straight itself"
             )
             yield Problem(f"case: effects.{index}.{effect.name}", text)
-        elif effect.load and effect.inflation() is None:
-            text = "a load beside the pressure, which the section of a design does not have"
+        elif acts := effect.alone():
+            text = f"{acts}, which the section that is searched does not know"
             yield Problem(f"case: effects.{index}.{effect.name}", text)
     yield from _idle(design)
     for index, target in enumerate(design.targets):

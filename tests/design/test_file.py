@@ -117,6 +117,8 @@ def test_a_quantity_that_the_case_does_not_have(tmp_path: Path) -> None:
     assert "no zones" in wrong["targets.0.angle.zone"]
     wrong = problems(tmp_path, targets=[{"work": {"most": "20 mJ"}}])
     assert "expected one of at (a pressure) and angle" in wrong["targets.0.work"]
+    grasp = {"case": str(ROOT / "cases" / "grasp.yaml"), "set": {}}
+    assert any("obstacles act" in text for text in problems(tmp_path, **grasp).values())
     loads = {"effects.0": {"pressure": {"to": "60 kPa"}}, "effects.2": {"straight": {}}}
     straight = {"set": {**loads, "output": {}, "compare": []}}
     assert any("keeps it straight" in text for text in problems(tmp_path, **straight).values())

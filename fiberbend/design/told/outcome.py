@@ -19,6 +19,7 @@ from fiberbend.design.told.values import Told, told
 MET, UNMET, UNCONFIRMED = "met", "not met", "not confirmed"
 FAILED, INTERRUPTED = "failed", "interrupted"
 _MOST_LIMITS = 6
+_STOPS = "; what stops it: "
 _AT_END = 1e-3
 
 
@@ -96,7 +97,7 @@ def _judged(
             for each in missed
         )
         stops = [limit.text for limit in held[:_MOST_LIMITS]]
-        why = f"; what stops it: {'; '.join(stops)}" if stops else ""
+        why = f"{_STOPS}{'; '.join(stops)}" if stops else f"{_STOPS}no field that varies moves it"
         return UNMET, f"no case in these ranges meets all targets; the nearest has {parts}{why}"
     if missed:
         parts = ", ".join(
@@ -138,7 +139,7 @@ def answer(made: Outcome) -> Answer:
 def sentence(made: Outcome) -> str:
     """How it has ended."""
     if made.status != MET:
-        text = made.reason.split("; what stops it")[0]
+        text = made.reason.split(_STOPS)[0]
         return f"{text[0].upper()}{text[1:]}."
     assert made.done is not None
     checks = {n: made.done.last(n) for n in (BODY, CELL)}
@@ -200,7 +201,7 @@ def cost(made: Outcome) -> str:
     parts = [f"{counted.solved} sections in {number(times.search + times.corrected, 1)} s"]
     checks = () if made.done is None else made.done.checks
     for name in (CELL, BODY):
-        own = [check for check in checks if check.model == name]
+        own = [check for check in checks if check.model == name and not check.absent]
         if own:
             word = {CELL: "cells", BODY: "bodies"}[name] if len(own) > 1 else name
             parts.append(f"{len(own)} {word} in {number(sum(c.cpu_s for c in own), 1)} s")
