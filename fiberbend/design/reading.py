@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import dataclasses
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -209,30 +209,42 @@ def _at_ends(design: Design) -> Iterator[Problem]:
     for field in design.fields.varied:
         for key, value in (("from", field.low), ("to", field.high)):
             values = ((field.path, field.text(value)),)
-            yield from _alone(design, values, f"{field.path}.{key}", Case.model_validate)
+            yield from _alone(design, values, f"{field.path}.{key}", whole=False)
     for choice in design.fields.choices:
         for index, value in enumerate(choice.values):
-            yield from _alone(design, ((choice.path, value),), f"{choice.path}.{index}", parse_case)
+            values = ((choice.path, value),)
+            yield from _alone(design, values, f"{choice.path}.{index}", whole=True)
 
 
-def _alone(
-    design: Design, values: Pairs, origin: str, check: Callable[[dict[str, Any]], Case]
-) -> Iterator[Problem]:
+def _alone(design: Design, values: Pairs, origin: str, whole: bool) -> Iterator[Problem]:
+    """What is wrong with one value in the base case.
+
+    Args:
+        design: the design.
+        values: the value with its path.
+        origin: its place under `vary`.
+        whole: what the case says of the value itself counts too, as the name of a material.
+    """
     ((path, _),) = values
+    data = design.changed(values)
     try:
-        check(design.changed(values))
+        Case.model_validate(data)
     except ValidationError as error:
-        wrong = list(from_pydantic(error, Case))
-    except CaseError as error:
-        wrong = list(error.problems)
-    else:
+        for problem in from_pydantic(error, Case):
+            # pydantic names the part that has no such key
+            if f"{problem.path}.".startswith(f"{path}."):
+                yield Problem(f"vary.{origin}{problem.path.removeprefix(path)}", problem.text)
+            elif f"{path}.".startswith(f"{problem.path}."):
+                yield Problem(f"vary.{origin}", f"{problem.path}: {problem.text}")
         return
-    for problem in wrong:
-        # pydantic names the part that has no such key
-        if f"{problem.path}.".startswith(f"{path}."):
-            yield Problem(f"vary.{origin}{problem.path.removeprefix(path)}", problem.text)
-        elif f"{path}.".startswith(f"{problem.path}."):
-            yield Problem(f"vary.{origin}", f"{problem.path}: {problem.text}")
+    if not whole:
+        return
+    try:
+        parse_case(data)
+    except CaseError as error:
+        for problem in error.problems:
+            if f"{problem.path}.".startswith(f"{path}."):
+                yield Problem(f"vary.{origin}{problem.path.removeprefix(path)}", problem.text)
 
 
 def own_numbers(design: Design) -> list[float | None]:
