@@ -34,7 +34,7 @@ class Trials:
 
         Its own load and what keeps it straight are replaced by those of the states; all else is the
         case's. A winding that waits for its calibration is calibrated first, from the store or
-        anew.
+        anew. What a run warns of is not looked at: whether walls pass through each other.
 
         Args:
             case: a checked case.

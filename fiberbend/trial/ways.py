@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
@@ -13,7 +14,7 @@ from fiberbend.trial import loads
 from fiberbend.trial.calibrations import Calibrations, Ready
 from fiberbend.trial.reading import Reader
 from fiberbend.trial.wanted import Point, Wanted
-from fiberbend.uniform.small import Small
+from fiberbend.uniform.small import PRESSURE, Small
 
 SCENES = 4
 """Scenes that are kept: a search goes to and fro between few meshes."""
@@ -130,11 +131,11 @@ class Ways:
         scene, reason = self._scene(small), ""
         states = _warm(small, given, goals, scene.found)
         if not states:
-            found, report = small.march()
-            states = dict(zip(goals, found, strict=False))
-            if report.status != "converged" or len(states) < len(goals):
-                reason = report.reason or "not all states lie on the way"
-            if report.critical:
+            reached = small.reach()
+            states = {g: reached.found[g.value] for g in goals if g.value in reached.found}
+            if reached.report.status != "converged" or len(states) < len(goals):
+                reason = reached.report.reason or _furthest(given, reached.furthest)
+            if reached.report.critical:
                 # beside it another branch may be the one to which a way leads
                 scene.found.clear()
                 return Way(ready, small, states, reason)
@@ -163,6 +164,14 @@ def _warm(
             return {}
         found[goal] = state
     return found if small.keeps_symmetry(found[goals[-1]]) else {}
+
+
+def _furthest(given: str, state: State) -> str:
+    """Why a march has stopped that nothing stopped: what is asked for turns back."""
+    pressure = f"{1e3 * state.scalars[PRESSURE]:.4g} kPa"
+    if given == "control":
+        return f"it bends no further than {math.degrees(state.measures[given]):.4g}°, at {pressure}"
+    return f"it takes no pressure beyond {pressure}"
 
 
 def by_sign(values: Iterable[float]) -> list[tuple[float, ...]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from mpi4py import MPI
@@ -15,6 +16,7 @@ from fem.kinematics.uniform import CURVATURE, STRETCH, Uniform
 from fem.march.hooks import AfterStep
 from fem.march.march import March
 from fem.march.records import Report, Rules, State, measure
+from fem.results.diagnosis import Diagnosis
 from fem.scene import Scene
 from fem.solver.bordered import SideCondition
 from fem.solver.newton import Newton, Outcome, Settings
@@ -51,6 +53,20 @@ class Reading:
     stretch: float
     area: float
     angle: float
+
+
+class Reached(NamedTuple):
+    """Where a march has come.
+
+    Attributes:
+        found: states by what was asked for.
+        report: how it ended.
+        furthest: the state with the greatest angle, or pressure, of all on the way.
+    """
+
+    found: dict[float, State]
+    report: Report
+    furthest: State
 
 
 @dataclasses.dataclass
@@ -120,7 +136,8 @@ class Small:
         )
         for effect in case.acting:
             rules = effect.rules(rules, case.straight)
-        self._march = March(self.scene, self._newton, rules, control=self._control)
+        causes = Diagnosis(self.scene)
+        self._march = March(self.scene, self._newton, rules, control=self._control, causes=causes)
 
     def _serves(self, case: Case, settings: Settings) -> bool:
         """Whether its unknowns and its solver are those of another case."""
@@ -138,19 +155,30 @@ class Small:
 
         It begins where it was made, at rest: before another that shares its scene is made.
         """
-        found: dict[tuple[str, float], State] = {}
+        found, report, _ = self.reach()
+        asked = (*self._case.output.at_angles, *self._case.output.at_pressures)
+        return [found[value] for value in asked if value in found], report
+
+    def reach(self) -> Reached:
+        """The same by the angle or the pressure that was asked for; one of the two is."""
+        found: dict[float, State] = {}
+        furthest, value = self.rest, measure("value", PRESSURE)
         output, slack = self._case.output, 2 * self._case.solver.tolerance
         asked = [("control", goal) for goal in output.at_angles]
-        asked += [(measure("value", PRESSURE), goal) for goal in output.at_pressures]
+        asked += [(value, goal) for goal in output.at_pressures]
+        driven = value if output.at_pressures else "control"
 
         def keep(state: State, _outcome: Outcome) -> None:
+            nonlocal furthest
+            if abs(state.measures[driven]) > abs(furthest.measures[driven]):
+                furthest = state
             for key, goal in asked:
                 near = slack if key == "control" else 0.0
                 if math.isclose(state.measures[key], goal, rel_tol=_SAME, abs_tol=near):
-                    found.setdefault((key, goal), state)
+                    found.setdefault(goal, state)
 
         report = self._march.run(self._ramps, [AfterStep(keep)])
-        return [found[one] for one in asked if one in found], report
+        return Reached(found, report, furthest)
 
     def put(self, state: State) -> None:
         """Put the scene to a state that was found."""

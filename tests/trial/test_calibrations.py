@@ -11,8 +11,9 @@ from fiberbend.calibration import cases
 from fiberbend.calibration.store import FOLDER, Store
 from fiberbend.case.case import Case
 from fiberbend.trial import calibrations
-from fiberbend.trial.calibrations import ERROR, Calibrations
+from fiberbend.trial.calibrations import Calibrations
 from fiberbend.trial.fields import number, with_number
+from fiberbend.trial.loads import bent
 from fiberbend.trial.solve import Trials
 from fiberbend.trial.wanted import Wanted
 from tests.trial.cases import checked, radians, run, shipped, under, wound
@@ -70,45 +71,52 @@ def test_it_is_calibrated_as_far_as_it_is_asked_for() -> None:
 def test_numbers_of_a_like_case_are_taken_over(made: list[Case]) -> None:
     """Within the error that is allowed, which is told; what is found is off by less."""
     case, wanted = checked(DATA), Wanted(radians(100), (), (0.05,))
-    trials = Trials(calibration_error=0.7)
+    trials = Trials(calibration_error=1.5)
     first = trials.solve(case, wanted)
     assert first.calibration_error == 0
     assert len(made) == 2, "bent, and kept straight"
     thicker = times(case, "actuator.wall", 1.1)
     near = trials.solve(thicker, wanted)
     assert len(made) == 2
-    assert 0.5 < near.calibration_error < 0.6
+    assert 0.5 < near.calibration_error < 1.5
     own = Trials().solve(thicker, wanted)
     for one, other in zip(near.free + near.straight, own.free + own.straight, strict=True):
         assert one.pressure == pytest.approx(other.pressure, rel=near.calibration_error / 100)
         assert one.moment == pytest.approx(other.moment, rel=near.calibration_error / 100)
     assert near.free[0].pressure != own.free[0].pressure
-    beyond = times(case, "actuator.wall", 1.3)
+    beyond = times(case, "actuator.wall", 1.5)
     assert trials.solve(beyond, wanted).calibration_error == 0
 
 
 def test_unlike_cases_have_their_own(made: list[Case]) -> None:
     taken = Calibrations(percent=2.0)
-    case = checked(DATA)
+    case = bent(checked(DATA), radians(50))
     assert taken.ready(case).error == 0
-    near = taken.ready(times(case, "effects.1.winding.pitch", 1.05))
-    assert near.error == pytest.approx(ERROR * 0.0488, rel=1e-2)
+    errors = [
+        taken.ready(times(case, "effects.1.winding.pitch", factor)).error
+        for factor in (1.05, 1.1025)
+    ]
+    assert 0 < 2 * errors[0] == pytest.approx(errors[1], rel=1e-6)
     helix = wound(DATA, **{**WINDING, "pattern": "double-helix", "tension_only": True})
-    assert taken.ready(checked(helix)).error == 0
+    assert taken.ready(bent(checked(helix), radians(50))).error == 0
     gent = {"wall": {"law": "gent", "mu": "0.22 MPa", "jm": 30.0}}
     other = checked(DATA | {"materials": DATA["materials"] | gent})
-    assert taken.ready(other).error == 0
+    assert taken.ready(bent(other, radians(50))).error == 0
     assert len(made) == 3
+    assert taken.ready(case).error == 0
+    assert len(made) == 3, "its own, again"
 
 
 def test_names_stand_for_their_numbers(made: list[Case]) -> None:
     """A wall by its law is the named one; length and caps enter nothing."""
     taken = Calibrations(percent=1.0)
-    taken.ready(checked(DATA))
+    base = bent(checked(DATA), radians(50))
+    taken.ready(base)
     wall = {"wall": {"law": "yeoh", "c1": "0.112 MPa", "c2": "0.02 MPa"}}
     longer = DATA["actuator"] | {"length": "200 mm", "cap": "10 mm"}
     other = checked(DATA | {"materials": DATA["materials"] | wall, "actuator": longer})
-    assert taken.ready(other).error == pytest.approx(ERROR * 0.018, rel=2e-2)
+    pitch = taken.ready(times(base, "effects.1.winding.pitch", 1.05)).error
+    assert 0 < taken.ready(bent(other, radians(50))).error < 0.5 * pitch
 
 
 def test_what_needs_no_calibration_is_left_alone() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -112,13 +113,22 @@ def test_a_body_is_refused() -> None:
 
 
 def test_what_is_beyond_reach_is_said() -> None:
-    """Its rubber is at its limiting stretch before."""
+    """The angle turns back before; beyond its limiting pressure rubber balloons."""
     data = under(BENT["hemicircle"], angle="100 deg")
-    data["materials"] = data["materials"] | {"wall": {"law": "gent", "mu": "0.3 MPa", "jm": 0.3}}
-    answer = solve(checked(data), Wanted(angles=radians(40, 4000)))
+    gent = {"wall": {"law": "gent", "mu": "0.3 MPa", "jm": 0.3}}
+    stiff = checked(data | {"materials": data["materials"] | gent})
+    answer = solve(stiff, Wanted(angles=radians(40, 4000)))
     assert not answer.converged
-    assert answer.reason
+    furthest = re.fullmatch(r"it bends no further than (.+)°, at .+ kPa", answer.reason)
+    assert furthest is not None
+    assert 40 < float(furthest[1]) < 4000
     assert [point.angle for point in answer.free] == pytest.approx(radians(40), rel=1e-9)
+    soft = data["materials"] | {"wall": "ecoflex-0030"}
+    bare = data | {"effects": data["effects"][:1], "materials": soft}
+    answer = solve(checked(bare), Wanted(pressures=(0.001, 0.1)))
+    assert not answer.converged
+    assert "ballooning" in answer.reason or "no pressure beyond" in answer.reason
+    assert [point.pressure for point in answer.free] == pytest.approx([0.001], rel=1e-9)
 
 
 def test_at_rest() -> None:
