@@ -136,6 +136,7 @@ class Checker:
 
     def _fiberbend(self, words: list[str]) -> None:
         from fiberbend.cli import app
+        from fiberbend.design.reading import read_design
         from fiberbend.reader.reader import read_case
         from fiberbend.sweep.points import read_sweep
 
@@ -150,6 +151,8 @@ class Checker:
         for file in files:
             if name == "sweep":
                 read_sweep(file, changes)
+            elif name == "design":
+                read_design(file, changes)
             elif name != "init":
                 read_case(file, changes)
             default = f"runs/{file.stem}" + ("_control" if name == "control" else "")
@@ -172,14 +175,22 @@ class Checker:
                 for alias in node.names:
                     importlib.import_module(alias.name)
 
+    def _part_of_design(self, data: dict[str, Any]) -> None:
+        """Check keys of a design by those that a whole one has."""
+        from fiberbend.design.file import DesignFile
+
+        whole = {"case": "case.yaml", "vary": {}, **data}
+        DesignFile.model_validate(whole)
+
     def yaml(self, text: str, where: str) -> None:
-        """Check a whole case, a whole sweep, or keys of either.
+        """Check a whole case, sweep or design, or keys of one of them.
 
         Raises:
             ValueError: keys that neither has.
             fiberbend.schema.problems.CaseError: what is wrong with the case.
         """
         from fiberbend.case.case import Case
+        from fiberbend.design.file import DesignFile
         from fiberbend.reader.reader import parse_case
         from fiberbend.sweep.file import SweepFile
 
@@ -188,6 +199,10 @@ class Checker:
             return
         if isinstance(data, dict) and {"actuator", "materials", "effects"} <= set(data):
             parse_case(data)
+        elif isinstance(data, dict) and {"case", "targets"} <= set(data):
+            DesignFile.model_validate(data)
+        elif isinstance(data, dict) and {"targets", "goals", "confirm", "search"} & set(data):
+            self._part_of_design(data)
         elif isinstance(data, dict) and {"vary", "zip", "points"} & set(data):
             SweepFile.model_validate(data)
         else:

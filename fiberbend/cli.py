@@ -21,7 +21,7 @@ from fiberbend.version import __version__
 from machine.folders import MachineError
 
 WRONG_INPUT = 1
-COMPUTING = ("run", "sweep", "control", "accuracy")
+COMPUTING = ("run", "sweep", "control", "accuracy", "design")
 """Commands whose results are in a folder, whatever becomes of the lines that they print."""
 
 app = App(
@@ -60,7 +60,10 @@ _LOADED = {
     "fiberbend.commands.fit:fit": (
         "Fit laws of rubber to tests, with errors, stability and what they do to P(θ)."
     ),
-    "fiberbend.commands.report:report": "Write report.html of a run or a sweep again.",
+    "fiberbend.commands.design:design": (
+        "Find the case that does what is wanted, and confirm it by the whole body."
+    ),
+    "fiberbend.commands.report:report": "Write report.html of a run, a sweep or a design again.",
 }
 for _place, _text in _LOADED.items():
     _name = _place.rpartition(":")[2]

@@ -50,6 +50,10 @@ EXAMPLES = {
   fiberbend fit --uniaxial a.csv --pure-shear b.csv --equibiaxial c.csv --law ogden
   fiberbend fit dragon-skin-30 --upto "stretch 2" --case cases/section.yaml --part wall
 """,
+    "design": """Examples:
+  fiberbend design cases/designs/bend_at_pressure.yaml
+  fiberbend design cases/designs/blocked_force.yaml --set actuator.length="80 mm"
+""",
     "report": """Examples:
   fiberbend report runs/section --open
   fiberbend report runs/section --out section.html

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -18,24 +19,26 @@ def report(
     out: Path | None = None,
     open_it: Annotated[bool, Parameter(name="--open")] = False,
 ) -> None:
-    """Write report.html of a run or a sweep again.
+    """Write report.html of a run, a sweep or a design again.
 
     The page is one HTML file that needs no network: case, plan, answer, curves, the body in space
     at every load step, tables and files. Nothing is solved. A run and a sweep write it at their
     end; so do those that were stopped, as far as they came, by this command.
 
     Args:
-        folder: Folder of a run or a sweep.
+        folder: Folder of a run, a sweep or a design.
         out: Where the page goes; report.html in the folder unless given.
         open_it: Open the page in the browser.
     """
     from fiberbend.api.loading import load
-    from fiberbend.results.folder import REPORT
+    from fiberbend.report.design_page import write_design_page
+    from fiberbend.results.folder import DESIGN, REPORT
 
     settle_folders()
-    found = load(folder)
+    design = (folder / DESIGN).exists()
+    write = partial(write_design_page, folder) if design else load(folder).report
     try:
-        target = found.report(out)
+        target = write(out)
     except OSError as error:
         text = f"{error.strerror}, expected a file that can be written"
         raise CaseError([Problem(str(out or folder / REPORT), text)]) from None

@@ -43,6 +43,8 @@ _PARTS: dict[str, type[BaseModel]] = {
 
 _SWEEP = frozenset({"vary", "zip", "points"})
 """Keys by which a file with a key `case` is a sweep's."""
+_DESIGN = frozenset({"targets", "goals"})
+"""Keys by which it is a design's."""
 
 
 def read_case(path: Path | str, settings: Iterable[str] | Mapping[str, Any] = ()) -> Case:
@@ -63,6 +65,8 @@ def read_case(path: Path | str, settings: Iterable[str] | Mapping[str, Any] = ()
     source = read_yaml(Path(path))
     settings = settings if isinstance(settings, Mapping) else list(settings)
     data = source.data
+    if "case" in data and not _DESIGN.isdisjoint(data):
+        raise CaseError([Problem(str(path), f"this is a design: fiberbend design {path}")])
     if "case" in data and not _SWEEP.isdisjoint(data):
         raise CaseError([Problem(str(path), f"this is a sweep: fiberbend sweep {path}")])
     root_paths(data, Path(path).parent)

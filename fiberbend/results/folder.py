@@ -68,6 +68,8 @@ LADDER = "accuracy.json"
 """By this file a folder is that of a ladder of accuracy; what it has found."""
 RUNGS = "rungs"
 """Folder of a ladder with a file of each rung."""
+DESIGN = "design.json"
+"""By this file a folder is that of a design; what it has found."""
 BLOCKED = "blocked"
 """Folder within that of a sweep's point with the same body kept straight."""
 
@@ -84,12 +86,18 @@ _OF_A_RUN = (
 _OF_A_SWEEP = (TABLE, ABOUT_SWEEP, TRENDS, "maps/*.png", REPORT)
 _OF_CONTROL = ("control.json", "control.csv", "control.png", "filter.csv", "angle_filter.h")
 _OF_A_LADDER = (LADDER, f"{RUNGS}/*.json", *(f"accuracy.{end}" for end in ("csv", "md", "png")))
+_OF_A_DESIGN = (
+    *(DESIGN, "winner.yaml", "winner_blocked.yaml", "winner_by_angle.yaml", "nearest.yaml"),
+    *("tries.csv", "sensitivity.csv", "front.csv"),
+    *("design_*.png", REPORT),
+)
 FILES = (
     *_OF_A_RUN,
     *(f"{BLOCKED}/{name}" for name in _OF_A_RUN),
     *_OF_A_SWEEP,
     *_OF_CONTROL,
     *_OF_A_LADDER,
+    *_OF_A_DESIGN,
 )
 """What is written: no other name can be, and `overwrite` removes nothing else."""
 

@@ -97,6 +97,11 @@ KINDS = {
         "a moment", "N*mm", "N*mm", "5 N*mm", {"N*mm": "1", "mN*m": "1", "N*m": "1e3", "N mm": "1"}
     ),
     "mass": Kind("a mass", "t", "g", "20 g", {"g": "1e-6", "kg": "1e-3", "mg": "1e-9"}),
+    "strain": Kind("a strain", "percent", "%", "60 %", {"%": "1", "percent": "1"}),
+    "energy": Kind("an energy", "mJ", "mJ", "20 mJ", {"mJ": "1", "J": "1e3", "N*mm": "1"}),
+    "curvature": Kind(
+        "a curvature", "1/mm", "1/m", "20 1/m", {"1/mm": "1", "1/cm": "0.1", "1/m": "1e-3"}
+    ),
     "accuracy": Kind("an accuracy", "percent", "%", "1 %", {"%": "1", "percent": "1"}),
     "time": Kind("a time", "s", "ms", "5 ms", {"s": "1", "ms": "1e-3"}),
     "frequency": Kind("a frequency", "Hz", "Hz", "100 Hz", {"Hz": "1", "kHz": "1e3"}),

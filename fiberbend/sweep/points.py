@@ -18,16 +18,10 @@ from fiberbend.accuracy.words import ways_differ
 from fiberbend.case.case import Case
 from fiberbend.effects.straight import kept_straight
 from fiberbend.models.choice import choose_model
-from fiberbend.reader.own_files import root_paths, rooted_value
+from fiberbend.reader.base_case import BaseCase, read_base
+from fiberbend.reader.own_files import rooted_value
 from fiberbend.reader.reader import parse_case
-from fiberbend.reader.yaml_file import (
-    YamlContent,
-    apply_setting,
-    line_numbers,
-    located,
-    read_yaml,
-    setting_path,
-)
+from fiberbend.reader.yaml_file import YamlContent, line_numbers, read_yaml
 from fiberbend.schema.paths import put, value_at
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.units import parse, show
@@ -41,6 +35,8 @@ from fiberbend.sweep.fields import (
 from fiberbend.sweep.file import ReportSpec, SweepFile, contradictions
 
 _REACH = "; the pressure of the base case has to reach it, effects: pressure: {to: …}"
+_DESIGN = frozenset({"targets", "goals"})
+"""Keys of a design file."""
 _OWN_FILES = ("pictures", "fields", "report")
 """Output that a point leaves where the base case or the sweep file asks for it by name."""
 
@@ -132,6 +128,8 @@ def read_sweep(path: Path | str, settings: Iterable[str] = ()) -> Sweep:
     source = read_yaml(path)
     if "case" not in source.data and "actuator" in source.data:
         raise CaseError([Problem(str(path), f"this is a case: fiberbend run {path}")])
+    if not _DESIGN.isdisjoint(source.data):
+        raise CaseError([Problem(str(path), f"this is a design: fiberbend design {path}")])
     with line_numbers(source.lines):
         return _checked(source, path, list(settings))
 
@@ -144,7 +142,7 @@ def _checked(source: YamlContent, path: Path, settings: Sequence[str]) -> Sweep:
     problems = list(contradictions(file))
     if problems:
         raise CaseError(problems)
-    base = _base(file, source, path, settings)
+    base = read_base(file.case, file.set, source, path, settings)
     points = [_rooted(point, path.parent) for point in _settings(file)]
     checked = _check_all(base, points, file.report)
     cases = [case for case, _ in checked]
@@ -157,54 +155,6 @@ def _checked(source: YamlContent, path: Path, settings: Sequence[str]) -> Sweep:
         result.append(Point(point_name(values), case, blocked_case(case, file.report), given))
     _no_point_twice(result)
     return Sweep(file.title, tuple(result), found_columns, file.report)
-
-
-@dataclasses.dataclass(frozen=True)
-class _Base:
-    """The base case with all that its points share.
-
-    Attributes:
-        source: the case, not yet checked, and its lines in its own file.
-        where: that file, or `case` for one within the sweep file.
-        changed: paths whose values come from elsewhere.
-    """
-
-    source: YamlContent
-    where: str
-    changed: tuple[str, ...]
-
-    def reported(self, problem: Problem) -> Problem:
-        """A problem of the base case, as one of a sweep."""
-        found = located(problem, self.source.lines, self.changed)
-        return dataclasses.replace(found, path=f"{self.where}: {found.path}")
-
-
-def _base(file: SweepFile, source: YamlContent, path: Path, settings: Sequence[str]) -> _Base:
-    if isinstance(file.case, dict):
-        begin = "case."
-        lines = source.lines.items()
-        inner = {place.removeprefix(begin): n for place, n in lines if place.startswith(begin)}
-        where, own = "case", YamlContent(copy.deepcopy(file.case), inner)
-    else:
-        where, own = file.case, read_yaml(path.parent / file.case)
-    base = own.data
-    # what a file says is seen from that file, and what a sweep file says from it
-    root_paths(base, path.parent if where == "case" else (path.parent / where).parent)
-    problems: list[Problem] = []
-    for field, value in file.set.items():
-        try:
-            put(base, field, rooted_value(field, copy.deepcopy(value), path.parent))
-        except CaseError as error:
-            problems += (Problem(f"set.{p.path}", p.text) for p in error.problems)
-    for setting in settings:
-        try:
-            apply_setting(base, setting)
-        except CaseError as error:
-            problems += error.problems
-    if problems:
-        raise CaseError(problems)
-    root_paths(base, Path())
-    return _Base(own, where, (*file.set, *map(setting_path, settings)))
 
 
 def _settings(file: SweepFile) -> Iterator[tuple[_Setting, ...]]:
@@ -240,7 +190,7 @@ def _rooted(point: tuple[_Setting, ...], folder: Path) -> tuple[_Setting, ...]:
 
 
 def _check_all(
-    base: _Base, points: list[tuple[_Setting, ...]], report: ReportSpec
+    base: BaseCase, points: list[tuple[_Setting, ...]], report: ReportSpec
 ) -> list[tuple[Case, dict[str, Any]]]:
     """The case of every point, checked and as it is given, or all their problems."""
     cases: list[tuple[Case, dict[str, Any]]] = []
@@ -259,7 +209,7 @@ def _check_all(
 
 
 def _merged(
-    wrong: dict[Problem, list[int]], points: list[tuple[_Setting, ...]], base: _Base
+    wrong: dict[Problem, list[int]], points: list[tuple[_Setting, ...]], base: BaseCase
 ) -> Iterator[Problem]:
     """Problems of points by their cause, as few as possible.
 

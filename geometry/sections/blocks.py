@@ -16,6 +16,9 @@ SIDES = ((0, 1), (0, 2), (1, 3), (2, 3))
 
 _MIRRORED_SIDES = (0, 2, 1, 3)
 
+_BESIDE = (0.0, 1e-10, -1e-10)
+"""More than round-off of a coordinate, and less than what rounds to another key but one."""
+
 
 @dataclasses.dataclass(frozen=True)
 class Block:
@@ -101,14 +104,24 @@ class Layout:
         Raises:
             KeyError: no block has a corner there.
         """
-        self.named[name] = self._numbers[_key(point)]
+        self.named[name] = self._known(point)
+
+    def _known(self, point: Point) -> int:
+        """The corner at a point: two sums of one length may be rounded to two keys."""
+        for across in _BESIDE:
+            for up in _BESIDE:
+                number = self._numbers.get(_key((point[0] + across, point[1] + up)))
+                if number is not None:
+                    return number
+        raise KeyError(point)
 
     def _number(self, point: Point) -> int:
-        key = _key(point)
-        if key not in self._numbers:
-            self._numbers[key] = len(self.points)
+        try:
+            return self._known(point)
+        except KeyError:
+            self._numbers[_key(point)] = len(self.points)
             self.points.append(point)
-        return self._numbers[key]
+            return len(self.points) - 1
 
     def mirrored(self) -> Layout:
         """The full section of a half one: its blocks, then their images in x = 0."""

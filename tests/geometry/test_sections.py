@@ -378,3 +378,15 @@ def _same(one: np.ndarray, other: np.ndarray) -> bool:
 
 def _as_set(points: np.ndarray) -> set[tuple[float, ...]]:
     return set(map(tuple, (points.round(9) + 0.0).tolist()))
+
+
+@pytest.mark.parametrize("wall", [1.0123456785, 2.3352335235, 1.9876543215])
+@pytest.mark.parametrize("radius", [5.0000000005, 7.3352335235, 8.1234567895])
+def test_a_corner_is_one_whichever_sum_of_lengths_has_led_to_it(wall: float, radius: float) -> None:
+    # half a unit of the last digit by which corners are told apart, rounded up or down
+    lengths: dict[str, Any] = {"radius": radius, "wall": wall, "floor": 1.4444444445, "sheath": 1.0}
+    given = {"section": "hemicircle", "length": 30.0, "cap": 10.0, **lengths}
+    plain = make_actuator(given | {"radius": 7.0, "wall": 2.0, "floor": 1.5})
+    size = MeshSize(axial=4.0, section=1, half=True)
+    mesh = section_quadrilaterals(make_actuator(given), size)
+    assert len(mesh.nodes) == len(section_quadrilaterals(plain, size).nodes)

@@ -1,0 +1,1 @@
+"""From what an actuator is to do to its case."""

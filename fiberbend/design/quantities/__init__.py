@@ -1,0 +1,1 @@
+"""What can be asked of an actuator, a family a file; table.py lists them."""

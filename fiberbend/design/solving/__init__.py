@@ -1,0 +1,1 @@
+"""Cases of a design solved by section, cell and body."""

@@ -1,0 +1,1 @@
+"""What a design tells of its answer: words, tables, pictures, files."""
