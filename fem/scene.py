@@ -51,7 +51,7 @@ class Scene(OwnCode):
         volume_scale: norm of ∫ φ dX over the pressure field's test functions, mm³.
         force_noise: norm of the forces that round-off in all potentials makes at rest, N.
         solid_noise: the part of it that is not of potentials with own code, N.
-        noise_along: what round-off makes there of ∂Π/∂q of the natural scalars, by name.
+        noise_along: what round-off makes there of ∂Π/∂q of natural scalars, held or not, by name.
         volumetric: owned dofs of the pressure field, (owned,).
         free: local dofs (owned and ghosts) that no constraint fixes, (local,).
         free_opposite: the same for modes of the symmetry opposite to that of half a body; None of
@@ -151,7 +151,8 @@ class Scene(OwnCode):
         self.solid_noise = self._solid_noise()
         discretes = self.discrete.values()
         self.force_noise = float(np.hypot(summed_noise(self.body, discretes), self.solid_noise))
-        self.noise_along = noise_along(self.body, discretes, self.natural)
+        every = (*self.body.natural, *self.added)
+        self.noise_along = noise_along(self.body, discretes, every)
 
     def __del__(self) -> None:
         if hasattr(self, "matrix") and may_free(self.matrix):
