@@ -12,6 +12,7 @@ dc_k/ds = (k c_{k+2} − c_{k+1})/2.
 
 from __future__ import annotations
 
+import functools
 import math
 
 import numpy as np
@@ -24,10 +25,15 @@ ORDER = 8
 _SMALL = 4.0
 """Greatest s by the series: its terms fall from the first one on."""
 _TERMS = 13
-"""Of the series of c_6 and c_7; the next one is below 1e-23 at s = 4."""
-_AXES = np.zeros((3, 3, 3))
+"""Of the series of c_6 and c_7 at s = 4: the next one is below 1e-23."""
+_FEWER = ((1e-3, 3), (0.05, 5), (0.5, 8))
+"""Greatest s, and terms that are then below 1e-19."""
+_EYE = np.eye(3)
+_CROSS = np.zeros((3, 3, 3))
+"""[a×] = Σ a_k of these."""
 for _i, _j, _k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-    _AXES[_i, _j, _k], _AXES[_i, _k, _j] = 1.0, -1.0
+    _CROSS[_k, _j, _i], _CROSS[_k, _i, _j] = 1.0, -1.0
+_CROSS = _CROSS.reshape(3, 9)
 
 
 def cross(a: Floats, b: Floats) -> Floats:
@@ -38,16 +44,14 @@ def cross(a: Floats, b: Floats) -> Floats:
 
 def cross_matrix(vector: Floats) -> Floats:
     """[a×] with [a×] x = a × x, (..., 3, 3) of (..., 3)."""
-    x, y, z = vector[..., 0], vector[..., 1], vector[..., 2]
-    zero = np.zeros_like(x)
-    rows = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1)
-    return rows.reshape(*vector.shape[:-1], 3, 3)
+    # one product of matrices: numpy needs a microsecond for every call
+    return (vector @ _CROSS).reshape(*vector.shape[:-1], 3, 3)
 
 
 def axial(dyad: Floats) -> Floats:
     """Σ y × f of dyads Σ y ⊗ f, (..., 3) of (..., 3, 3)."""
-    pairs = ((1, 2), (2, 0), (0, 1))
-    return np.stack([dyad[..., i, j] - dyad[..., j, i] for i, j in pairs], axis=-1)
+    out: Floats = dyad.reshape(*dyad.shape[:-2], 9) @ -_CROSS.T
+    return out
 
 
 def stumpff(s: Floats) -> Floats:
@@ -60,16 +64,18 @@ def stumpff(s: Floats) -> Floats:
         The functions along a new first axis, (8, ...).
     """
     c = np.empty((ORDER, *s.shape))
-    near = np.minimum(s, _SMALL)
+    greatest = float(s.max())
+    near = s if greatest <= _SMALL else np.minimum(s, _SMALL)
+    terms = next((count for bound, count in _FEWER if greatest <= bound), _TERMS)
     for k in (ORDER - 2, ORDER - 1):
-        total = np.full_like(near, 1.0)
-        for j in range(_TERMS, 0, -1):
-            total = 1.0 - near / ((2 * j + k) * (2 * j + k - 1)) * total
+        total = np.ones_like(near)
+        for j in range(terms, 0, -1):
+            total = 1.0 - near * total / ((2 * j + k) * (2 * j + k - 1))
         c[k] = total / math.factorial(k)
     for k in range(ORDER - 3, -1, -1):
         c[k] = 1.0 / math.factorial(k) - near * c[k + 2]
-    far = s > _SMALL
-    if np.any(far):
+    if greatest > _SMALL:
+        far = s > _SMALL
         large = s[far]
         angle = np.sqrt(large)
         c[0][far], c[1][far] = np.cos(angle), np.sin(angle) / angle
@@ -93,18 +99,34 @@ class Pair:
 
     def __init__(self, phi: Floats, c: Floats, k: int) -> None:
         self.phi = phi
-        self.s = np.sum(phi * phi, axis=-1)
-        # f, df/ds, d²f/ds², and those of g
-        first = {i: (i * c[i + 2] - c[i + 1]) / 2 for i in range(k, min(k + 4, ORDER - 2))}
-        self._f, self._g = (
-            (c[i], first[i], (i * first[i + 2] - first[i + 1]) / 2) for i in (k, k + 1)
-        )
+        self._c, self._k = c, k
+
+    @functools.cached_property
+    def s(self) -> Floats:
+        """|φ|², (...), rad²."""
+        square: Floats = np.sum(self.phi * self.phi, axis=-1)
+        return square
+
+    @functools.cached_property
+    def _f(self) -> tuple[Floats, Floats, Floats]:
+        """f, df/ds, d²f/ds²."""
+        return self._slopes(self._k)
+
+    @functools.cached_property
+    def _g(self) -> tuple[Floats, Floats, Floats]:
+        return self._slopes(self._k + 1)
+
+    def _slopes(self, k: int) -> tuple[Floats, Floats, Floats]:
+        c = self._c
+        first, third = ((i * c[i + 2] - c[i + 1]) / 2 for i in (k, k + 2))
+        second = ((k + 1) * c[k + 3] - c[k + 2]) / 2
+        return c[k], first, (k * third - second) / 2
 
     def matrix(self) -> Floats:
         """The map itself, (..., 3, 3)."""
         across = cross_matrix(self.phi)
-        f, g = self._f[0][..., None, None], self._g[0][..., None, None]
-        out: Floats = np.eye(3) + f * across + g * (across @ across)
+        f, g = self._c[self._k][..., None, None], self._c[self._k + 1][..., None, None]
+        out: Floats = _EYE + f * across + g * (across @ across)
         return out
 
     def slope(self, x: Floats) -> Floats:
@@ -114,7 +136,7 @@ class Pair:
         turned = cross(phi, x)
         square = phi * along - s * x
         rate = 2 * (self._f[1][..., None] * turned + self._g[1][..., None] * square)
-        bent = _outer(phi, x) - 2 * _outer(x, phi) + along[..., None] * np.eye(3)
+        bent = _outer(phi, x) - 2 * _outer(x, phi) + along[..., None] * _EYE
         f, g = self._f[0][..., None, None], self._g[0][..., None, None]
         out: Floats = _outer(rate, phi) - f * cross_matrix(x) + g * bent
         return out
@@ -143,7 +165,7 @@ class Pair:
         second = 4 * (f[2] * along + g[2] * square)
         half = 2 * (f[1][..., None] * w + g[1][..., None] * bent) + second[..., None] * phi / 2
         outer = _outer(half, phi)
-        eye = np.eye(3)
+        eye = _EYE
         out: Floats = outer + np.swapaxes(outer, -1, -2) + rate[..., None, None] * eye
         return out + g[0][..., None, None] * (both - 2 * trace[..., None, None] * eye)
 

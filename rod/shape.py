@@ -25,6 +25,7 @@ from rod.layout import Layout
 
 _PARTS = np.array([0.5, 1.0])
 """Of a piece: to its middle and to its end."""
+_EYE = np.eye(3)
 
 
 class Shape:
@@ -322,7 +323,7 @@ def _momentum(sums: tuple[Floats, ...], screw: tuple[Floats, Floats]) -> tuple[F
     u, omega = screw
     linear = mass[:, None, None] * u - cross_matrix(other) @ omega
     trace = np.trace(square, axis1=1, axis2=2)[:, None, None]
-    inertia = trace * np.eye(3) - np.swapaxes(square, -1, -2)
+    inertia = trace * _EYE - np.swapaxes(square, -1, -2)
     return linear, cross_matrix(first) @ u + inertia @ omega
 
 

@@ -1,0 +1,257 @@
+"""Motion of a rod by a scheme that keeps its energy.
+
+With the frames X = [R | r] of all sections the kinetic energy ½ Σ tr(V P Vᵀ), V = Ẋ, has constant
+masses P. Velocities of the frames are unknowns beside the strains ε, which place the frames. A step
+from ε₀, V₀ to ε₁, V₁ is the midpoint rule
+
+    X₁ − X₀ = Δt (V₀ + V₁)/2,      ∇̄G(ε₀, ε₁) + C Δε/Δt = 0,
+    G(ε) = ∫ Φ(ε) ds + Σ A : X(ε),     A = (V₁ − V₀) P/Δt − loads,
+
+with the discrete gradient ∇̄G = ∇G(ε̄) + [G₁ − G₀ − ∇G(ε̄)·Δε] W Δε/(Δε·W Δε) at the mean strains
+ε̄ (Gonzalez 1996, doi 10.1007/BF02440162). As ∇̄G·Δε = G₁ − G₀, what is undamped keeps ½ Σ tr(V P Vᵀ)
++ ∫ Φ − loads : X to the last digits of Newton's method. It is the method of Betsch 2005
+(doi 10.1016/j.cma.2005.01.004) with strains as the reduced unknowns; of second order, and stable at
+any Δt. ΔX is exact: no rotation drifts.
+
+Damping: `viscosity` is Kelvin's and Voigt's, forces and moments η ε̇ of the sections (N s of
+stretch, N mm² s of curvatures); `drag` is Rayleigh's part of the mass, 1/s. Both take energy out in
+every step, never in.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from scipy.linalg import lu_factor, lu_solve
+
+from rod.functions import Floats
+from rod.rod import Level, Rod
+from rod.statics import NoEquilibriumError, size
+
+_CLOSE = 1e-11
+_LOOSE = 1e-7
+_MOST = 30
+_FAR = 1e3
+_SHORTEST = 2.0**-6
+_SLOW = 0.05
+"""An old factor that reduces a correction by less is made anew."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Moving:
+    """A rod in motion.
+
+    Attributes:
+        time: t, s.
+        strains: ε, (n, m).
+        frames: X, (2 n + 1, 3, 4); 1 and mm.
+        velocity: V, (2 n + 1, 3, 4); 1/s and mm/s.
+        step: Δε of the last step, (n, m).
+    """
+
+    time: float
+    strains: Floats
+    frames: Floats
+    velocity: Floats
+    step: Floats
+
+
+class Motion:
+    """Steps in time of a rod.
+
+    Args:
+        rod: with its inertia.
+        level: what acts at a time in s.
+        viscosity: η of each free strain, (n, m) or (m,); N s and N mm² s.
+        drag: of the mass, 1/s.
+
+    Attributes:
+        rod: as given.
+        viscosity: as given, (n, m).
+        drag: as given.
+        inertia: of the rod.
+        sizes: changes of strains that count as one, (n, m).
+        weights: W of the discrete gradient, (n, m).
+
+    Raises:
+        ValueError: no inertia, or damping below zero.
+    """
+
+    def __init__(
+        self,
+        rod: Rod,
+        level: Callable[[float], Level],
+        viscosity: Floats | float = 0.0,
+        drag: float = 0.0,
+    ) -> None:
+        if rod.inertia is None:
+            raise ValueError("a rod without inertia does not move by itself")
+        self.viscosity = np.broadcast_to(np.asarray(viscosity, dtype=float), rod.layout.shape)
+        if np.any(self.viscosity < 0) or drag < 0:
+            raise ValueError("damping: zero or more expected")
+        self.rod, self._level, self.drag = rod, level, drag
+        self.inertia: Floats = rod.inertia
+        self.sizes = size(rod)
+        # any positive weights: by those of lengths and of sizes a stretch and an angle count alike
+        self.weights = rod.layout.lengths[:, None] / self.sizes**2
+
+    def at(self, strains: Floats, rates: Floats | None = None, time: float = 0.0) -> Moving:
+        """A rod that begins to move.
+
+        Args:
+            strains: ε, (n, m).
+            rates: ε̇, (n, m), 1/s and 1/(mm s); None: it is at rest.
+            time: t, s.
+        """
+        shape = self.rod.shape(strains)
+        still = np.zeros_like(strains)
+        velocity = shape.moved(still if rates is None else rates)
+        return Moving(time, strains, shape.frames, velocity, still)
+
+    def rates(self, moving: Moving) -> Floats:
+        """ε̇ with the momentum of the frames' velocity, (n, m), 1/s and 1/(mm s)."""
+        shape = self.rod.shape(moving.strains)
+        momentum = shape.pulled(moving.velocity @ self.inertia).ravel()
+        rates: Floats = np.linalg.solve(shape.mass(self.inertia), momentum)
+        return rates.reshape(moving.strains.shape)
+
+    def energy(self, moving: Moving) -> float:
+        """Of motion, sections and dead loads together, N mm."""
+        rod = self.rod
+        level = self._level(moving.time)
+        kinetic = float(np.sum(moving.velocity @ self.inertia * moving.velocity)) / 2
+        held = float(np.sum(rod.dead(level) * moving.frames))
+        return kinetic + rod.elastic(moving.strains, level.pressure) - held
+
+    def run(self, moving: Moving, step: float, count: int) -> Iterator[Moving]:
+        """States after each of a number of steps.
+
+        Args:
+            moving: the first one.
+            step: Δt, s.
+            count: number of steps.
+
+        Yields:
+            The states.
+
+        Raises:
+            NoEquilibriumError: a step does not converge.
+        """
+        for _ in range(count):
+            moving = self.step(moving, step)
+            yield moving
+
+    def step(self, moving: Moving, step: float) -> Moving:
+        """The state a time Δt later; in steps of half that time where Newton's method fails.
+
+        Args:
+            moving: a state.
+            step: Δt, s.
+
+        Raises:
+            NoEquilibriumError: the shortest step does not converge.
+        """
+        return self._halved(moving, step, step * _SHORTEST)
+
+    def _halved(self, moving: Moving, step: float, least: float) -> Moving:
+        """A step, or two of half of it."""
+        try:
+            return self._whole(moving, step)
+        except NoEquilibriumError:
+            if step <= least:
+                raise
+        begun = dataclasses.replace(moving, step=moving.step / 2)
+        middle = self._halved(begun, step / 2, least)
+        after = self._halved(middle, step / 2, least)
+        return dataclasses.replace(after, step=2 * after.step)
+
+    def _whole(self, moving: Moving, step: float) -> Moving:
+        """One step by Newton's method, from a change of strains like the last one's."""
+        rod, level = self.rod, self._level(moving.time + step / 2)
+        now = _Step(self, moving, step, level, rod.dead(level))
+        change = moving.step
+        last, slow = np.inf, True
+        for _ in range(_MOST):
+            residual = now.residual(change)
+            if slow:
+                factor = lu_factor(now.tangent(), check_finite=False)
+            correction = lu_solve(factor, residual.ravel(), check_finite=False)
+            change = change - correction.reshape(change.shape)
+            moves = float(np.max(np.abs(correction.reshape(change.shape) / self.sizes)))
+            if not moves < _FAR:
+                break
+            if moves < _CLOSE or (moves < _LOOSE and moves > last / 2):
+                after = rod.shape(moving.strains + change)
+                velocity = 2 / step * (after.frames - moving.frames) - moving.velocity
+                time = moving.time + step
+                return Moving(time, after.strains, after.frames, velocity, change)
+            slow = moves > _SLOW * last
+            last = moves
+        raise NoEquilibriumError(f"the step from {moving.time:.6g} s does not converge")
+
+
+class _Step:
+    """The equations of one step.
+
+    Args:
+        motion: rod and damping.
+        moving: the state before.
+        step: Δt, s.
+        level: in the middle of the step.
+        dead: loads of constant direction then.
+    """
+
+    def __init__(
+        self, motion: Motion, moving: Moving, step: float, level: Level, dead: Floats
+    ) -> None:
+        self._motion, self._rod, self._before = motion, motion.rod, moving
+        self._level, self._dead = level, dead
+        self._lengths = self._rod.layout.lengths[:, None]
+        self._elastic = self._rod.elastic(moving.strains, level.pressure)
+        self._viscous = self._lengths * motion.viscosity / step
+        # A = weight ΔX P + start
+        self._weight = 2 / step**2 + motion.drag / step
+        self._start = -2 / step * moving.velocity @ motion.inertia - dead
+
+    def residual(self, change: Floats) -> Floats:
+        """∇̄G + C Δε/Δt less the virtual work of loads without a potential, (n, m)."""
+        rod, motion, pressure = self._rod, self._motion, self._level.pressure
+        strains = self._before.strains
+        self._change = change
+        self._middle = rod.shape(strains + change / 2)
+        self._after = rod.shape(strains + change)
+        moved = self._after.frames - self._before.frames
+        self._pushed = self._weight * moved @ motion.inertia
+        self._loads = self._pushed + self._start
+        law = rod.law.gradient(self._middle.strains, pressure)
+        self._forces = self._lengths * law + self._middle.pulled(self._loads)
+        gap = rod.elastic(self._after.strains, pressure) - self._elastic
+        gap += float(np.sum(self._loads * moved)) - float(np.sum(self._forces * change))
+        self._weighed = motion.weights * change
+        square = float(np.sum(self._weighed * change))
+        out = self._forces + self._viscous * change
+        # what the gradient in the middle misses of the difference, and the square it is spread by
+        self._missed, self._square = (gap / square, square) if square > 0 else (0.0, np.inf)
+        out = out + self._missed * self._weighed
+        if self._level.tip:
+            out = out - self._level.tip * rod.tip.work(self._middle)
+        return out
+
+    def tangent(self) -> Floats:
+        """The derivative of the last residual by the change of strains, (n m, n m)."""
+        rod, motion, pressure = self._rod, self._motion, self._level.pressure
+        middle, after = self._middle, self._after
+        out: Floats = rod.stiffness(middle.strains, pressure) + middle.curved(self._loads)
+        out = out / 2 + self._weight * middle.mass(motion.inertia, after)
+        law = self._lengths * rod.law.gradient(after.strains, pressure)
+        ahead = law + after.pulled(self._loads + self._pushed) - self._forces
+        w = self._weighed.ravel()
+        row = (ahead.ravel() - self._change.ravel() @ out) / self._square
+        out += np.outer(w, row - 2 * self._missed / self._square * w)
+        diagonal = self._viscous + self._missed * motion.weights
+        out[np.diag_indices_from(out)] += diagonal.ravel()
+        if self._level.tip:
+            out -= self._level.tip / 2 * rod.tip.slope(middle)
+        return out

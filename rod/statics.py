@@ -1,0 +1,216 @@
+"""Equilibria of a rod: Newton's method, steps of load or of an angle, and stability."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.linalg import LinAlgError, cholesky, lu_factor, lu_solve
+
+from rod.functions import Floats
+from rod.rod import Level, Rod
+from rod.shape import Shape
+
+_CLOSE = 1e-9
+"""Greatest last correction of a stretch, and of an angle over the whole length in rad; as it falls
+quadratically, what is left is of round-off."""
+_LOOSE = 1e-6
+"""One that round-off may keep from falling further."""
+_MOST = 20
+_FAR = 2.0
+"""Greatest correction: a rod that a step of Newton turns further is on no good way."""
+_SMALLEST = 2.0**-10
+_SYMMETRIC = 1e-10
+
+
+class NoEquilibriumError(RuntimeError):
+    """Newton's method found no state, or a march could not go on."""
+
+
+@dataclasses.dataclass(frozen=True)
+class State:
+    """An equilibrium.
+
+    Attributes:
+        shape: the rod.
+        level: what acts on it.
+        share: of the way between two levels.
+        iterations: of Newton's method.
+        unstable: number of negative eigenvalues of the tangent; of one that is not symmetric, of
+            eigenvalues with a negative real part.
+    """
+
+    shape: Shape
+    level: Level
+    share: float
+    iterations: int
+    unstable: int
+
+    @property
+    def strains(self) -> Floats:
+        """(n, m)."""
+        return self.shape.strains
+
+
+@dataclasses.dataclass(frozen=True)
+class Path:
+    """From one level to another; what is beyond its ends is on it as well.
+
+    Attributes:
+        start: the level at 0.
+        end: the level at 1.
+    """
+
+    start: Level
+    end: Level
+
+    def at(self, share: float) -> Level:
+        """The level at a share of the way."""
+        return self.start.toward(self.end, share)
+
+
+@dataclasses.dataclass(frozen=True)
+class Held:
+    """Σ w ε is given, and the share of the path is unknown: an angle leads over limit points.
+
+    Attributes:
+        weights: w, (n, m); `Layout.weights` has those of an angle.
+    """
+
+    weights: Floats
+
+
+def size(rod: Rod) -> Floats:
+    """Changes of strains that count as one: of a stretch 1, of a curvature 1/L; (n, m)."""
+    length = float(rod.layout.lengths.sum())
+    sizes = np.array([1.0, 1.0, 1.0, 1 / length, 1 / length, 1 / length])
+    return np.broadcast_to(sizes[list(rod.layout.columns)], rod.layout.shape)
+
+
+def solve(
+    rod: Rod,
+    strains: Floats,
+    path: Path,
+    target: float,
+    held: Held | None = None,
+    share: float | None = None,
+) -> State:
+    """The equilibrium at a share of a path, or at a given angle on it, by Newton's method.
+
+    Args:
+        rod: the rod.
+        strains: to start from, (n, m).
+        path: levels.
+        target: the share; with `held` the value of Σ w ε.
+        held: what is given in place of the share.
+        share: to start from where it is unknown; 0 if none is given.
+
+    Returns:
+        The state.
+
+    Raises:
+        NoEquilibriumError: it does not converge.
+    """
+    sizes, change = size(rod), path.end.less(path.start)
+    at = target if held is None else (0.0 if share is None else share)
+    last = math.inf
+    for iteration in range(1, _MOST + 1):
+        shape, level = rod.shape(strains), path.at(at)
+        tangent = rod.tangent(shape, level)
+        columns = [-rod.residual(shape, level).ravel()]
+        if held is not None:
+            columns.append(-rod.growth(shape, level, change).ravel())
+        try:
+            solved = lu_solve(lu_factor(tangent), np.stack(columns, axis=1))
+        except (LinAlgError, ValueError) as error:
+            raise NoEquilibriumError(f"no finite tangent: {error}") from error
+        step = solved[:, 0]
+        if held is not None:
+            weights = held.weights.ravel()
+            missing = target - float(weights @ strains.ravel()) - float(weights @ step)
+            more = missing / float(weights @ solved[:, 1])
+            step, at = step + more * solved[:, 1], at + more
+        strains = strains + step.reshape(strains.shape)
+        moved = float(np.max(np.abs(step.reshape(strains.shape) / sizes)))
+        if not moved < _FAR * rod.layout.shape[0]:
+            raise NoEquilibriumError(f"iteration {iteration}: a correction of {moved:.3g}")
+        if moved < _CLOSE or (moved < _LOOSE and moved > last / 2):
+            break
+        last = moved
+    else:
+        raise NoEquilibriumError(f"{_MOST} iterations leave a correction of {moved:.3g}")
+    shape, level = rod.shape(strains), path.at(at)
+    return State(shape, level, at, iteration, unstable_modes(rod.tangent(shape, level)))
+
+
+def unstable_modes(tangent: Floats) -> int:
+    """Number of negative eigenvalues, or of negative real parts where it is not symmetric."""
+    scale = float(np.abs(tangent).max())
+    if float(np.abs(tangent - tangent.T).max()) > _SYMMETRIC * scale:
+        return int(np.sum(np.linalg.eigvals(tangent).real < 0))
+    try:
+        cholesky(tangent, check_finite=False)
+    except LinAlgError:
+        return int(np.sum(np.linalg.eigvalsh(tangent) < 0))
+    return 0
+
+
+def march(
+    rod: Rod,
+    start: State | Floats,
+    path: Path,
+    targets: Sequence[float],
+    held: Held | None = None,
+) -> list[State]:
+    """States along a path, each from the last two by extrapolation; steps are halved where needed.
+
+    Args:
+        rod: the rod.
+        start: a state or strains of an equilibrium at share 0.
+        path: levels.
+        targets: shares, or with `held` values of Σ w ε, in turn.
+        held: what is given in place of the share.
+
+    Returns:
+        The states at the targets.
+
+    Raises:
+        NoEquilibriumError: the smallest step does not converge.
+    """
+    strains, share = (
+        (start.strains, start.share) if isinstance(start, State) else (start, 0.0)
+    )
+    now = share if held is None else float(np.sum(held.weights * strains))
+    known = [(now, strains, share)]
+    states = []
+    for target in targets:
+        begin, part = known[-1][0], 1.0
+        done = 0.0
+        while done < 1.0:
+            part = min(part, 1.0 - done)
+            goal = target if done + part == 1.0 else begin + (done + part) * (target - begin)
+            guess, at = _ahead(known, goal)
+            try:
+                state = solve(rod, guess, path, goal, held, at)
+            except NoEquilibriumError:
+                part /= 2
+                if part < _SMALLEST:
+                    raise
+                continue
+            known = [*known[-1:], (goal, state.strains, state.share)]
+            done += part
+            part *= 2
+        states.append(state)
+    return states
+
+
+def _ahead(known: list[tuple[float, Floats, float]], goal: float) -> tuple[Floats, float]:
+    """Strains and share by the line through the last two states."""
+    (now, strains, share) = known[-1]
+    if len(known) == 1 or known[0][0] == now:
+        return strains, share
+    before, earlier, past = known[0]
+    part = (goal - now) / (now - before)
+    return strains + part * (strains - earlier), share + part * (share - past)
