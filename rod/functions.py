@@ -54,6 +54,12 @@ def axial(dyad: Floats) -> Floats:
     return out
 
 
+def trace(dyad: Floats) -> Floats:
+    """Σ y·f of dyads Σ y ⊗ f, (...,) of (..., 3, 3)."""
+    out: Floats = dyad[..., 0, 0] + dyad[..., 1, 1] + dyad[..., 2, 2]
+    return out
+
+
 def stumpff(s: Floats) -> Floats:
     """c_0 to c_7.
 
@@ -143,23 +149,23 @@ class Pair:
 
     def gradient(self, z: Floats) -> Floats:
         """∂(Z : map)/∂φ, (..., 3) of Z (..., 3, 3)."""
-        w, both, trace = _split(z)
+        w, both, total = _split(z)
         phi = self.phi
         bent = np.einsum("...ij,...j->...i", both, phi)
-        square = np.sum(phi * bent, axis=-1) / 2 - self.s * trace
+        square = np.sum(phi * bent, axis=-1) / 2 - self.s * total
         rate = 2 * (self._f[1] * np.sum(phi * w, axis=-1) + self._g[1] * square)
         f, g = self._f[0][..., None], self._g[0][..., None]
-        out: Floats = rate[..., None] * phi + f * w + g * (bent - 2 * trace[..., None] * phi)
+        out: Floats = rate[..., None] * phi + f * w + g * (bent - 2 * total[..., None] * phi)
         return out
 
     def hessian(self, z: Floats) -> Floats:
         """∂²(Z : map)/∂φ², (..., 3, 3) of Z (..., 3, 3)."""
-        w, both, trace = _split(z)
+        w, both, total = _split(z)
         phi = self.phi
         bent = np.einsum("...ij,...j->...i", both, phi)
         along = np.sum(phi * w, axis=-1)
-        square = np.sum(phi * bent, axis=-1) / 2 - self.s * trace
-        bent = bent - 2 * trace[..., None] * phi
+        square = np.sum(phi * bent, axis=-1) / 2 - self.s * total
+        bent = bent - 2 * total[..., None] * phi
         f, g = self._f, self._g
         rate = 2 * (f[1] * along + g[1] * square)
         second = 4 * (f[2] * along + g[2] * square)
@@ -167,7 +173,7 @@ class Pair:
         outer = _outer(half, phi)
         eye = _EYE
         out: Floats = outer + np.swapaxes(outer, -1, -2) + rate[..., None, None] * eye
-        return out + g[0][..., None, None] * (both - 2 * trace[..., None, None] * eye)
+        return out + g[0][..., None, None] * (both - 2 * total[..., None, None] * eye)
 
 
 def _outer(a: Floats, b: Floats) -> Floats:
@@ -177,4 +183,4 @@ def _outer(a: Floats, b: Floats) -> Floats:
 
 def _split(z: Floats) -> tuple[Floats, Floats, Floats]:
     """w, Z + Zᵀ and tr Z."""
-    return -axial(z), z + np.swapaxes(z, -1, -2), np.trace(z, axis1=-2, axis2=-1)
+    return -axial(z), z + np.swapaxes(z, -1, -2), trace(z)

@@ -16,6 +16,10 @@ any Δt. ΔX is exact: no rotation drifts.
 Damping: `viscosity` is Kelvin's and Voigt's, forces and moments η ε̇ of the sections (N s of
 stretch, N mm² s of curvatures); `drag` is Rayleigh's part of the mass, 1/s. Both take energy out in
 every step, never in.
+
+Velocities of frames that are no rates of strains, of the order Δt², change their sign from step to
+step. Undamped they are kept, as energy is in them; where anything is damped they are dropped after
+every step, which takes energy of the order Δt⁴ too, so that a rod comes to rest.
 """
 
 from __future__ import annotations
@@ -24,10 +28,12 @@ import dataclasses
 from collections.abc import Callable, Iterator
 
 import numpy as np
-from scipy.linalg import lu_factor, lu_solve
+from scipy.linalg import solve
+from scipy.linalg.lapack import dgetrf, dgetrs
 
 from rod.functions import Floats
 from rod.rod import Level, Rod
+from rod.shape import Shape
 from rod.statics import NoEquilibriumError, size
 
 _CLOSE = 1e-11
@@ -92,6 +98,7 @@ class Motion:
         if np.any(self.viscosity < 0) or drag < 0:
             raise ValueError("damping: zero or more expected")
         self.rod, self._level, self.drag = rod, level, drag
+        self._damped = bool(drag) or bool(np.any(self.viscosity))
         self.inertia: Floats = rod.inertia
         self.sizes = size(rod)
         # any positive weights: by those of lengths and of sizes a stretch and an angle count alike
@@ -112,10 +119,12 @@ class Motion:
 
     def rates(self, moving: Moving) -> Floats:
         """ε̇ with the momentum of the frames' velocity, (n, m), 1/s and 1/(mm s)."""
-        shape = self.rod.shape(moving.strains)
-        momentum = shape.pulled(moving.velocity @ self.inertia).ravel()
-        rates: Floats = np.linalg.solve(shape.mass(self.inertia), momentum)
-        return rates.reshape(moving.strains.shape)
+        return self._rates(self.rod.shape(moving.strains), moving.velocity)
+
+    def _rates(self, shape: Shape, velocity: Floats) -> Floats:
+        momentum = shape.pulled(velocity @ self.inertia).ravel()
+        rates: Floats = solve(shape.mass(self.inertia), momentum, assume_a="pos")
+        return rates.reshape(shape.strains.shape)
 
     def energy(self, moving: Moving) -> float:
         """Of motion, sections and dead loads together, N mm."""
@@ -176,8 +185,9 @@ class Motion:
         for _ in range(_MOST):
             residual = now.residual(change)
             if slow:
-                factor = lu_factor(now.tangent(), check_finite=False)
-            correction = lu_solve(factor, residual.ravel(), check_finite=False)
+                # no exception by a singular one: what it gives is not finite, or too far
+                factor = dgetrf(now.tangent())[:2]
+            correction = dgetrs(*factor, residual.ravel())[0]
             change = change - correction.reshape(change.shape)
             moves = float(np.max(np.abs(correction.reshape(change.shape) / self.sizes)))
             if not moves < _FAR:
@@ -185,8 +195,9 @@ class Motion:
             if moves < _CLOSE or (moves < _LOOSE and moves > last / 2):
                 after = rod.shape(moving.strains + change)
                 velocity = 2 / step * (after.frames - moving.frames) - moving.velocity
-                time = moving.time + step
-                return Moving(time, after.strains, after.frames, velocity, change)
+                if self._damped:
+                    velocity = after.moved(self._rates(after, velocity))
+                return Moving(moving.time + step, after.strains, after.frames, velocity, change)
             slow = moves > _SLOW * last
             last = moves
         raise NoEquilibriumError(f"the step from {moving.time:.6g} s does not converge")

@@ -32,13 +32,17 @@ class Level:
 
     def toward(self, other: Level, share: float) -> Level:
         """On the way to another: itself at 0, the other at 1."""
-        pairs = zip(dataclasses.astuple(self), dataclasses.astuple(other), strict=True)
-        return Level(*((1 - share) * a + share * b for a, b in pairs))
+        rest = 1 - share
+        return Level(
+            rest * self.pressure + share * other.pressure,
+            rest * self.weight + share * other.weight,
+            rest * self.tip + share * other.tip,
+        )
 
     def less(self, other: Level) -> Level:
         """Difference to another."""
-        pairs = zip(dataclasses.astuple(self), dataclasses.astuple(other), strict=True)
-        return Level(*(a - b for a, b in pairs))
+        pressure, weight = self.pressure - other.pressure, self.weight - other.weight
+        return Level(pressure, weight, self.tip - other.tip)
 
 
 @dataclasses.dataclass(frozen=True)

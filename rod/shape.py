@@ -20,7 +20,7 @@ import functools
 
 import numpy as np
 
-from rod.functions import Floats, Pair, axial, cross, cross_matrix, stumpff
+from rod.functions import Floats, Pair, axial, cross, cross_matrix, stumpff, trace
 from rod.layout import Layout
 
 _PARTS = np.array([0.5, 1.0])
@@ -322,23 +322,28 @@ def _momentum(sums: tuple[Floats, ...], screw: tuple[Floats, Floats]) -> tuple[F
     mass, first, other, square = sums
     u, omega = screw
     linear = mass[:, None, None] * u - cross_matrix(other) @ omega
-    trace = np.trace(square, axis1=1, axis2=2)[:, None, None]
-    inertia = trace * _EYE - np.swapaxes(square, -1, -2)
+    inertia = trace(square)[:, None, None] * _EYE - np.swapaxes(square, -1, -2)
     return linear, cross_matrix(first) @ u + inertia @ omega
 
 
 def _couple(u: Floats, omega: Floats, force: Floats, dyad: Floats) -> Floats:
     """Σ δ(r + y) × f of forces that u + ω × y moves, (n, 3, m)."""
-    trace = np.trace(dyad, axis1=1, axis2=2)[:, None, None]
-    out: Floats = -cross_matrix(force) @ u + dyad @ omega - trace * omega
+    square = trace(dyad)[:, None, None]
+    out: Floats = dyad @ omega - cross_matrix(force) @ u - square * omega
     return out
 
 
 def _upper(matrix: Floats, n: int, m: int, lower: bool = False) -> Floats:
     """What a piece before another makes with it: blocks above the diagonal, or below it."""
+    out: Floats = matrix * _before(n, m, lower)
+    return out
+
+
+@functools.cache
+def _before(n: int, m: int, lower: bool) -> Floats:
     rows = np.repeat(np.arange(n), m)
     keep = rows[:, None] > rows if lower else rows[:, None] < rows
-    return np.where(keep, matrix, 0.0)
+    return keep.astype(float)
 
 
 def _flat(columns: Floats, count: int) -> Floats:

@@ -7,7 +7,8 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.linalg import LinAlgError, cholesky, lu_factor, lu_solve
+from scipy.linalg import LinAlgError, cholesky
+from scipy.linalg.lapack import dgesv
 
 from rod.functions import Floats
 from rod.rod import Level, Rod
@@ -20,7 +21,10 @@ _LOOSE = 1e-6
 """One that round-off may keep from falling further."""
 _MOST = 20
 _FAR = 2.0
-"""Greatest correction: a rod that a step of Newton turns further is on no good way."""
+"""Greatest correction, in rad over the whole length or in stretch: beyond it another branch may be
+met."""
+_AWAY = 1.0
+"""Greatest way from what a march foresees to the state that it finds."""
 _SMALLEST = 2.0**-10
 _SYMMETRIC = 1e-10
 
@@ -89,6 +93,12 @@ def size(rod: Rod) -> Floats:
     return np.broadcast_to(sizes[list(rod.layout.columns)], rod.layout.shape)
 
 
+def way(rod: Rod, change: Floats) -> float:
+    """How far a change of strains leads: a mean stretch or the turns of all pieces in sum, rad."""
+    parts = rod.layout.lengths[:, None] * np.abs(change) / size(rod)
+    return float(parts.sum(axis=0).max()) / float(rod.layout.lengths.sum())
+
+
 def solve(
     rod: Rod,
     strains: Floats,
@@ -122,10 +132,9 @@ def solve(
         columns = [-rod.residual(shape, level).ravel()]
         if held is not None:
             columns.append(-rod.growth(shape, level, change).ravel())
-        try:
-            solved = lu_solve(lu_factor(tangent), np.stack(columns, axis=1))
-        except (LinAlgError, ValueError) as error:
-            raise NoEquilibriumError(f"no finite tangent: {error}") from error
+        solved, singular = dgesv(tangent, np.stack(columns, axis=1))[2:]
+        if singular:
+            raise NoEquilibriumError(f"iteration {iteration}: the tangent is singular")
         step = solved[:, 0]
         if held is not None:
             weights = held.weights.ravel()
@@ -133,9 +142,9 @@ def solve(
             more = missing / float(weights @ solved[:, 1])
             step, at = step + more * solved[:, 1], at + more
         strains = strains + step.reshape(strains.shape)
+        if not way(rod, step.reshape(strains.shape)) < _FAR:
+            raise NoEquilibriumError(f"iteration {iteration}: the correction is too great")
         moved = float(np.max(np.abs(step.reshape(strains.shape) / sizes)))
-        if not moved < _FAR * rod.layout.shape[0]:
-            raise NoEquilibriumError(f"iteration {iteration}: a correction of {moved:.3g}")
         if moved < _CLOSE or (moved < _LOOSE and moved > last / 2):
             break
         last = moved
@@ -194,6 +203,8 @@ def march(
             guess, at = _ahead(known, goal)
             try:
                 state = solve(rod, guess, path, goal, held, at)
+                if way(rod, state.strains - guess) > _AWAY:
+                    raise NoEquilibriumError(f"the state at {goal:.6g} is far from the last one")
             except NoEquilibriumError:
                 part /= 2
                 if part < _SMALLEST:
