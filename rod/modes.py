@@ -43,7 +43,7 @@ def modes(rod: Rod, shape: Shape, level: Level, count: int) -> Modes:
     Raises:
         ValueError: no inertia, or loads without a potential: their tangent is not symmetric.
     """
-    if rod.inertia is None:
+    if not rod.inertia.any():
         raise ValueError("a rod without inertia does not vibrate")
     tangent = rod.tangent(shape, level)
     if np.abs(tangent - tangent.T).max() > _SYMMETRIC * np.abs(tangent).max():

@@ -50,8 +50,8 @@ class TipLoad:
     """A force and a moment at the tip.
 
     A dead force has the potential −F·r. A moment has one in the plane alone (the rod bends about x,
-    M about x); in space, and where they follow, force and moment do virtual work, and the tangent is
-    not symmetric.
+    M about x); in space, and where they follow, force and moment do virtual work, and the tangent
+    is not symmetric.
 
     Attributes:
         force: F, N; in space, or in the tip's axes where it follows.
@@ -121,7 +121,7 @@ class Rod:
     Attributes:
         layout: as given.
         law: as given.
-        inertia: as given.
+        inertia: as given; zero where nothing is given.
         tip: as given.
     """
 
@@ -136,12 +136,11 @@ class Rod:
         frames = 2 * len(layout.lengths) + 1
         if inertia is not None and inertia.shape != (frames, 4, 4):
             raise ValueError(f"inertia: one of (4, 4) for each of {frames} frames expected")
-        self.layout, self.law, self.inertia = layout, law, inertia
+        self.layout, self.law = layout, law
+        self.inertia: Floats = np.zeros((frames, 4, 4)) if inertia is None else inertia
         self.tip = TipLoad() if tip is None else tip
-        self._weight = np.zeros((frames, 3, 4))
-        if inertia is not None:
-            acceleration = np.asarray(gravity, dtype=float)
-            self._weight = acceleration[:, None] * inertia[:, None, 3, :]
+        acceleration = np.asarray(gravity, dtype=float)
+        self._weight: Floats = acceleration[:, None] * self.inertia[:, None, 3, :]
 
     def shape(self, strains: Floats) -> Shape:
         """Its line at given strains, (n, m)."""

@@ -5,9 +5,9 @@ A piece of constant strains ξ = (v, k) in its own axes is a screw: with φ = h 
     R' = R exp [φ×],    r' = r + R h V(φ) v,    V(φ) = ∫₀¹ exp [u φ×] du,
 
 exact for any strain and length (Sonneville, Cardona and Brüls 2014, doi 10.1016/j.cma.2013.10.008;
-Renda, Boyer, Dias and Seneviratne 2018, doi 10.1109/TRO.2018.2868815). The unknowns are the strains:
-nothing locks, no constraint is left and a rigid motion changes none. A change of a piece's strains
-moves all beyond it as a rigid body, by u + ω × (r − r'), so that forces are summed from the tip
+Renda, Boyer, Dias and Seneviratne 2018, doi 10.1109/TRO.2018.2868815). The unknowns are the
+strains: nothing locks, no constraint is left and a rigid motion changes none. A change of a piece's
+strains moves all beyond it as a rigid body, by u + ω × (r − r'); forces are summed from the tip
 (Featherstone 2008, doi 10.1007/978-1-4899-7560-7); second derivatives are exact too.
 
 'Frames' are the ends and the middles of the pieces in turn, 2 n + 1 of them: root, middle of the
@@ -96,8 +96,9 @@ class Shape:
         """Generalised forces of loads on the frames: their virtual work by each strain.
 
         Args:
-            loads: conjugates A of the frames [R | r], whose work is Σ A : δ[R | r], (2 n + 1, 3, 4),
-                N mm and N. A force f at the place y of a section's own axes is f ⊗ (y, 1).
+            loads: conjugates A of the frames [R | r], whose work is Σ A : δ[R | r],
+                (2 n + 1, 3, 4), N mm and N. A force f at the place y of a section's own axes is
+                f ⊗ (y, 1).
 
         Returns:
             Work by a unit of each free strain, (n, m), N mm and N mm².
@@ -212,9 +213,7 @@ class Shape:
         for axis in range(3):
             z = np.zeros((2, n, 3, 3))
             z[..., axis] = pull
-            blocks[:, 3 + axis, 3:] = (
-                self._reach[1][:, None] ** 2 * self._mean.gradient(z)[1]
-            )
+            blocks[:, 3 + axis, 3:] = self._reach[1][:, None] ** 2 * self._mean.gradient(z)[1]
         columns = list(self.layout.columns)
         place = np.arange(n)
         out.reshape(n, m, n, m)[place, :, place] = blocks[:, columns][:, :, columns]
@@ -254,9 +253,7 @@ class Shape:
             middle = _middle(sums)
             middle = (middle[0], middle[2], middle[1], np.swapaxes(middle[3], -1, -2))
             pushed_left = [_momentum(swapped, left_own[1]), _momentum(middle, left_own[0])]
-            back = np.concatenate(
-                [_flat(a + b, n * m) for a, b in zip(*pushed_left, strict=True)]
-            )
+            back = np.concatenate([_flat(a + b, n * m) for a, b in zip(*pushed_left, strict=True)])
             ahead = np.concatenate([_flat(part, n * m) for part in right_own[1]])
             out = upper + _upper(back.T @ ahead, n, m, lower=True)
         own = sum(

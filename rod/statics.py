@@ -188,9 +188,7 @@ def march(
     Raises:
         NoEquilibriumError: the smallest step does not converge.
     """
-    strains, share = (
-        (start.strains, start.share) if isinstance(start, State) else (start, 0.0)
-    )
+    strains, share = (start.strains, start.share) if isinstance(start, State) else (start, 0.0)
     now = share if held is None else float(np.sum(held.weights * strains))
     known = [(now, strains, share)]
     states = []

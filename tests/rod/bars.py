@@ -37,6 +37,7 @@ class Bar:
 
     @property
     def area(self) -> float:
+        """mm²."""
         return self.width * self.height
 
     @property
@@ -66,13 +67,16 @@ class Bar:
         }
 
     def mass(self) -> SectionMass:
+        """Of a section, its rotary inertia too."""
         second = (self.density * self.side, self.density * self.second, 0.0)
         return SectionMass(self.density * self.area, second=second)
 
     def layout(self, pieces: int, strains: tuple[str, ...] = PLANE) -> Layout:
+        """Equal pieces."""
         return Layout(np.full(pieces, self.length / pieces), strains)
 
     def law(self, strains: tuple[str, ...]) -> Linear:
+        """Of its strains, unstrained where it is straight."""
         stiffness = np.diag([self.stiffnesses()[name] for name in strains])
         rest = np.array([1.0 if name == "stretch" else 0.0 for name in strains])
         return Linear(stiffness, rest)
@@ -84,6 +88,7 @@ class Bar:
         tip: TipLoad | None = None,
         gravity: tuple[float, float, float] = DOWN,
     ) -> Rod:
+        """The bar as a rod under its weight."""
         layout = self.layout(pieces, strains)
         return Rod(layout, self.law(strains), spread(layout, [self.mass()]), gravity, tip)
 

@@ -46,7 +46,10 @@ def test_rotation_and_its_mean(size: float) -> None:
     rotation, mean = Pair(phi, c, 1).matrix()[0], Pair(phi, c, 2).matrix()[0]
     np.testing.assert_allclose(rotation, expm(cross_matrix(phi[0])), atol=1e-13)
     nodes, weights = np.polynomial.legendre.leggauss(24)
-    parts = [w / 2 * expm((x + 1) / 2 * cross_matrix(phi[0])) for x, w in zip(nodes, weights, strict=True)]
+    parts = [
+        w / 2 * expm((x + 1) / 2 * cross_matrix(phi[0]))
+        for x, w in zip(nodes, weights, strict=True)
+    ]
     np.testing.assert_allclose(mean, sum(parts), atol=1e-13)
 
 

@@ -29,8 +29,12 @@ def test_three_frequencies_of_euler_and_bernoulli() -> None:
     law = Linear(np.array([[bar.young * bar.second]]), np.zeros(1))
     rod = Rod(layout, law, spread(layout, [SectionMass(bar.density * bar.area)]))
     found = modes(rod, rod.shape(layout.at_rest()), Level(), 3).frequencies
-    roots = [brentq(lambda b: math.cos(b) * math.cosh(b) + 1, *ends) for ends in ((1, 3), (4, 6), (7, 9))]
-    rate = math.sqrt(bar.young * bar.second / (bar.density * bar.area)) / (2 * math.pi * bar.length**2)
+    roots = [
+        brentq(lambda b: math.cos(b) * math.cosh(b) + 1, *ends) for ends in ((1, 3), (4, 6), (7, 9))
+    ]
+    rate = math.sqrt(bar.young * bar.second / (bar.density * bar.area)) / (
+        2 * math.pi * bar.length**2
+    )
     np.testing.assert_allclose(found, rate * np.array(roots) ** 2, rtol=0.002)
 
 
@@ -51,7 +55,7 @@ def timoshenko(bar: Bar, count: int) -> list[float]:
     values = [free(f) for f in at]
     found = [
         brentq(free, *ends, xtol=1e-10)
-        for *ends, low, high in zip(at, at[1:], values, values[1:])
+        for *ends, low, high in zip(at, at[1:], values, values[1:], strict=False)
         if low * high < 0
     ]
     return found[:count]
@@ -68,7 +72,9 @@ def test_frequencies_converge_with_the_square_of_a_piece() -> None:
     errors = []
     for pieces in (12, 24, 48):
         rod = THICK.rod(pieces, ("shear_y", "curvature"))
-        errors.append(modes(rod, rod.shape(rod.layout.at_rest()), Level(), 3).frequencies / exact - 1)
+        errors.append(
+            modes(rod, rod.shape(rod.layout.at_rest()), Level(), 3).frequencies / exact - 1
+        )
     np.testing.assert_allclose(errors[0] / errors[1], 4.0, atol=0.2)
     np.testing.assert_allclose(errors[1] / errors[2], 4.0, atol=0.1)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -45,10 +46,10 @@ def test_energy_is_kept(strains: tuple[str, ...], step: float, count: int) -> No
     """Released from 0.6 rad upward under its weight, it swings through more than 3 rad."""
     rod = BAR.rod(6, strains)
     motion = Motion(rod, lambda time: WEIGHT)
-    moving = motion.at(bent_rod(rod))
-    first = motion.energy(moving)
+    start = motion.at(bent_rod(rod))
+    first = motion.energy(start)
     worst, most, angles = 0.0, 0.0, []
-    for moving in motion.run(moving, step, count):
+    for moving in motion.run(start, step, count):
         worst = max(worst, abs(motion.energy(moving) - first))
         most = max(most, kinetic(rod, moving))
         angles.append(float(np.sum(rod.layout.weights("curvature") * moving.strains)))
@@ -56,16 +57,17 @@ def test_energy_is_kept(strains: tuple[str, ...], step: float, count: int) -> No
     assert np.ptp(angles) > 0.5
     assert moving.time == pytest.approx(step * count)
     turns = moving.frames[..., :3]
-    np.testing.assert_allclose(np.swapaxes(turns, 1, 2) @ turns, np.tile(np.eye(3), (13, 1, 1)), atol=1e-12)
+    np.testing.assert_allclose(
+        np.swapaxes(turns, 1, 2) @ turns, np.tile(np.eye(3), (13, 1, 1)), atol=1e-12
+    )
 
 
 def test_a_large_step_is_halved_and_keeps_the_energy() -> None:
     rod = BAR.rod(12, SPACE)
     motion = Motion(rod, lambda time: WEIGHT)
-    moving = motion.at(bent_rod(rod))
-    first = motion.energy(moving)
-    for moving in motion.run(moving, 2e-3, 60):
-        pass
+    start = motion.at(bent_rod(rod))
+    first = motion.energy(start)
+    *_, moving = motion.run(start, 2e-3, 60)
     assert moving.time == pytest.approx(0.12)
     assert motion.energy(moving) == pytest.approx(first, rel=1e-9)
 
@@ -86,14 +88,16 @@ def test_the_scheme_is_of_second_order(strains: tuple[str, ...]) -> None:
         motion = Motion(rod, rising, viscosity, drag=0.5)
         *_, last = motion.run(motion.at(rod.layout.at_rest()), step, round(0.2 / step))
         ends.append(last.frames[-1, :, 3])
-    changes = [np.linalg.norm(b - a) for a, b in zip(ends, ends[1:], strict=False)]
-    orders = [math.log2(a / b) for a, b in zip(changes, changes[1:], strict=False)]
+    changes = [np.linalg.norm(b - a) for a, b in itertools.pairwise(ends)]
+    orders = [math.log2(a / b) for a, b in itertools.pairwise(changes)]
     assert orders[-1] == pytest.approx(2.0, abs=0.1), orders
 
 
 def test_a_small_vibration_has_its_frequency_and_decay() -> None:
-    """η = b K and a drag a: ζ = (b ω + a/ω)/2, ω_d = ω √(1 − ζ²); the midpoint rule's own frequency
-    is off by (ω Δt)²/12."""
+    """η = b K and a drag a: ζ = (b ω + a/ω)/2, ω_d = ω √(1 − ζ²).
+
+    The midpoint rule's own frequency is off by (ω Δt)²/12 of it.
+    """
     rod = BAR.rod(8, PLANE, gravity=(0.0, 0.0, 0.0))
     rest = rod.layout.at_rest()
     found = modes(rod, rod.shape(rest), Level(), 1)
@@ -104,9 +108,9 @@ def test_a_small_vibration_has_its_frequency_and_decay() -> None:
     ratio = (viscous * omega + drag / omega) / 2
     size = 1e-6 / np.abs(shape).max()
     step, periods = 2 * math.pi / omega / 400, 2
-    moving = motion.at(rest + size * shape)
+    start = motion.at(rest + size * shape)
     mass = rod.shape(rest).mass(rod.inertia)
-    for moving in motion.run(moving, step, 400 * periods):
+    for moving in motion.run(start, step, 400 * periods):
         amplitude = float(shape.ravel() @ mass @ (moving.strains - rest).ravel()) / size
         damped = omega * math.sqrt(1 - ratio**2)
         phase = damped * moving.time
@@ -117,25 +121,25 @@ def test_a_small_vibration_has_its_frequency_and_decay() -> None:
 
 def test_damping_takes_energy_until_it_rests() -> None:
     rod = BAR.rod(8, SPACE)
-    viscosity = 0.03 * np.diag(rod.law.hessian(rod.layout.at_rest(), 0.0)[0])
+    viscosity = 0.001 * np.diag(rod.law.hessian(rod.layout.at_rest(), 0.0)[0])
     motion = Motion(rod, lambda time: WEIGHT, viscosity, drag=20.0)
-    moving = motion.at(bent_rod(rod))
-    energies = [motion.energy(moving)]
-    for moving in motion.run(moving, 5e-3, 600):
+    start = motion.at(bent_rod(rod))
+    energies = [motion.energy(start)]
+    for moving in motion.run(start, 5e-3, 400):
         energies.append(motion.energy(moving))
     assert np.diff(energies).max() < 1e-10 * np.ptp(energies)
     still = march(rod, rod.layout.at_rest(), Path(Level(), WEIGHT), [0.5, 1.0])[-1]
-    np.testing.assert_allclose(moving.frames[..., 3], still.shape.places, atol=0.02)
-    assert kinetic(rod, moving) < 1e-6 * np.ptp(energies)
+    np.testing.assert_allclose(moving.frames[..., 3], still.shape.places, atol=1e-5)
+    assert kinetic(rod, moving) < 1e-9 * np.ptp(energies)
 
 
 def test_a_moment_does_the_work_that_energy_gains() -> None:
     moment = 2.0
     rod = BAR.rod(6, PLANE, TipLoad(moment=(moment, 0.0, 0.0)), gravity=(0.0, 0.0, 0.0))
     motion = Motion(rod, lambda time: Level(tip=1.0))
-    moving = motion.at(rod.layout.at_rest())
-    first = motion.energy(moving)
-    for moving in motion.run(moving, 1e-3, 200):
+    start = motion.at(rod.layout.at_rest())
+    first = motion.energy(start)
+    for moving in motion.run(start, 1e-3, 200):
         angle = float(np.sum(rod.layout.weights("curvature") * moving.strains))
         gained = motion.energy(moving) - first
         assert gained == pytest.approx(moment * angle, abs=1e-9)
@@ -145,9 +149,9 @@ def test_rates_are_those_it_began_with() -> None:
     rod = BAR.rod(5, STRAINS)
     motion = Motion(rod, lambda time: Level())
     rates = np.random.default_rng(1).normal(size=rod.layout.shape)
-    moving = motion.at(bent_rod(rod), rates, time=2.0)
-    np.testing.assert_allclose(motion.rates(moving), rates, rtol=1e-8, atol=1e-9)
-    assert moving.time == 2.0
+    start = motion.at(bent_rod(rod), rates, time=2.0)
+    np.testing.assert_allclose(motion.rates(start), rates, rtol=1e-8, atol=1e-9)
+    assert start.time == 2.0
 
 
 def test_what_cannot_move_is_refused() -> None:

@@ -44,7 +44,9 @@ def loads(layout: Layout, seed: int = 5) -> Floats:
 
 
 def inertia(layout: Layout) -> Floats:
-    sections = [SectionMass(1 + i, (0.3, -0.2), (2.0, 3.0, 0.4)) for i in range(len(layout.lengths))]
+    sections = [
+        SectionMass(1 + i, (0.3, -0.2), (2.0, 3.0, 0.4)) for i in range(len(layout.lengths))
+    ]
     out = spread(layout, sections)
     out[-1] += lump(5.0, (0.1, 0.2, 0.9), np.diag([1.0, 2.0, 3.0]))
     return out
@@ -138,14 +140,19 @@ def test_the_mass_matrix_is_that_of_the_frames(strains: tuple[str, ...]) -> None
         found, np.einsum("fabi,fbc,facj->ij", here, masses, here), atol=1e-8 * one.max()
     )
     both = np.einsum("fabi,fbc,facj->ij", here, masses, there)
-    np.testing.assert_allclose(shape.mass(masses, Shape(layout, other)), both, atol=1e-8 * one.max())
+    np.testing.assert_allclose(
+        shape.mass(masses, Shape(layout, other)), both, atol=1e-8 * one.max()
+    )
 
 
 def test_a_moved_root_moves_all_and_changes_nothing() -> None:
     """Loads that are moved along give the same work, second derivatives and masses."""
     layout = Layout(np.full(6, 8.0), STRAINS)
     q, load, masses = bent(layout), loads(layout), inertia(layout)
-    rotation, place = Rotation.from_rotvec([2.0, -0.4, 1.3]).as_matrix(), np.array([5.0, 6.0, -70.0])
+    rotation, place = (
+        Rotation.from_rotvec([2.0, -0.4, 1.3]).as_matrix(),
+        np.array([5.0, 6.0, -70.0]),
+    )
     here, there = Shape(layout, q), Shape(Layout(layout.lengths, STRAINS, rotation, place), q)
     np.testing.assert_allclose(there.rotations, rotation @ here.rotations, atol=1e-13)
     np.testing.assert_allclose(there.places, here.places @ rotation.T + place, atol=1e-11)

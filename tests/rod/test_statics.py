@@ -28,7 +28,7 @@ TIP = Path(Level(), Level(tip=1.0))
 
 def inextensible(bar: Bar, pieces: int, tip: TipLoad, strains: tuple[str, ...] = PLANE) -> Rod:
     bending = bar.young * bar.second
-    stiffness = {name: bending for name in STRAINS} | {"stretch": STIFF * bending / bar.length**2}
+    stiffness = dict.fromkeys(STRAINS, bending) | {"stretch": STIFF * bending / bar.length**2}
     rest = np.array([1.0 if name == "stretch" else 0.0 for name in strains])
     law = Linear(np.diag([stiffness[name] for name in strains]), rest)
     return Rod(bar.layout(pieces, strains), law, tip=tip)
@@ -120,7 +120,9 @@ def test_a_hanging_bar_is_stretched_by_its_weight() -> None:
 
 
 def test_a_following_force_is_a_dead_one_where_it_ends() -> None:
-    follower = BAR.rod(10, STRAINS, TipLoad((0.02, -0.06, 0.03), (3.0, 1.0, 2.0), True, (1.0, 2.0, 3.0)))
+    follower = BAR.rod(
+        10, STRAINS, TipLoad((0.02, -0.06, 0.03), (3.0, 1.0, 2.0), True, (1.0, 2.0, 3.0))
+    )
     state = march(follower, follower.layout.at_rest(), TIP, [0.5, 1.0])[-1]
     turn = state.shape.rotations[-1]
     tip = follower.tip
@@ -158,9 +160,9 @@ def test_residual_and_tangent_are_those_of_differences(
     other = level.tip * tip.work(shape)
     np.testing.assert_allclose(rod.residual(shape, level) + other, slope, rtol=1e-7, atol=1e-6)
     more = Level(0.2, 0.9, 0.8)
-    change = more.less(level)
+    further = more.less(level)
     ahead = rod.residual(shape, more) - rod.residual(shape, level)
-    np.testing.assert_allclose(rod.growth(shape, level, change), ahead, rtol=1e-10, atol=1e-10)
+    np.testing.assert_allclose(rod.growth(shape, level, further), ahead, rtol=1e-10, atol=1e-10)
 
 
 def test_pressure_bends_a_rod_uniformly_and_does_work() -> None:
@@ -185,11 +187,13 @@ class Softening(Linear):
     top: float = 0.01
 
     def gradient(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`."""
         out = super().gradient(strains, pressure).copy()
         out[:, 1] -= self.stiffness[1, 1] * strains[:, 1] ** 3 / (3 * self.top**2)
         return out
 
     def hessian(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`."""
         out = super().hessian(strains, pressure).copy()
         out[:, 1, 1] -= self.stiffness[1, 1] * strains[:, 1] ** 2 / self.top**2
         return out
@@ -246,7 +250,11 @@ def test_what_a_mirror_shows_is_the_mirrored_state() -> None:
 
 def test_a_turned_scene_has_the_same_strains() -> None:
     turn = Rotation.from_rotvec([1.0, 2.0, -0.5]).as_matrix()
-    gravity, force, moment = np.array([500.0, -9000.0, 800.0]), np.array([0.03, 0.0, 0.05]), np.ones(3)
+    gravity, force, moment = (
+        np.array([500.0, -9000.0, 800.0]),
+        np.array([0.03, 0.0, 0.05]),
+        np.ones(3),
+    )
     found = []
     for rotation in (np.eye(3), turn):
         layout = Layout(np.full(8, 15.0), SPACE, rotation, rotation @ np.array([1.0, 2.0, 3.0]))
