@@ -9,9 +9,6 @@ import numpy as np
 from rod.functions import Floats
 from rod.layout import Layout
 
-_SHARES = (1 / 6, 2 / 3, 1 / 6)
-"""Simpson's: of a piece at its root, middle and end."""
-
 
 @dataclasses.dataclass(frozen=True)
 class SectionMass:
@@ -45,14 +42,14 @@ class SectionMass:
 
 
 def spread(layout: Layout, sections: list[SectionMass]) -> Floats:
-    """Masses of pieces on their frames.
+    """Masses of pieces on their frames, half of each at either end.
 
     Args:
         layout: of the rod.
         sections: one for each piece, or one for all.
 
     Returns:
-        ∫ (y, 1) ⊗ (y, 1) dm of each frame, (2 n + 1, 4, 4); t mm², t mm and t.
+        ∫ (y, 1) ⊗ (y, 1) dm of each frame, (n + 1, 4, 4); t mm², t mm and t.
 
     Raises:
         ValueError: another number of sections.
@@ -62,9 +59,9 @@ def spread(layout: Layout, sections: list[SectionMass]) -> Floats:
         raise ValueError(f"one section for each of {n} pieces expected, or one for all")
     along = np.array([section.matrix() for section in sections])
     pieces = layout.lengths[:, None, None] * along
-    out = np.zeros((2 * n + 1, 4, 4))
-    for first, share in enumerate(_SHARES):
-        out[first : first + 2 * n : 2] += share * pieces
+    out = np.zeros((n + 1, 4, 4))
+    out[:-1] += pieces / 2
+    out[1:] += pieces / 2
     return out
 
 

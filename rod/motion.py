@@ -43,6 +43,7 @@ _LOOSE = 1e-7
 _MOST = 30
 _FAR = 1e3
 _SHORTEST = 2.0**-6
+_ROUND_OFF = 1e-14
 _SLOW = 0.05
 """An old factor that reduces a correction by less is made anew."""
 
@@ -54,8 +55,8 @@ class Moving:
     Attributes:
         time: t, s.
         strains: ε, (n, m).
-        frames: X, (2 n + 1, 3, 4); 1 and mm.
-        velocity: V, (2 n + 1, 3, 4); 1/s and mm/s.
+        frames: X, (n + 1, 3, 4); 1 and mm.
+        velocity: V, (n + 1, 3, 4); 1/s and mm/s.
         step: Δε of the last step, (n, m).
     """
 
@@ -240,13 +241,17 @@ class _Step:
         self._loads = self._pushed + self._start
         law = rod.law.gradient(self._middle.strains, pressure)
         self._forces = self._lengths * law + self._middle.pulled(self._loads)
-        gap = rod.elastic(self._after.strains, pressure) - self._elastic
-        gap += float(np.sum(self._loads * moved)) - float(np.sum(self._forces * change))
+        elastic = rod.elastic(self._after.strains, pressure)
+        done, foreseen = float(np.sum(self._loads * moved)), float(np.sum(self._forces * change))
+        gap = elastic - self._elastic + done - foreseen
+        # of a rod that hardly moves it is round-off, over a square that is next to nothing
+        sizes = abs(elastic) + abs(self._elastic) + abs(done) + abs(foreseen)
+        known = abs(gap) > _ROUND_OFF * sizes
         self._weighed = motion.weights * change
         square = float(np.sum(self._weighed * change))
         out = self._forces + self._viscous * change
         # what the gradient in the middle misses of the difference, and the square it is spread by
-        self._missed, self._square = (gap / square, square) if square > 0 else (0.0, np.inf)
+        self._missed, self._square = (gap / square, square) if known else (0.0, np.inf)
         out = out + self._missed * self._weighed
         if self._level.tip:
             out = out - self._level.tip * rod.tip.work(self._middle)

@@ -66,7 +66,7 @@ class TipLoad:
     arm: Vector = NO_LOAD
 
     def held(self, shape: Shape) -> Floats:
-        """The force as a load on the frames, (2 n + 1, 3, 4); see `Shape.pulled`."""
+        """The force as a load on the frames, (n + 1, 3, 4); see `Shape.pulled`."""
         force = np.asarray(self.force, dtype=float)
         if self.follows:
             force = shape.rotations[-1] @ force
@@ -114,7 +114,7 @@ class Rod:
     Args:
         layout: pieces, free strains and root.
         law: energy of the sections.
-        inertia: masses on the frames, (2 n + 1, 4, 4); see `rod.inertia`. None: it weighs nothing.
+        inertia: masses on the frames, (n + 1, 4, 4); see `rod.inertia`. None: it weighs nothing.
         gravity: acceleration g in space, mm/s².
         tip: load on the tip.
 
@@ -133,7 +133,7 @@ class Rod:
         gravity: Vector = NO_LOAD,
         tip: TipLoad | None = None,
     ) -> None:
-        frames = 2 * len(layout.lengths) + 1
+        frames = len(layout.lengths) + 1
         if inertia is not None and inertia.shape != (frames, 4, 4):
             raise ValueError(f"inertia: one of (4, 4) for each of {frames} frames expected")
         self.layout, self.law = layout, law
@@ -147,7 +147,7 @@ class Rod:
         return Shape(self.layout, strains)
 
     def dead(self, level: Level) -> Floats:
-        """Loads of constant direction on the frames, (2 n + 1, 3, 4); see `Shape.pulled`."""
+        """Loads of constant direction on the frames, (n + 1, 3, 4); see `Shape.pulled`."""
         out: Floats = level.weight * self._weight
         if not self.tip.follows:
             out[-1] += level.tip * np.outer(self.tip.force, [*self.tip.arm, 1.0])

@@ -39,7 +39,7 @@ def differences(layout: Layout, strains: Floats, read: Callable[[Shape], Floats]
 
 
 def loads(layout: Layout, seed: int = 5) -> Floats:
-    frames = 2 * len(layout.lengths) + 1
+    frames = len(layout.lengths) + 1
     return np.random.default_rng(seed).normal(size=(frames, 3, 4))
 
 
@@ -56,7 +56,7 @@ def test_constant_strains_make_a_screw() -> None:
     spin, stretch, n = np.array([0.011, -0.004, 0.02]), 1.13, 9
     layout = Layout(np.full(n, 12.0), SPACE)
     shape = Shape(layout, np.tile([stretch, *spin], (n, 1)))
-    z = 6.0 * np.arange(2 * n + 1)
+    z = 12.0 * np.arange(n + 1)
     rotations, places = screw(z, spin, stretch)
     np.testing.assert_allclose(shape.rotations, rotations, atol=1e-13)
     np.testing.assert_allclose(shape.places, places, atol=1e-11)
@@ -74,7 +74,7 @@ def test_a_helix_has_its_radius_and_pitch() -> None:
     along = away @ axis
     radii = np.linalg.norm(away - along[:, None] * axis, axis=1)
     np.testing.assert_allclose(radii, stretch * kappa / rate**2, rtol=1e-12)
-    turn = rate * 2.5 * np.arange(2 * n + 1)
+    turn = rate * 5.0 * np.arange(n + 1)
     np.testing.assert_allclose(along, stretch * tau / rate**2 * turn, atol=1e-10)
 
 
@@ -92,7 +92,7 @@ def test_frames_move_as_their_derivatives_say(strains: tuple[str, ...]) -> None:
     q = bent(layout)
     shape = Shape(layout, q)
     rates = differences(layout, q, lambda s: s.frames)
-    for frame in (0, 1, 4, 7, -1):
+    for frame in (0, 1, 3, -1):
         moved, spins = shape.jacobian(frame)
         np.testing.assert_allclose(moved, rates[frame, :, 3], atol=1e-7)
         for k in range(q.size):
