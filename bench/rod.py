@@ -22,7 +22,8 @@ from rod.layout import Layout
 from rod.modes import modes
 from rod.motion import Motion
 from rod.rod import Level, Rod, TipLoad
-from rod.statics import Path, State, march
+from rod.statics import Path, march
+from rod.table import tabulate
 
 LENGTH, WIDTH, HEIGHT = 120.0, 16.0, 14.0
 YOUNG, DENSITY = 1.0, 1.1e-9
@@ -46,12 +47,6 @@ def bar(pieces: int, strains: tuple[str, ...], tip: TipLoad | None = None) -> Ro
     second = (DENSITY * HEIGHT * WIDTH**3 / 12, DENSITY * BENDING / YOUNG, 0.0)
     masses = spread(layout, [SectionMass(DENSITY * AREA, second=second)])
     return Rod(layout, law, masses, (0.0, -9810.0, 0.0), tip)
-
-
-def bent(rod: Rod) -> State:
-    """Under the tip's load."""
-    path = Path(Level(), Level(tip=1.0))
-    return march(rod, rod.layout.at_rest(), path, STEPS)[-1]
 
 
 def exact(shear: float) -> Floats:
@@ -211,6 +206,51 @@ def _third(rod: Rod) -> float:
     return float(modes(rod, rod.shape(rod.layout.at_rest()), Level(), 3).frequencies[2])
 
 
+def rubber(points: Floats) -> tuple[Floats, Floats]:
+    """A neo-Hookean section, μ = E/3, whose lines of height y stretch by λ − k y, under a pressure.
+
+    Args:
+        points: λ, k in 1/mm and P in MPa, (n, 3).
+
+    Returns:
+        Φ, (n,), N, and its slopes, (n, 3).
+    """
+    stretch, k, pressure = points.T
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    y, area = HEIGHT / 2 * nodes, AREA / 2 * weights
+    lines = stretch[:, None] + k[:, None] * y
+    stress = YOUNG / 3 * (lines - 1 / lines**2)
+    chamber = 30.0 * stretch + 250.0 * k
+    value = YOUNG / 6 * (lines**2 + 2 / lines - 3) @ area - pressure * chamber
+    slopes = [stress @ area - 30 * pressure, (stress * y) @ area - 250 * pressure, -chamber]
+    return value, np.column_stack(slopes)
+
+
+def tables() -> str:
+    """Points and errors of tables, and of a rod by them under weight and pressure."""
+    rows = []
+    ranges = ((0.85, 1.3), (-0.02, 0.04), (0.0, 0.5))
+    found: list[Floats] = []
+    for error in (1e-3, 1e-4, 1e-5):
+        law = tabulate(rubber, ranges, error)
+        plain = bar(48, NO_SHEAR)
+        rod = Rod(plain.layout, law, plain.inertia, (0.0, -9810.0, 0.0))
+        path = Path(Level(), Level(pressure=0.3, weight=1.0))
+        rest = rod.layout.at_rest()
+        state = march(rod, rest, path, STEPS)[-1]
+        angle = float(np.sum(rod.layout.weights("curvature") * state.strains))
+        found.append(np.array([angle, *state.shape.places[-1, 1:]]))
+        cost = least(lambda: march(rod, rest, path, STEPS)) / len(STEPS)  # noqa: B023
+        lines = " × ".join(str(len(axis.lines) - 1) for axis in law.axes)
+        rows.append([f"{error:.0e}", lines, len(law.samples.values), law.errors.max(), cost])
+    for row, each in zip(rows, found, strict=True):
+        away = float(np.linalg.norm(each[1:] - found[-1][1:]))
+        row[3:] = [f"{row[3]:.1e}", f"{each[0] / found[-1][0] - 1:+.1e}", f"{away:.4f} mm",
+                   f"{row[4]:.1f} ms"]  # fmt: skip
+    head = ["error asked for", "intervals", "points", "error", "angle", "tip", "a state"]
+    return "\n".join(table(head, rows))
+
+
 def least(work: Callable[[], object], count: int = 12) -> float:
     """Least processor time of a call, ms."""
     times = []
@@ -240,5 +280,5 @@ def costs() -> str:
 
 
 if __name__ == "__main__":
-    for part in (discretisations, shear_share, rules_of_mass, costs):
+    for part in (discretisations, shear_share, rules_of_mass, costs, tables):
         print(part(), end="\n\n")

@@ -34,6 +34,9 @@ class Law(Protocol):
     def chamber_gradient(self, strains: Floats, pressure: float) -> Floats:
         """−∂²Φ/∂ε∂P, (n, m)."""
 
+    def outside(self, strains: Floats, pressure: float) -> str:
+        """What is beyond the range in which the law is known; empty where nothing is."""
+
 
 @dataclasses.dataclass(frozen=True)
 class Linear:
@@ -90,6 +93,10 @@ class Linear:
         """See `Law`."""
         return np.broadcast_to(self._thrust(), strains.shape)
 
+    def outside(self, strains: Floats, pressure: float) -> str:
+        """See `Law`: nothing is."""
+        return ""
+
 
 @dataclasses.dataclass(frozen=True)
 class Zones:
@@ -140,3 +147,13 @@ class Zones:
     def chamber_gradient(self, strains: Floats, pressure: float) -> Floats:
         """See `Law`."""
         return self._each("chamber_gradient", strains, pressure, strains.shape[1])
+
+    def outside(self, strains: Floats, pressure: float) -> str:
+        """See `Law`."""
+        pieces = np.asarray(self.pieces)
+        for place, law in enumerate(self.laws):
+            mine = pieces == place
+            found = law.outside(strains[mine], pressure) if mine.any() else ""
+            if found:
+                return f"zone {place + 1}: {found}"
+        return ""

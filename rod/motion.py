@@ -197,6 +197,9 @@ class Motion:
                 break
             if moves < _CLOSE or (moves < _LOOSE and moves > last / 2):
                 after = rod.shape(moving.strains + change)
+                outside = rod.law.outside(after.strains, level.pressure)
+                if outside:
+                    raise NoEquilibriumError(f"at {moving.time + step:.6g} s: {outside}")
                 velocity = 2 / step * (after.frames - moving.frames) - moving.velocity
                 if self._damped:
                     velocity = after.moved(self._rates(after, velocity))

@@ -151,6 +151,9 @@ def solve(
     else:
         raise NoEquilibriumError(f"{_MOST} iterations leave a correction of {moved:.3g}")
     shape, level = rod.shape(strains), path.at(at)
+    outside = rod.law.outside(strains, level.pressure)
+    if outside:
+        raise NoEquilibriumError(outside)
     return State(shape, level, at, iteration, unstable_modes(rod.tangent(shape, level)))
 
 
