@@ -34,6 +34,9 @@ class Law(Protocol):
     def chamber_gradient(self, strains: Floats, pressure: float) -> Floats:
         """−∂²Φ/∂ε∂P, (n, m)."""
 
+    def chamber_slope(self, strains: Floats, pressure: float) -> Floats:
+        """−∂²Φ/∂P², (n,), mm²/MPa: how a section whose strains are held takes more air."""
+
     def outside(self, strains: Floats, pressure: float) -> str:
         """What is beyond the range in which the law is known; empty where nothing is."""
 
@@ -93,6 +96,10 @@ class Linear:
         """See `Law`."""
         return np.broadcast_to(self._thrust(), strains.shape)
 
+    def chamber_slope(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`: its chamber is held by the strains."""
+        return np.zeros(len(strains))
+
     def outside(self, strains: Floats, pressure: float) -> str:
         """See `Law`: nothing is."""
         return ""
@@ -147,6 +154,10 @@ class Zones:
     def chamber_gradient(self, strains: Floats, pressure: float) -> Floats:
         """See `Law`."""
         return self._each("chamber_gradient", strains, pressure, strains.shape[1])
+
+    def chamber_slope(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`."""
+        return self._each("chamber_slope", strains, pressure)
 
     def outside(self, strains: Floats, pressure: float) -> str:
         """See `Law`."""

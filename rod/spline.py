@@ -74,7 +74,8 @@ class Axis:
             np.tensordot(self._pieces[k, :, p], coefficients[k : k + p + 1], axes=1) / width**p
             for k, width in enumerate(widths)
         ]
-        return math.factorial(p) * np.array(leading)
+        out: Floats = float(math.factorial(p)) * np.stack(leading)
+        return out
 
 
 def _pieces(lines: Floats, degree: int) -> Floats:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky
@@ -75,15 +76,55 @@ class Path:
         return self.start.toward(self.end, share)
 
 
+class Held(Protocol):
+    """What is given in place of the share of the path, which is then unknown."""
+
+    def value(self, rod: Rod, strains: Floats, level: Level) -> float:
+        """Of what is given."""
+
+    def slopes(
+        self, rod: Rod, strains: Floats, level: Level, change: Level
+    ) -> tuple[Floats, float]:
+        """Its derivatives by the strains, (n, m), and along a change of the level."""
+
+
 @dataclasses.dataclass(frozen=True)
-class Held:
-    """Σ w ε is given, and the share of the path is unknown: an angle leads over limit points.
+class Angle:
+    """Σ w ε is given: an angle leads over the greatest pressure.
 
     Attributes:
         weights: w, (n, m); `Layout.weights` has those of an angle.
     """
 
     weights: Floats
+
+    def value(self, rod: Rod, strains: Floats, level: Level) -> float:
+        """Σ w ε."""
+        return float(np.sum(self.weights * strains))
+
+    def slopes(
+        self, rod: Rod, strains: Floats, level: Level, change: Level
+    ) -> tuple[Floats, float]:
+        """See `Held`."""
+        return self.weights, 0.0
+
+
+@dataclasses.dataclass(frozen=True)
+class Volume:
+    """The volume of the chamber is given, mm³: what is in it cannot be compressed."""
+
+    def value(self, rod: Rod, strains: Floats, level: Level) -> float:
+        """Of the chamber, mm³."""
+        return rod.volume(strains, level.pressure)
+
+    def slopes(
+        self, rod: Rod, strains: Floats, level: Level, change: Level
+    ) -> tuple[Floats, float]:
+        """See `Held`."""
+        lengths = rod.layout.lengths
+        by_strains = lengths[:, None] * rod.law.chamber_gradient(strains, level.pressure)
+        by_pressure = float(lengths @ rod.law.chamber_slope(strains, level.pressure))
+        return by_strains, by_pressure * change.pressure
 
 
 def size(rod: Rod) -> Floats:
@@ -113,7 +154,7 @@ def solve(
         rod: the rod.
         strains: to start from, (n, m).
         path: levels.
-        target: the share; with `held` the value of Σ w ε.
+        target: the share; with `held` its value.
         held: what is given in place of the share.
         share: to start from where it is unknown; 0 if none is given.
 
@@ -137,10 +178,12 @@ def solve(
             raise NoEquilibriumError(f"iteration {iteration}: the tangent is singular")
         step = solved[:, 0]
         if held is not None:
-            weights = held.weights.ravel()
-            missing = target - float(weights @ strains.ravel()) - float(weights @ step)
-            more = missing / float(weights @ solved[:, 1])
-            step, at = step + more * solved[:, 1], at + more
+            by_strains, by_share = held.slopes(rod, strains, level, change)
+            row = by_strains.ravel()
+            missing = target - held.value(rod, strains, level) - float(row @ step)
+            with np.errstate(divide="ignore"):
+                more = np.divide(missing, float(row @ solved[:, 1]) + by_share)
+            step, at = step + more * solved[:, 1], at + float(more)
         strains = strains + step.reshape(strains.shape)
         if not way(rod, step.reshape(strains.shape)) < _FAR:
             raise NoEquilibriumError(f"iteration {iteration}: the correction is too great")
@@ -182,7 +225,7 @@ def march(
         rod: the rod.
         start: a state or strains of an equilibrium at share 0.
         path: levels.
-        targets: shares, or with `held` values of Σ w ε, in turn.
+        targets: shares, or with `held` its values, in turn.
         held: what is given in place of the share.
 
     Returns:
@@ -192,7 +235,7 @@ def march(
         NoEquilibriumError: the smallest step does not converge.
     """
     strains, share = (start.strains, start.share) if isinstance(start, State) else (start, 0.0)
-    now = share if held is None else float(np.sum(held.weights * strains))
+    now = share if held is None else held.value(rod, strains, path.at(share))
     known = [(now, strains, share)]
     states = []
     for target in targets:

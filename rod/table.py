@@ -106,6 +106,10 @@ class Table:
         m = strains.shape[1]
         return -self._at(strains, pressure, [self._unit(i, pressure=1) for i in range(m)]).T
 
+    def chamber_slope(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return -self._at(strains, pressure, [self._unit(pressure=2)])[0]
+
     def outside(self, strains: Floats, pressure: float) -> str:
         """See `rod.law.Law`."""
         points = np.column_stack([strains, np.full(len(strains), pressure)])

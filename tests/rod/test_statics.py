@@ -16,7 +16,7 @@ from rod.inertia import SectionMass, lump, spread
 from rod.law import Linear, Zones
 from rod.layout import STRAINS, Layout
 from rod.rod import Level, Rod, TipLoad
-from rod.statics import Held, NoEquilibriumError, Path, march, solve, unstable_modes
+from rod.statics import Angle, NoEquilibriumError, Path, Volume, march, solve, unstable_modes
 from tests.rod.bars import PLANE, SPACE, Bar, bent
 from tests.rod.elastica import elastica
 
@@ -204,7 +204,7 @@ def test_an_angle_leads_over_the_greatest_pressure() -> None:
     linear = bar.law(PLANE)
     law = Softening(linear.stiffness, linear.rest, 30.0, np.array([0.0, thrust]))
     rod = Rod(bar.layout(pieces), law)
-    held = Held(rod.layout.weights("curvature"))
+    held = Angle(rod.layout.weights("curvature"))
     angles = np.linspace(0.3, 2.0, 18) * law.top * bar.length
     path = Path(Level(), Level(pressure=0.01))
     states = march(rod, rod.layout.at_rest(), path, angles.tolist(), held)
@@ -218,6 +218,21 @@ def test_an_angle_leads_over_the_greatest_pressure() -> None:
     greatest = 2 / 3 * bending * law.top / thrust
     with pytest.raises(NoEquilibriumError):
         march(rod, rod.layout.at_rest(), path, [1.01 * greatest / 0.01])
+
+
+def test_a_volume_is_kept_at_any_pressure() -> None:
+    """k = P t/EI and V = L (A + a (λ − 1) + t k): the pressure of a volume is linear in it."""
+    bar = Bar()
+    law = dataclasses.replace(bar.law(PLANE), thrust=np.array([80.0, 200.0]), area=30.0)
+    rod = Rod(bar.layout(6), law)
+    path = Path(Level(), Level(pressure=0.05))
+    volumes = [3700.0, 4000.0]
+    states = march(rod, rod.layout.at_rest(), path, volumes, Volume())
+    give = 80**2 / (bar.young * bar.area) + 200**2 / (bar.young * bar.second)
+    for volume, state in zip(volumes, states, strict=True):
+        pressure = (volume / bar.length - 30) / give
+        assert state.level.pressure == pytest.approx(pressure, rel=1e-12)
+        assert state.level.pressure == pytest.approx(0.05 * state.share, rel=1e-12)
 
 
 def test_zones_have_their_own_laws() -> None:

@@ -14,7 +14,7 @@ from rod.layout import Layout
 from rod.motion import Motion
 from rod.rod import Level, Rod, TipLoad
 from rod.spline import Axis, Samples, fitted
-from rod.statics import NoEquilibriumError, Path, march
+from rod.statics import NoEquilibriumError, Path, Volume, march
 from rod.table import NotReachedError, Table, tabulate
 from tests.rod.bars import Bar
 
@@ -185,6 +185,19 @@ def test_a_rod_by_a_table_keeps_its_energy() -> None:
         most = max(most, float(np.sum(now.velocity @ rod.inertia * now.velocity)) / 2)
         assert motion.energy(now) == pytest.approx(first, abs=1e-9 * max(abs(first), 1.0))
     assert most > 0.01
+
+
+def test_a_volume_is_reached_by_a_table() -> None:
+    """Its chamber takes more air at held strains too."""
+    rod = rod_of(tabulate(Counted(), RANGES, 1e-3))
+    path = Path(Level(), Level(pressure=0.05))
+    rest = np.tile([1.0, 0.0], (6, 1))
+    begin = march(rod, rest, path, [0.0, 1.0])
+    first, last = (rod.volume(state.strains, state.level.pressure) for state in begin)
+    middle = march(rod, begin[0], path, [(first + last) / 2], Volume())[0]
+    assert rod.volume(middle.strains, middle.level.pressure) == pytest.approx((first + last) / 2)
+    assert 0.0 < middle.share < 1.0
+    assert middle.iterations <= 6, "its slopes are exact"
 
 
 def test_beyond_the_table_there_is_no_state() -> None:
