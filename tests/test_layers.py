@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-PACKAGES = ("machine", "materials", "geometry", "analytic", "fem", "fiberbend")
-LEAVES = ("machine", "materials", "geometry", "analytic")
+PACKAGES = ("machine", "materials", "geometry", "analytic", "rod", "fem", "fiberbend")
+LEAVES = ("machine", "materials", "geometry", "analytic", "rod")
 SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
 FENICS = {"dolfinx", "ufl", "ffcx", "basix", "petsc4py", "mpi4py"}
 LIGHT = (

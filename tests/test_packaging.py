@@ -22,7 +22,7 @@ from fiberbend.process import own
 from tests.conftest import ROOT
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-PACKAGES = ("analytic", "fem", "fiberbend", "geometry", "machine", "materials")
+PACKAGES = ("analytic", "fem", "fiberbend", "geometry", "machine", "materials", "rod")
 DEBIAN = {"basix", "cffi", "dolfinx", "ffcx", "gmsh", "mpi4py", "petsc4py", "ufl"}
 """Comes with FEniCSx: pip cannot install it."""
 OPTIONAL = {"IPython"}

@@ -9,7 +9,7 @@ import importlib.util
 import os
 import sys
 
-NAMES = ("analytic", "fem", "geometry", "machine", "materials")
+NAMES = ("analytic", "fem", "geometry", "machine", "materials", "rod")
 """Packages beside fiberbend that belong to it."""
 _MARK = b"Part of fiberbend."
 """In the docstring of each: another package that was installed into the same folder has it not."""

@@ -19,7 +19,7 @@ import yaml
 from tests.conftest import ROOT
 
 PAGE = ROOT / "CONTRIBUTING.md"
-PACKAGES = ("machine", "materials", "geometry", "analytic", "fem", "fiberbend")
+PACKAGES = ("machine", "materials", "geometry", "analytic", "rod", "fem", "fiberbend")
 TESTS = ("tests/__init__.py", "tests/conftest.py", "tests/materials", "pyproject.toml")
 """What comes with the source, so that recipes can add to the tests."""
 _BLOCK = re.compile(r"(?:^`([^`\n]+)`\n\n)?^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)

@@ -17,7 +17,9 @@ from machine.folders import MachineError
 from tests.conftest import ROOT
 
 KNOWN = ["0.5.2", "0.9.0", "0.9.0.post1", "0.11.0.post0"]
-PACKAGES = ("analytic", "bench", "fem", "fiberbend", "geometry", "machine", "materials", "tests")
+PACKAGES = (
+    *("analytic", "bench", "fem", "fiberbend", "geometry", "machine", "materials", "rod", "tests"),
+)
 OTHERS = [
     path
     for package in PACKAGES

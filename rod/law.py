@@ -1,0 +1,170 @@
+"""Laws of a section: energy per length at rest by strains and chamber pressure."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from rod.functions import Floats
+
+
+class Law(Protocol):
+    """Φ(ε; P), N mm per mm, of n pieces at once, with exact first and second derivatives.
+
+    ε are the free strains of the rod, (n, m), in the order of its layout; P in MPa. Conjugates of
+    shears and stretch are forces in N, of curvatures and twist moments in N mm. What the air does
+    is in Φ: −∂Φ/∂P is the area of the chamber per length at rest, mm².
+    """
+
+    def value(self, strains: Floats, pressure: float) -> Floats:
+        """Φ, (n,), N."""
+
+    def gradient(self, strains: Floats, pressure: float) -> Floats:
+        """∂Φ/∂ε, (n, m)."""
+
+    def hessian(self, strains: Floats, pressure: float) -> Floats:
+        """∂²Φ/∂ε², (n, m, m)."""
+
+    def chamber(self, strains: Floats, pressure: float) -> Floats:
+        """−∂Φ/∂P, (n,), mm²."""
+
+    def chamber_gradient(self, strains: Floats, pressure: float) -> Floats:
+        """−∂²Φ/∂ε∂P, (n, m)."""
+
+    def chamber_slope(self, strains: Floats, pressure: float) -> Floats:
+        """−∂²Φ/∂P², (n,), mm²/MPa: how a section whose strains are held takes more air."""
+
+    def outside(self, strains: Floats, pressure: float) -> str:
+        """What is beyond the range in which the law is known; empty where nothing is."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Linear:
+    """Φ = ½ (ε − ε₀)·K (ε − ε₀) − P (A + a·(ε − ε₀)): constant stiffness and a chamber.
+
+    Attributes:
+        stiffness: K, (m, m): GA_x, GA_y, EA in N, EI_x, EI_y, GJ in N mm² on its diagonal.
+        rest: ε₀, (m,): the strains without load.
+        area: A of the chamber at rest, mm².
+        thrust: a, (m,): forces and moments of a pressure of one, mm² and mm³.
+
+    Raises:
+        ValueError: a stiffness that is not symmetric, or other numbers of strains.
+    """
+
+    stiffness: Floats
+    rest: Floats
+    area: float = 0.0
+    thrust: Floats | None = None
+
+    def __post_init__(self) -> None:
+        count = len(self.rest)
+        if self.stiffness.shape != (count, count) or not np.allclose(
+            self.stiffness, self.stiffness.T, rtol=1e-12, atol=0.0
+        ):
+            raise ValueError(f"stiffness: a symmetric matrix of {count} × {count} expected")
+        if self.thrust is not None and np.shape(self.thrust) != (count,):
+            raise ValueError(f"thrust: {count} numbers expected, not {self.thrust}")
+
+    def _thrust(self) -> Floats:
+        return np.zeros(len(self.rest)) if self.thrust is None else self.thrust
+
+    def value(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`."""
+        away = strains - self.rest
+        elastic: Floats = np.sum(away @ self.stiffness * away, axis=1) / 2
+        return elastic - pressure * self.chamber(strains, pressure)
+
+    def gradient(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`."""
+        out: Floats = (strains - self.rest) @ self.stiffness - pressure * self._thrust()
+        return out
+
+    def hessian(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`."""
+        return np.broadcast_to(self.stiffness, (len(strains), *self.stiffness.shape))
+
+    def chamber(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`."""
+        out: Floats = self.area + (strains - self.rest) @ self._thrust()
+        return out
+
+    def chamber_gradient(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`."""
+        return np.broadcast_to(self._thrust(), strains.shape)
+
+    def chamber_slope(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`: its chamber is held by the strains."""
+        return np.zeros(len(strains))
+
+    def outside(self, strains: Floats, pressure: float) -> str:
+        """See `Law`: nothing is."""
+        return ""
+
+
+@dataclasses.dataclass(frozen=True)
+class Zones:
+    """A law for each piece: caps and zones have their own.
+
+    Attributes:
+        laws: one after another.
+        pieces: place in `laws` of each piece's law, (n,).
+
+    Raises:
+        ValueError: a place without a law.
+    """
+
+    laws: Sequence[Law]
+    pieces: Sequence[int]
+
+    def __post_init__(self) -> None:
+        if not all(0 <= place < len(self.laws) for place in self.pieces):
+            raise ValueError(f"zones: a law from 0 to {len(self.laws) - 1} for each piece expected")
+
+    def _each(self, what: str, strains: Floats, pressure: float, *shape: int) -> Floats:
+        pieces = np.asarray(self.pieces)
+        if len(strains) != len(pieces):
+            raise ValueError(f"zones of {len(pieces)} pieces for a rod of {len(strains)}")
+        out = np.empty((len(strains), *shape))
+        for place, law in enumerate(self.laws):
+            mine = pieces == place
+            if mine.any():
+                out[mine] = getattr(law, what)(strains[mine], pressure)
+        return out
+
+    def value(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`."""
+        return self._each("value", strains, pressure)
+
+    def gradient(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`."""
+        return self._each("gradient", strains, pressure, strains.shape[1])
+
+    def hessian(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`."""
+        return self._each("hessian", strains, pressure, *(2 * strains.shape[1:]))
+
+    def chamber(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`."""
+        return self._each("chamber", strains, pressure)
+
+    def chamber_gradient(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`."""
+        return self._each("chamber_gradient", strains, pressure, strains.shape[1])
+
+    def chamber_slope(self, strains: Floats, pressure: float) -> Floats:
+        """See `Law`."""
+        return self._each("chamber_slope", strains, pressure)
+
+    def outside(self, strains: Floats, pressure: float) -> str:
+        """See `Law`."""
+        pieces = np.asarray(self.pieces)
+        for place, law in enumerate(self.laws):
+            mine = pieces == place
+            found = law.outside(strains[mine], pressure) if mine.any() else ""
+            if found:
+                return f"zone {place + 1}: {found}"
+        return ""

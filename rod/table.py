@@ -1,0 +1,286 @@
+"""A law of a section by a table that refines itself: values and forces known at points.
+
+Between them Φ(ε; P) is a smooth spline (`rod.spline`), of which forces, stiffnesses and the area of
+the chamber are exact derivatives: a rod by a table keeps its energy as by a formula.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from rod.functions import Floats
+from rod.spline import Axis, Samples, fitted
+
+Sample = Callable[[Floats], tuple[Floats, Floats]]
+"""Of points (ε, P), (n, m + 1), gives Φ, (n,), and ∂Φ by strains and pressure, (n, m + 1)."""
+DEGREE, PRESSURE_DEGREE = 4, 3
+"""Of the splines: three and two continuous derivatives."""
+INTERVALS, PRESSURE_INTERVALS = 3, 1
+"""At first: fewer would leave splines of these degrees undetermined."""
+_OUTSIDE = 1e-9
+_LEAST = 32
+"""Fewest points to which a table is compared."""
+_SPLIT = 0.1
+"""Jumps beyond this part of the greatest one halve an interval."""
+
+
+class NotReachedError(RuntimeError):
+    """A table does not reach the error that was asked for with the points it may use."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Table:
+    """Φ(ε; P) by splines; a `rod.law.Law`.
+
+    Attributes:
+        axes: of the strains and, last, of the pressure in MPa.
+        coefficients: of the product splines, N.
+        samples: what it is fitted to.
+        errors: greatest error of ∂Φ by each variable at these points and at others that are not
+            fitted, in parts of its range over the table, (m + 1,).
+    """
+
+    axes: tuple[Axis, ...]
+    coefficients: Floats
+    samples: Samples
+    errors: Floats
+
+    def _at(self, strains: Floats, pressure: float, orders: Sequence[tuple[int, ...]]) -> Floats:
+        """Derivatives of given orders by each variable, (len(orders), n)."""
+        *axes, last = self.axes
+        first, basis = last.basis(np.array([pressure]))
+        reach = slice(int(first[0]), int(first[0]) + last.degree + 1)
+        at_pressure = self.coefficients[..., reach] @ np.moveaxis(basis[:, 0], 0, -1)
+        found = [axis.basis(x) for axis, x in zip(axes, strains.T, strict=True)]
+        places = []
+        for number, (axis, (start, _)) in enumerate(zip(axes, found, strict=True)):
+            shape = [len(strains)] + [1] * len(axes)
+            shape[1 + number] = axis.degree + 1
+            places.append((start[:, None] + np.arange(axis.degree + 1)).reshape(shape))
+        near = at_pressure[tuple(places)]
+        out = np.empty((len(orders), len(strains)))
+        for row, order in enumerate(orders):
+            part = near[..., order[-1]]
+            for number in reversed(range(len(axes))):
+                part = np.einsum("n...b,nb->n...", part, found[number][1][order[number]])
+            out[row] = part
+        return out
+
+    def _unit(self, *strains: int, pressure: int = 0) -> tuple[int, ...]:
+        order = [0] * len(self.axes)
+        for number in strains:
+            order[number] += 1
+        order[-1] = pressure
+        return tuple(order)
+
+    def value(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return self._at(strains, pressure, [self._unit()])[0]
+
+    def gradient(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        m = strains.shape[1]
+        return self._at(strains, pressure, [self._unit(i) for i in range(m)]).T
+
+    def hessian(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        m = strains.shape[1]
+        pairs = list(itertools.combinations_with_replacement(range(m), 2))
+        found = self._at(strains, pressure, [self._unit(*pair) for pair in pairs])
+        out = np.empty((len(strains), m, m))
+        for (i, j), values in zip(pairs, found, strict=True):
+            out[:, i, j] = out[:, j, i] = values
+        return out
+
+    def chamber(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return -self._at(strains, pressure, [self._unit(pressure=1)])[0]
+
+    def chamber_gradient(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        m = strains.shape[1]
+        return -self._at(strains, pressure, [self._unit(i, pressure=1) for i in range(m)]).T
+
+    def chamber_slope(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return -self._at(strains, pressure, [self._unit(pressure=2)])[0]
+
+    def outside(self, strains: Floats, pressure: float) -> str:
+        """See `rod.law.Law`."""
+        points = np.column_stack([strains, np.full(len(strains), pressure)])
+        for number, axis in enumerate(self.axes):
+            x, low, high = points[:, number], axis.lines[0], axis.lines[-1]
+            slack = _OUTSIDE * (high - low)
+            if x.min() < low - slack or x.max() > high + slack:
+                name = "pressure" if number == len(self.axes) - 1 else f"strain {number + 1}"
+                return (
+                    f"{name} from {x.min():.6g} to {x.max():.6g} in a table from {low:.6g} to "
+                    f"{high:.6g}"
+                )
+        return ""
+
+    def softest(self, pressure: float) -> tuple[float, Floats]:
+        """Where Φ is least convex at a pressure: a rod is unstable there by itself if below zero.
+
+        Args:
+            pressure: P, MPa.
+
+        Returns:
+            Lowest eigenvalue of ∂²Φ/∂ε² in parts of the ranges of the strains, N, and the strains.
+        """
+        *axes, _ = self.axes
+        fine = [np.linspace(axis.lines[0], axis.lines[-1], 4 * len(axis.lines)) for axis in axes]
+        strains = np.stack(np.meshgrid(*fine, indexing="ij"), axis=-1).reshape(-1, len(axes))
+        ranges = np.array([np.ptp(axis.lines) for axis in axes])
+        lowest = np.linalg.eigvalsh(self.hessian(strains, pressure) * np.outer(ranges, ranges))[
+            :, 0
+        ]
+        place = int(np.argmin(lowest))
+        return float(lowest[place]), strains[place]
+
+
+def tabulate(
+    sample: Sample,
+    ranges: Sequence[tuple[float, float]],
+    error: float,
+    most: int = 2000,
+) -> Table:
+    """A table whose forces are known to an error, by halving intervals where they are not.
+
+    It is fitted on a grid of the lines and of those halfway between them, and compared with the law
+    at scattered points, which are never fitted: they would pull it about unevenly. While it misses
+    one, the intervals are halved at whose ends its highest derivative jumps most.
+
+    Args:
+        sample: the law at points; it is asked in an order in which neighbours follow each other.
+        ranges: of the strains and, last, of the pressure in MPa.
+        error: of each derivative of Φ in parts of its range over the table.
+        most: greatest number of points.
+
+    Returns:
+        The table.
+
+    Raises:
+        NotReachedError: `most` points are not enough.
+        ValueError: the law is not finite at a point.
+    """
+    begin = [*[INTERVALS] * (len(ranges) - 1), PRESSURE_INTERVALS]
+    lines = [np.linspace(*pair, k + 1) for pair, k in zip(ranges, begin, strict=True)]
+    empty = np.empty((0, len(lines)))
+    samples = checks = Samples(empty, np.empty(0), empty)
+    missed = math.inf
+    while True:
+        halves = [(axis[1:] + axis[:-1]) / 2 for axis in lines]
+        grid = _grid([_merged(*pair) for pair in zip(lines, halves, strict=True)])
+        count = max(_LEAST, math.prod(len(half) for half in halves))
+        scattered = _scattered(lines, len(checks.values), count)
+        points = len(grid) + len(checks.values) + count
+        if points > most:
+            raise NotReachedError(
+                f"forces of the table are off by {missed:.2g} of their range, {error:.2g} asked "
+                f"for: {points} points are needed, {most} allowed"
+            )
+        samples = _asked(sample, grid, samples)
+        checks = _asked(sample, scattered, checks)
+        axes = tuple(
+            Axis(axis, PRESSURE_DEGREE if number == len(lines) - 1 else DEGREE)
+            for number, axis in enumerate(lines)
+        )
+        table = Table(axes, fitted(axes, samples), samples, np.empty(0))
+        errors = _errors(table, samples.joined(checks))
+        missed = float(errors.max())
+        if missed <= error:
+            return dataclasses.replace(table, errors=errors)
+        jumps = [_jumps(axis, table.coefficients, number) for number, axis in enumerate(axes)]
+        least = _SPLIT * max(float(jump.max()) for jump in jumps)
+        lines = [
+            _merged(axis, half[jump >= least])
+            for axis, half, jump in zip(lines, halves, jumps, strict=True)
+        ]
+
+
+def _merged(lines: Floats, more: Floats) -> Floats:
+    return np.sort(np.concatenate([lines, more]))
+
+
+def _scattered(lines: Sequence[Floats], first: int, count: int) -> Floats:
+    """Points between all lines, of a sequence that fills the box evenly (Roberts 2018: R_d).
+
+    Args:
+        lines: of the axes.
+        first: number of points that were taken before.
+        count: number of points.
+    """
+    d = len(lines)
+    # the root of x^(d + 1) = x + 1
+    root = 2.0
+    for _ in range(40):
+        root = (1 + root) ** (1 / (d + 1))
+    number = np.arange(first + 1, first + count + 1)
+    parts = (0.5 + number[:, None] / root ** np.arange(1, d + 1)) % 1.0
+    low = np.array([axis[0] for axis in lines])
+    high = np.array([axis[-1] for axis in lines])
+    out: Floats = low + parts * (high - low)
+    return out
+
+
+def _grid(lines: Sequence[Floats]) -> Floats:
+    """All crossings, row by row and back, so that neighbours follow each other."""
+    points = np.empty((1, 0))
+    for axis in lines:
+        rows = [
+            np.column_stack([np.tile(row, (len(axis), 1)), axis[:: -1 if number % 2 else 1]])
+            for number, row in enumerate(points)
+        ]
+        points = np.concatenate(rows)
+    return points
+
+
+def _new(points: Floats, samples: Samples) -> Floats:
+    known = {tuple(point) for point in samples.points.tolist()}
+    new = [point for point in points.tolist() if tuple(point) not in known]
+    return np.array(new).reshape(-1, points.shape[1])
+
+
+def _asked(sample: Sample, points: Floats, samples: Samples) -> Samples:
+    """With what was not known yet."""
+    new = _new(points, samples)
+    if not len(new):
+        return samples
+    values, slopes = sample(new)
+    broken = ~(np.isfinite(values) & np.isfinite(slopes).all(axis=1))
+    if broken.any():
+        raise ValueError(f"the law is not finite at {new[broken][0].tolist()}")
+    return samples.joined(Samples(new, values, slopes))
+
+
+def _errors(table: Table, samples: Samples) -> Floats:
+    """Of the derivatives at all points, in parts of their ranges, (m + 1,)."""
+    worst = np.zeros(len(table.axes))
+    ranges = np.ptp(samples.slopes, axis=0)
+    ranges[ranges == 0] = 1.0
+    for pressure in np.unique(samples.points[:, -1]):
+        here = samples.points[:, -1] == pressure
+        strains, slopes = samples.points[here, :-1], samples.slopes[here]
+        found = np.column_stack(
+            [table.gradient(strains, pressure), -table.chamber(strains, pressure)]
+        )
+        worst = np.maximum(worst, np.abs((found - slopes) / ranges).max(axis=0))
+    return worst
+
+
+def _jumps(axis: Axis, coefficients: Floats, number: int) -> Floats:
+    """Of the highest derivative at the ends of each interval, times h^p, (k,)."""
+    highest = axis.highest(np.moveaxis(coefficients, number, 0))
+    if len(highest) == 1:
+        # of one interval nothing jumps: the derivative itself, which is no smaller
+        return np.array([np.abs(highest).max() * np.diff(axis.lines)[0] ** axis.degree])
+    jumps = np.zeros(len(highest) + 1)
+    jumps[1:-1] = np.abs(np.diff(highest, axis=0)).reshape(len(highest) - 1, -1).max(axis=1)
+    greatest: Floats = np.maximum(jumps[1:], jumps[:-1]) * np.diff(axis.lines) ** axis.degree
+    return greatest
