@@ -8,9 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from fiberbend.design.search.confirm import Confirmed
 from fiberbend.design.search.front import Front, trade_off
+from fiberbend.design.search.search import Search
+from fiberbend.design.solving.models import Section
+from fiberbend.design.solving.tries import Tries
 from fiberbend.design.told.limits import limits
 from fiberbend.design.told.outcome import FAILED, UNMET, Times, outcome
 from tests.design.made_up import MadeUp, design, none, search
@@ -152,3 +156,18 @@ def test_a_trade_off_is_sorted_and_no_case_beats_another(tmp_path: Path) -> None
     assert np.all(np.diff(values[:, 0]) < 0)
     assert np.all(np.diff(values[:, 1]) < 0)
     assert 0 <= front.knee < len(values)
+
+
+def test_the_section_has_the_wall_that_bisection_finds(tmp_path: Path) -> None:
+    made = design(tmp_path, vary=WALL, targets=[ANGLE])
+    tries = Tries(made, Section(1))
+    found = Search(made, tries).whole(none(made), None)
+    assert found is not None
+
+    def off(x: float) -> float:
+        values = tries.at((), (x,)).quantities
+        assert values is not None
+        return values[0] - math.pi / 2
+
+    assert found.met
+    assert found.x[0] == pytest.approx(brentq(off, 0, 1, xtol=1e-6), abs=1e-3)

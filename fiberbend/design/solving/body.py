@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from fem.solver.problem import RefusedError
 from fiberbend import columns as col
 from fiberbend.case.case import Case
 from fiberbend.design.quantities.quantity import Quantity
@@ -15,6 +16,7 @@ from fiberbend.effects.pressure import PressureEffect
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case
 from fiberbend.schema.units import show
+from geometry.mesh.errors import MeshError
 
 MODEL = "body"
 FREE, BENT, BLOCKED = "", "_by_angle", "_blocked"
@@ -111,7 +113,10 @@ class Body:
             BLOCKED: ("straight", col.PRESSURE, 1e3),
         }
         for end, given in body_data(data, self._quantities, wanted).items():
-            result = self._run(parse_case(given | {"output": given["output"] | _OUTPUT}))
+            try:
+                result = self._run(parse_case(given | {"output": given["output"] | _OUTPUT}))
+            except (MeshError, RefusedError) as error:
+                raise UnsolvedError(f"{type(error).__name__}: {error}") from None
             warnings += result.run.get("warnings") or ()
             kind, column, factor = keys[end]
             goals = [state for state in wanted if state.kind == kind]

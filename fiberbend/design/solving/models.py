@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
+import numpy as np
+
+from fem.solver.problem import RefusedError
 from fiberbend.calibration.digest import CELL, LAYERS
 from fiberbend.case.case import Case
 from fiberbend.case.section_beside import as_section
@@ -16,7 +19,10 @@ from fiberbend.models.choice import problems
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.trial.solve import sensitivities, solve
 from fiberbend.trial.wanted import Answer, Point, Wanted
+from geometry.mesh.errors import MeshError
 
+_NO_ANSWER = (MeshError, RefusedError, ArithmeticError, ValueError, np.linalg.LinAlgError)
+"""What a case of a search may end with, and the search does not."""
 States = Mapping[State, Sequence[Reading]]
 Slopes = Mapping[str, States]
 """By the path of a field, what every reading changes by when the field does."""
@@ -84,7 +90,7 @@ class Section:
         inner = {path: self._inner(case, path) for path in fields}
         try:
             found = sensitivities(section, asked(wanted), inner.values())
-        except CaseError:
+        except (CaseError, *_NO_ANSWER):
             return None
         if not found.answer.converged:
             return None
@@ -140,7 +146,10 @@ def _by_zones(cases: Sequence[Case], wanted: Sequence[State]) -> States:
 
 
 def _solved(case: Case, wanted: Sequence[State]) -> dict[State, Reading]:
-    answer = solve(case, asked(wanted))
+    try:
+        answer = solve(case, asked(wanted))
+    except _NO_ANSWER as error:
+        raise UnsolvedError(f"{type(error).__name__}: {error}") from None
     if not answer.converged:
         raise UnsolvedError(answer.reason)
     return readings(answer, wanted)

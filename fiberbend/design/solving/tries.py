@@ -207,13 +207,13 @@ class Tries:
         for sign in (1.0, -1.0):
             x = list(here.x)
             x[index] += sign * _STEP
-            try:
-                case = parse_case(self.design.changed(self.pairs(here.chosen, x)))
-            except CaseError:
-                continue
             change = sign * _STEP * (field.high - field.low)
             states = here.states if own is None else moved(here.states, own[field.path], change)
-            sides.append((sign * _STEP, np.array(self._read(case, states))))
+            try:
+                case = parse_case(self.design.changed(self.pairs(here.chosen, x)))
+                sides.append((sign * _STEP, np.array(self._read(case, states))))
+            except (CaseError, UnsolvedError):
+                continue
         if not sides:
             return None
         if len(sides) == 1:
