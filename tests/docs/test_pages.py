@@ -35,8 +35,10 @@ def test_the_page_is_that_of_the_code(page: str, text: Callable[[], str]) -> Non
 
 def test_the_case_file_page_has_every_key() -> None:
     text = written.case_file()
-    for key in ("actuator", "radius", "pitch", "stop_at_angle", "max_turn", "elastosil-m4601"):
+    for key in ("actuator", "radius", "pitch", "stop_at_angle", "max_turn", "young"):
         assert f"`{key}`" in text
+    assert "(materials.md)" in text
+    assert "elastosil-m4601" in written.PAGES["docs/materials.md"]()
     assert "length, such as `8 mm`" in text
 
 
