@@ -107,6 +107,7 @@ class Body:
         """
         found: dict[State, tuple[Reading, ...]] = {}
         warnings: list[str] = []
+        posts = {s for each in self._quantities if each.blocked_by() for s in each.states()}
         keys = {
             FREE: ("pressure", col.PRESSURE, 1e3),
             BENT: ("angle", col.ANGLE, math.degrees(1)),
@@ -123,7 +124,8 @@ class Body:
             for state in goals:
                 row = _row(result.rows, column, factor * state.value)
                 if row is None:
-                    if end == BLOCKED:
+                    if end == BLOCKED and state not in posts:
+                        # a moment kept straight, of which a body has none
                         continue
                     raise UnsolvedError(
                         result.reason or f"the body has no state at {state.value:g}"
