@@ -16,7 +16,7 @@ from fiberbend.design.search.search import Search
 from fiberbend.design.solving.models import Section
 from fiberbend.design.solving.tries import Tries
 from fiberbend.design.told.limits import limits
-from fiberbend.design.told.outcome import FAILED, UNMET, Times, outcome
+from fiberbend.design.told.outcome import FAILED, INTERRUPTED, UNMET, Times, outcome
 from tests.design.made_up import MadeUp, design, none, search
 
 RADIUS = {"actuator.radius": {"from": "4 mm", "to": "12 mm"}}
@@ -123,6 +123,13 @@ def test_cases_without_states_are_no_answer(tmp_path: Path) -> None:
     told = outcome(made, nowhere.tries, None, [], None, Times())
     assert told.status == FAILED
     assert "it ends before" in told.reason
+
+
+def test_one_that_is_stopped_before_its_first_case_says_so(tmp_path: Path) -> None:
+    made = design(tmp_path, vary=WALL, targets=[ANGLE])
+    told = outcome(made, search(made).tries, None, [], None, Times(), interrupted=True)
+    assert told.status == INTERRUPTED
+    assert "before the first search" in told.reason
 
 
 def test_dimensions_that_do_not_fit_are_no_answer(tmp_path: Path) -> None:

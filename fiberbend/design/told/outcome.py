@@ -72,9 +72,9 @@ def outcome(
 ) -> Outcome:
     """Judge an answer."""
     if done is None:
-        status, why = FAILED, _no_case(tries)
-        if interrupted:
-            status, why = INTERRUPTED, "interrupted before the first search had ended"
+        status, why = INTERRUPTED, "interrupted before the first search had ended"
+        if not interrupted:
+            status, why = FAILED, _no_case(tries)
         return Outcome(design, status, why, None, (), (), (), None, tries, times)
     found = told(design, done)
     held = limits(design, done.found)
