@@ -21,7 +21,7 @@ from fiberbend.schema.units import KINDS
 
 FRONT = "design_front.png"
 PAGE = Style(height=150.0)
-_PARTS = (0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0)
+_PARTS = (0.0, 0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0)
 _COLORS = (BLUE, "#e69f00", "#009e73", "#7a4a8c")
 _UNITS = {"deg": "°", "N*mm": "N mm"}
 _MARKS = {CELL: ("s", 9.0), BODY: ("o", 9.0)}
@@ -72,7 +72,7 @@ def _curves(made: Outcome, kind: str, group: Sequence[Told]) -> Any | None:
         if not curve:
             return None
         axes.plot(
-            *zip((0.0, 0.0), *curve, strict=True),
+            *zip(*curve, strict=True),
             color=color,
             linewidth=2 * scale,
             label=f"{name.split(' at ')[0]}, section",
@@ -124,7 +124,7 @@ def _wanted(quantity: Quantity[Any]) -> Iterator[tuple[str, str, float]]:
 
 
 def _curve(made: Outcome, quantity: Quantity[Any]) -> Iterator[tuple[float, float]]:
-    """Pressures in kPa and values of the section on the way to a target."""
+    """Pressures in kPa and values of the section from rest to a target."""
     assert made.done is not None
     found, tries = made.done.found, made.tries
     case = tries.case(found.chosen, found.x)
