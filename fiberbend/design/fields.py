@@ -65,11 +65,19 @@ class Choice:
         path: dotted path in the case.
         label: short name, unique in the design.
         values: as a file has them.
+        between: they are all whole numbers between two ends.
     """
 
     path: str
     label: str
     values: tuple[Any, ...]
+    between: bool = False
+
+    def origins(self) -> dict[str, Any]:
+        """By their keys under the field in the file, the values that stand there."""
+        if self.between:
+            return {"from": self.values[0], "to": self.values[-1]}
+        return {str(index): value for index, value in enumerate(self.values)}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -177,7 +185,7 @@ def _between(where: str, path: str, label: str, given: dict[str, Any]) -> Varied
                 "need not be whole has a point, 1.0)"
             )
             raise CaseError([Problem(where, text)])
-        return Choice(path, label, tuple(range(low, high + 1)))
+        return Choice(path, label, tuple(range(low, high + 1)), between=True)
     if _number(low) and _number(high):
         _rising(where, low, high)
         return Varied(path, label, float(low), float(high))

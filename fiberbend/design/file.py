@@ -80,7 +80,7 @@ class DesignFile(Spec):
     """Fields that may change, by dotted path: `{from: 1 mm, to: 3 mm}`, or a list of choices."""
     targets: tuple[AnyQuantity, ...] = Field(default=(), strict=False)
     """What is wanted; all of it."""
-    goals: tuple[Goal, ...] = Field(default=(), strict=False, max_length=MOST_GOALS)
+    goals: tuple[Goal, ...] = Field(default=(), strict=False)
     """What is best among cases that have all of that; two give a trade-off."""
     search: Search = Search()
     """How it searches."""
@@ -103,6 +103,8 @@ def problems(file: DesignFile) -> Iterator[Problem]:
         yield Problem("targets", "nothing is wanted, expected targets, goals or both")
     for index, target in enumerate(file.targets):
         yield from contradictions(target, f"targets.{index}.{target.name}", goal=False)
+    if len(file.goals) > MOST_GOALS:
+        yield Problem("goals", f"{len(file.goals)} goals, expected at most {MOST_GOALS}")
     for index, goal in enumerate(file.goals):
         if (goal.minimise is None) == (goal.maximise is None):
             yield Problem(f"goals.{index}", "expected one of minimise and maximise")

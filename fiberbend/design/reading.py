@@ -172,9 +172,9 @@ def _at_ends(design: Design) -> Iterator[Problem]:
             values = ((field.path, field.text(value)),)
             yield from _alone(design, values, f"{field.path}.{key}", whole=False)
     for choice in design.fields.choices:
-        for index, value in enumerate(choice.values):
+        for key, value in choice.origins().items():
             values = ((choice.path, value),)
-            yield from _alone(design, values, f"{choice.path}.{index}", whole=True)
+            yield from _alone(design, values, f"{choice.path}.{key}", whole=True)
 
 
 def _alone(design: Design, values: Pairs, origin: str, whole: bool) -> Iterator[Problem]:
@@ -187,7 +187,11 @@ def _alone(design: Design, values: Pairs, origin: str, whole: bool) -> Iterator[
         whole: what the case says of the value itself counts too, as the name of a material.
     """
     ((path, _),) = values
-    data = design.changed(values)
+    try:
+        data = design.changed(values)
+    except CaseError as error:
+        yield from (Problem(f"vary.{origin}", f"{p.path}: {p.text}") for p in error.problems)
+        return
     try:
         Case.model_validate(data)
     except ValidationError as error:

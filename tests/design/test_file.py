@@ -63,6 +63,8 @@ def test_goals_have_a_side_and_no_bounds(tmp_path: Path) -> None:
     assert "expected it under targets" in wrong["goals.1.minimise.rubber.most"]
     same: list[dict[str, Any]] = [{"minimise": {"rubber": {}}}, {"maximise": {"rubber": {}}}]
     assert "expected another" in problems(tmp_path, goals=same)["goals.1"]
+    three = [*same, {"minimise": {"width": {}}}]
+    assert problems(tmp_path, goals=three)["goals"] == "3 goals, expected at most 2"
 
 
 def test_fields_have_ends_of_one_kind(tmp_path: Path) -> None:
@@ -91,6 +93,18 @@ def test_fields_are_those_of_the_case(tmp_path: Path) -> None:
     assert "unknown key" in wrong["vary.actuator.wal.from"]
     assert "above zero" in wrong["vary.actuator.radius.from"]
     assert "rubbr" in wrong["vary.materials.wall.1"]
+    nowhere = {
+        "effects.7.winding.pitch": {"from": "1 mm", "to": "4 mm"},
+        "materials.wall.c1": {"from": "0.1 MPa", "to": "0.2 MPa"},
+        "actuator.wall": {"from": 1, "to": 4},
+    }
+    wrong = problems(tmp_path, vary=nowhere)
+    assert "no such entry" in wrong["vary.effects.7.winding.pitch.from"]
+    assert "no such path" in wrong["vary.materials.wall.c1.to"]
+    assert [key for key in wrong if key.startswith("vary.actuator")] == [
+        "vary.actuator.wall.from",
+        "vary.actuator.wall.to",
+    ]
 
 
 def test_too_many_combinations_are_refused(tmp_path: Path) -> None:
