@@ -14,12 +14,16 @@ from fiberbend.running.launch import say
 from fiberbend.schema.problems import CaseError
 from machine.folders import MachineError
 
+_Changes = Annotated[
+    Changes, Parameter(help='Change the base case, such as actuator.length="80 mm"; repeatable.')
+]
+
 
 def design(
     file: Annotated[Path, Parameter(name="DESIGN")],
     /,
     *,
-    settings: Changes = (),
+    settings: _Changes = (),
     out: Path | None = None,
     overwrite: bool = False,
     quiet: bool = False,

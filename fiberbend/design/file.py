@@ -112,10 +112,32 @@ def problems(file: DesignFile) -> Iterator[Problem]:
         key = "minimise" if goal.minimise is not None else "maximise"
         path = f"goals.{index}.{key}.{goal.quantity.name}"
         yield from contradictions(goal.quantity, path, goal=True)
+    yield from _together(file)
     if len(file.goals) == MOST_GOALS and not list(_open(file)):
         first, second = (goal.quantity for goal in file.goals)
         if first == second:
             yield Problem("goals.1", "the quantity of goals.0 again, expected another")
+
+
+def _together(file: DesignFile) -> Iterator[Problem]:
+    """What does not go together among all that is wanted."""
+    asked = [(f"targets.{index}", target) for index, target in enumerate(file.targets)]
+    for index, (place, target) in enumerate(asked):
+        for before, other in asked[:index]:
+            if target.bare() == other.bare():
+                text = f"the quantity of {before} again, expected its least and most in one entry"
+                yield Problem(f"{place}.{target.name}", text)
+                break
+    whole = [goal for goal in file.goals if goal not in list(_open(file))]
+    asked += [(f"goals.{index}", goal.quantity) for index, goal in enumerate(whole)]
+    posts = [(place, each, by) for place, each in asked if (by := each.blocked_by())]
+    for place, each, by in posts[1:]:
+        if by != posts[0][2]:
+            text = f"another roof or post than that of {posts[0][0]}, expected one for all"
+            yield Problem(f"{place}.{each.name}", text)
+    pressures = [s.value for _, each in asked for s in each.states() if s.kind == "pressure"]
+    if pressures and min(pressures) < 0 < max(pressures):
+        yield Problem("targets", "pressures of both signs, expected one: a run goes to one end")
 
 
 def _open(file: DesignFile) -> Iterator[Goal]:

@@ -17,7 +17,7 @@ from fiberbend.design.quantities.quantity import Quantity
 from fiberbend.reader.base_case import read_base
 from fiberbend.reader.own_files import rooted_value
 from fiberbend.reader.reader import parse_case
-from fiberbend.reader.yaml_file import YamlContent, line_numbers, read_yaml
+from fiberbend.reader.yaml_file import YamlContent, line_numbers, read_yaml, setting_path
 from fiberbend.schema.paths import put, value_at
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.units import KINDS, parse
@@ -25,6 +25,7 @@ from fiberbend.schema.validation import from_pydantic
 
 _MADE = ("actuator", "materials", "effects", "zones")
 """Parts of a case that are made of something."""
+_IDLE = "no effect: targets and goals say at which pressure or angle"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -120,7 +121,11 @@ def _checked(source: YamlContent, path: Path, settings: Sequence[str]) -> Design
         file.search,
         file.confirm,
     )
-    wrong = [*_not_of_case(design), *_at_ends(design)]
+    changes = [(f"set.{field}", field) for field in file.set]
+    changes += [(f"--set {setting}", setting_path(setting)) for setting in settings]
+    idle = (where for where, field in changes if _of_pressure(base, field))
+    wrong = [Problem(where, _IDLE) for where in idle]
+    wrong += [*_not_of_case(design), *_at_ends(design)]
     if wrong:
         raise CaseError(wrong)
     return design
@@ -156,10 +161,16 @@ def _idle(design: Design) -> Iterator[Problem]:
         if path.split(".")[0] not in _MADE:
             text = f"says nothing of the actuator, expected a field of {', '.join(_MADE)}"
             yield Problem(f"vary.{path}", text)
-        for index, effect in enumerate(design.base.effects):
-            if effect.inflation() is not None and f"{path}.".startswith(f"effects.{index}."):
-                text = "no effect: targets and goals say at which pressure or angle"
-                yield Problem(f"vary.{path}", text)
+        if _of_pressure(design.base, path):
+            yield Problem(f"vary.{path}", _IDLE)
+
+
+def _of_pressure(case: Case, path: str) -> bool:
+    """Whether a path leads into the pressure of a case, whose value a design chooses."""
+    return any(
+        effect.inflation() is not None and path.startswith(f"effects.{index}.")
+        for index, effect in enumerate(case.effects)
+    )
 
 
 def _at_ends(design: Design) -> Iterator[Problem]:

@@ -125,6 +125,29 @@ def test_fields_that_make_no_other_actuator_are_refused(tmp_path: Path) -> None:
     assert "says nothing of the actuator" in wrong["vary.mesh.axial"]
 
 
+def test_a_pressure_of_the_base_case_that_is_set_is_refused(tmp_path: Path) -> None:
+    load = {"effects.0.pressure.angle": "30 deg"}
+    wrong = problems(tmp_path, set={**load, "output": {}, "compare": []})
+    assert "targets and goals say" in wrong["set.effects.0.pressure.angle"]
+    design(tmp_path, vary=VARY, targets=TARGETS)
+    with pytest.raises(
+        CaseError, match=r"--set effects\.0\.pressure\.angle.*targets and goals say"
+    ):
+        read_design(tmp_path / "design.yaml", ["effects.0.pressure.angle=30 deg"])
+
+
+def test_what_is_wanted_goes_together(tmp_path: Path) -> None:
+    again = [*TARGETS, {"angle": {"at": "60 kPa", "most": "95 deg"}}]
+    assert "of targets.0 again" in problems(tmp_path, targets=again)["targets.1.angle"]
+    force = {"at": "60 kPa", "least": "1 N"}
+    posts = [{"blocked-force": force}, {"blocked-force": {**force, "at": "50 kPa"}}]
+    assert len(design(tmp_path, vary=VARY, targets=posts).targets) == 2
+    posts[1]["blocked-force"]["roof_width"] = "6 mm"
+    assert "another roof" in problems(tmp_path, targets=posts)["targets.1.blocked-force"]
+    both = [*TARGETS, {"angle": {"at": "-20 kPa", "most": "0 deg"}}]
+    assert "both signs" in problems(tmp_path, targets=both)["targets"]
+
+
 def test_a_quantity_that_the_case_does_not_have(tmp_path: Path) -> None:
     targets = [{"angle": {"zone": 2, "at": "60 kPa", "is": "90 deg"}}]
     wrong = problems(tmp_path, targets=targets)

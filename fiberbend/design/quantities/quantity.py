@@ -73,6 +73,11 @@ class Quantity(Spec, Generic[V]):
         """The effect by which a body shows it, as a case file has it; empty: it bends freely."""
         return {}
 
+    def bare(self) -> Quantity[V]:
+        """The quantity alone, without what is wanted of it."""
+        nothing = {"is_": None, "within": None, "least": None, "most": None}
+        return self.model_copy(update=nothing)
+
     # --- what is wanted of it --------------------------------------------------------------------
 
     @property

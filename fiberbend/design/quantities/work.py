@@ -28,11 +28,10 @@ class WorkTo(Quantity[Energy]):
     """Bending angle at the end, in place of a pressure."""
 
     def states(self) -> tuple[State, ...]:
-        """At the end."""
+        """At the end; `wrong` refuses one without an end."""
         if self.at is not None:
             return (State("pressure", self.at),)
-        assert self.angle is not None
-        return (State("angle", self.angle),)
+        return () if self.angle is None else (State("angle", self.angle),)
 
     def read(self, seen: Seen) -> float:
         """The work of all zones."""
