@@ -40,6 +40,11 @@ class Varied:
     unit: str = ""
     factor: float = 1.0
 
+    def rounded(self, value: float) -> float:
+        """A value with eight digits in its unit, between the ends."""
+        near = self.factor * float(f"{value / self.factor:.8g}")
+        return min(max(near, self.low), self.high)
+
     def text(self, value: float) -> Any:
         """A value as a case file has it."""
         scaled = float(f"{value / self.factor:.12g}")

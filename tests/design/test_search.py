@@ -19,6 +19,7 @@ from fiberbend.design.told.limits import limits
 from fiberbend.design.told.outcome import FAILED, INTERRUPTED, UNMET, Times, outcome
 from tests.design.made_up import MadeUp, design, none, search
 
+_HANDS = ("right", "left")
 RADIUS = {"actuator.radius": {"from": "4 mm", "to": "12 mm"}}
 WALL = {"actuator.wall": {"from": "1 mm", "to": "3 mm"}}
 ANGLE = {"angle": {"at": "60 kPa", "is": "90 deg"}}
@@ -140,6 +141,23 @@ def test_dimensions_that_do_not_fit_are_no_answer(tmp_path: Path) -> None:
     found = tried.whole(none(made), 0)
     assert found is not None
     assert all(each.quantities is not None or each.reason for each in tried.tries.all)
+
+
+def test_numbers_of_a_case_are_round_in_their_unit_and_between_the_ends(tmp_path: Path) -> None:
+    place = "effects.1.winding.families"
+    angles = {f"{place}.0.angle_from_axis": {"from": "60.5 deg", "to": "89 deg"}}
+    family = [{"angle_from_axis": "80 deg", "hand": hand, "starts": 8} for hand in _HANDS]
+    winding = {"winding": {"families": family, "fiber": "kevlar", "as": "smeared"}}
+    made = design(
+        tmp_path,
+        set={"effects.1": winding, "output": {}, "compare": []},
+        vary=angles,
+        targets=[ANGLE],
+    )
+    tries = search(made).tries
+    assert tries.pairs((), (1.0,))[0][1] == "89 deg"
+    assert tries.pairs((), (0.0,))[0][1] == "60.5 deg"
+    assert tries.pairs((), (0.5,))[0][1] == "74.75 deg"
 
 
 def test_the_same_seed_tries_the_same_cases(tmp_path: Path) -> None:

@@ -99,7 +99,7 @@ class Tries:
         """Values of the varied numbers in internal units, rounded as a file has them."""
         fields = self.design.fields.varied
         return tuple(
-            float(f"{field.low + part * (field.high - field.low):.8g}")
+            field.rounded(field.low + part * (field.high - field.low))
             for field, part in zip(fields, x, strict=True)
         )
 
