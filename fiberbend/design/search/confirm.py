@@ -149,7 +149,7 @@ class Confirmer:
     def _agrees(self, check: Check) -> bool:
         """Whether the section, corrected, had foreseen all that models differ in."""
         return all(
-            abs(fine - foreseen) <= AGREES * max(quantity.scale, abs(fine))
+            abs(fine - foreseen) <= _near(quantity, fine)
             for fine, foreseen, quantity in zip(
                 check.values, check.foreseen, self.design.quantities, strict=True
             )
@@ -203,6 +203,12 @@ class Confirmer:
             if _counts(value, quantity)
         ]
         return f"{check.model}: {', '.join(parts)}"
+
+
+def _near(quantity: Quantity[Any], fine: float) -> float:
+    """How far a finer model may be from what is foreseen: finer where a target is."""
+    near = AGREES * max(quantity.scale, abs(fine))
+    return near if quantity.within is None else min(near, quantity.slack / 2)
 
 
 def _counts(value: float, quantity: Quantity[Any]) -> bool:
