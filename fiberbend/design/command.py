@@ -111,7 +111,7 @@ class _Made:
                 done = Confirmed(found, self._none)
                 done, front, times = self._confirmed(done, front, times)
                 self._tell("how every quantity changes with every dimension")
-                table = sensitivities(self._design, done.found)
+                table = sensitivities(self._design, done)
         except KeyboardInterrupt as error:
             stop = stop_of(error)
             times = times if done else Times(search=time.process_time() - begun)

@@ -86,18 +86,8 @@ class Section:
         """
         if case.zones:
             return None
-        section = self.case_of(case)
         inner = {path: self._inner(case, path) for path in fields}
-        try:
-            found = sensitivities(section, asked(wanted), inner.values())
-        except (CaseError, *_NO_ANSWER):
-            return None
-        if not found.answer.converged:
-            return None
-        return {
-            path: {state: (one,) for state, one in readings(found.by_field[own], wanted).items()}
-            for path, own in inner.items()
-        }
+        return _slopes(self.case_of(case), wanted, inner)
 
     def _inner(self, case: Case, path: str) -> str:
         """A path of the case in its section, whose load stands first."""
@@ -115,6 +105,12 @@ class Cell:
     def states(self, case: Case, wanted: Sequence[State]) -> States:
         """As of `Model`."""
         return _by_zones([cell_of(zone) for zone in zone_cases(case)], wanted)
+
+    def slopes(self, case: Case, wanted: Sequence[State], fields: Sequence[str]) -> Slopes | None:
+        """As of `Section`."""
+        if case.zones:
+            return None
+        return _slopes(cell_of(case), wanted, {path: path for path in fields})
 
 
 def cell_of(zone: Case) -> Case:
@@ -143,6 +139,20 @@ def _spread(effect: Effect) -> Effect | None:
 def _by_zones(cases: Sequence[Case], wanted: Sequence[State]) -> States:
     answers = [_solved(case, wanted) for case in cases]
     return {state: tuple(found[state] for found in answers) for state in wanted}
+
+
+def _slopes(case: Case, wanted: Sequence[State], inner: Mapping[str, str]) -> Slopes | None:
+    """Derivatives of the states of a uniform case, by fields with their paths in it."""
+    try:
+        found = sensitivities(case, asked(wanted), inner.values())
+    except (CaseError, *_NO_ANSWER):
+        return None
+    if not found.answer.converged:
+        return None
+    return {
+        path: {state: (one,) for state, one in readings(found.by_field[own], wanted).items()}
+        for path, own in inner.items()
+    }
 
 
 def _solved(case: Case, wanted: Sequence[State]) -> dict[State, Reading]:

@@ -11,12 +11,13 @@ import numpy as np
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.design.fields import Varied
+from fiberbend.design.fields import Pairs, Varied
 from fiberbend.design.quantities.seen import Seen
 from fiberbend.design.reading import Design
-from fiberbend.design.search.search import Found
-from fiberbend.design.solving.models import UnsolvedError
-from fiberbend.design.solving.tries import moved
+from fiberbend.design.search.confirm import CELL, Confirmed
+from fiberbend.design.search.wishes import Correction
+from fiberbend.design.solving.models import Cell, UnsolvedError
+from fiberbend.design.solving.tries import Tries, moved
 from fiberbend.reader.reader import parse_case
 from fiberbend.schema.paths import put
 from fiberbend.schema.problems import CaseError
@@ -53,35 +54,74 @@ class Row:
     changes: tuple[float | None, ...]
 
 
-def sensitivities(design: Design, found: Found) -> list[Row]:
-    """The table of an answer: fields that vary first, then all other dimensions and numbers."""
-    given = dict(found.wishes.tries.pairs(found.chosen, found.x))
+def sensitivities(design: Design, done: Confirmed) -> list[Row]:
+    """The table of an answer: fields that vary first, then all other dimensions and numbers.
+
+    By the cell where it has the answer: the section does not know what the pitch does between the
+    turns.
+    """
+    near = finest(design, done)
+    given = dict(near.tries.pairs(near.chosen, near.x))
     own = [(field.path, str(given[field.path])) for field in design.fields.varied]
-    case = found.wishes.tries.case(found.chosen, found.x)
-    resolved = case.resolved()
+    case = near.tries.case(near.chosen, near.x)
     others = [
         (path, text)
-        for path, text in _numbers(resolved)
+        for path, text in _numbers(case.resolved())
         if path not in given and not any(path.startswith(f"{known}.") for known in given)
     ]
     names = labels([path for path, _ in (*own, *others)])
-    slopes = found.wishes.tries.slopes(found.chosen, found.x)
+    slopes = near.tries.slopes(near.chosen, near.x)
     rows = []
     for index, field in enumerate(design.fields.varied):
         column = None if slopes is None else slopes[:, index] / (field.high - field.low)
-        rows.append(_row(design, found, field, names[field.path], given[field.path], column))
+        rows.append(_row(near, field, names[field.path], given[field.path], column))
     for path, text in others:
         beside = _field(path, names[path], text)
-        column = None if beside is None else _beside(design, found, beside, parse_of(text))
+        column = None if beside is None else _beside(design, near, beside, parse_of(text))
         if beside is not None and column is not None and np.any(np.abs(column) > 0):
-            rows.append(_row(design, found, beside, names[path], text, column, varied=False))
-    return [*rows, *_of_laws(design, found, case)]
+            rows.append(_row(near, beside, names[path], text, column, varied=False))
+    return [*rows, *_of_laws(design, near, case)]
 
 
-def _of_laws(design: Design, found: Found, case: Case) -> Iterator[Row]:
+@dataclasses.dataclass(frozen=True)
+class Near:
+    """An answer by the finest model that is quick enough for its neighbours.
+
+    Attributes:
+        tries: of that model.
+        chosen: choices of the answer.
+        x: its numbers.
+        corrections: from that model to what holds.
+    """
+
+    tries: Tries
+    chosen: Pairs
+    x: tuple[float, ...]
+    corrections: tuple[Correction, ...]
+
+
+def finest(design: Design, done: Confirmed) -> Near:
+    """An answer by the cell where it has one, without zones; else by the section."""
+    found = done.found
+    check = done.last(CELL)
+    if check is not None and check.whole and not design.base.zones:
+        cells = Tries(design, Cell())
+        own = cells.at(found.chosen, found.x).quantities
+        if own is not None:
+            corrections = tuple(
+                Correction.between(fine, rough, quantity.small)
+                for fine, rough, quantity in zip(
+                    found.quantities(), own, design.quantities, strict=True
+                )
+            )
+            return Near(cells, found.chosen, found.x, corrections)
+    return Near(found.wishes.tries, found.chosen, found.x, found.wishes.corrections)
+
+
+def _of_laws(design: Design, near: Near, case: Case) -> Iterator[Row]:
     """Coefficients of materials that are given by a name, as far as the model tells."""
-    tries = found.wishes.tries
-    here = tries.at(found.chosen, found.x)
+    tries = near.tries
+    here = tries.at(near.chosen, near.x)
     for part, spec in dict(case.materials).items():
         known = {} if spec is None or spec.name is None else convert.material(spec).parameters
         for key, value in known.items():
@@ -96,24 +136,18 @@ def _of_laws(design: Design, found: Found, case: Case) -> Iterator[Row]:
                 sides.append(np.array([q.read(seen) for q in design.quantities]))
             column = (sides[0] - sides[1]) / (2 * _SMALL * abs(value))
             field = Varied(path, f"{part} {key}", value, 2 * value)
-            yield _row(design, found, field, field.label, value, column, varied=False)
+            yield _row(near, field, field.label, value, column, varied=False)
 
 
 def _row(
-    design: Design,
-    found: Found,
-    field: Varied,
-    label: str,
-    value: Any,
-    column: Any,
-    varied: bool = True,
+    near: Near, field: Varied, label: str, value: Any, column: Any, varied: bool = True
 ) -> Row:
     """A derivative by the internal unit as the change by a step that a maker knows."""
     number = parse_of(value) if isinstance(value, str) else float(value)
     length = bool(field.unit) and _is_length(field.unit)
     step = _LENGTH_STEP if length else _PART * abs(number)
     text = "0.1 mm" if length else "1 %"
-    ratios = [c.ratio for c in found.wishes.corrections]
+    ratios = [c.ratio for c in near.corrections]
     changes = tuple(
         None if column is None else float(ratio * slope * step)
         for ratio, slope in zip(ratios, column if column is not None else ratios, strict=True)
@@ -121,16 +155,26 @@ def _row(
     return Row(field.path, label, varied, str(value), text, changes)
 
 
-def _beside(design: Design, found: Found, field: Varied, value: float) -> Any | None:
-    """Derivatives by a field that does not vary, from two cases beside; None: no such cases."""
-    tries, sides = found.wishes.tries, []
+def _beside(design: Design, near: Near, field: Varied, value: float) -> Any | None:
+    """Derivatives by a field that does not vary; None: there are none.
+
+    By the tangent of the model, or from two cases beside where it does not know that.
+    """
+    tries, sides = near.tries, []
+    here = tries.at(near.chosen, near.x)
     step = _SMALL * abs(value)
+    slopes = None
+    if tries.wanted and here.case is not None:
+        slopes = tries.model.slopes(here.case, tries.wanted, [field.path])
     for sign in (1.0, -1.0):
-        data = design.changed(tries.pairs(found.chosen, found.x))
+        data = design.changed(tries.pairs(near.chosen, near.x))
         try:
             put(data, field.path, field.text(value + sign * step))
             case = parse_case(data)
-            states = tries.model.states(case, tries.wanted) if tries.wanted else {}
+            if slopes is not None:
+                states = moved(here.states, slopes[field.path], sign * step)
+            else:
+                states = tries.model.states(case, tries.wanted) if tries.wanted else {}
             sides.append(np.array([q.read(Seen(case, states)) for q in design.quantities]))
         except (CaseError, UnsolvedError):
             return None
