@@ -95,13 +95,15 @@ class _Made:
     def go(self) -> int:
         """Search, confirm, write, and print; the exit code."""
         from fiberbend.design.search.confirm import Confirmed
+        from fiberbend.design.told.doubt import doubt
         from fiberbend.design.told.outcome import FAILED, UNCONFIRMED, Times, outcome
-        from fiberbend.design.told.sensitivity import sensitivities
+        from fiberbend.design.told.sensitivity import finest, sensitivities
 
         stop: Interrupted | None = None
         done: Confirmed | None = None
         front: Front | None = None
         table: list[Row] = []
+        why = ""
         times = Times()
         begun = time.process_time()
         try:
@@ -111,13 +113,15 @@ class _Made:
                 done = Confirmed(found, self._none)
                 done, front, times = self._confirmed(done, front, times)
                 self._tell("how every quantity changes with every dimension")
-                table = sensitivities(self._design, done)
+                near = finest(self._design, done)
+                table, why = sensitivities(self._design, near), doubt(done, near)
         except KeyboardInterrupt as error:
             stop = stop_of(error)
             times = times if done else Times(search=time.process_time() - begun)
             if done is None and self._search.best is not None:
                 done = Confirmed(self._search.best, self._none)
-        made = outcome(self._design, self._tries, done, table, front, times, stop is not None)
+        stopped = stop is not None
+        made = outcome(self._design, self._tries, done, table, front, times, stopped, why)
         self._write(made, pictures=stop is None)
         if stop is not None:
             return stop.code

@@ -179,6 +179,13 @@ def descend(
     return Minimum(x, values, slopes, known, steps, whole)
 
 
+def linear_step(x: Floats, values: Values, slopes: Slopes, radius: float) -> Floats:
+    """The step that makes the goal least within a radius, all functions taken as linear."""
+    penalty = max(10.0, 3 * _greatest(lean(x, values, slopes, True, 0.0)))
+    flat = np.zeros((len(x), len(x)))
+    return _step(x, values, slopes, flat, penalty, radius, True)[0]
+
+
 def _greatest(multipliers: Multipliers) -> float:
     return float(np.abs([*multipliers.below, *multipliers.zero]).max(initial=0.0))
 

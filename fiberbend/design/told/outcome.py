@@ -47,6 +47,7 @@ class Outcome:
         front: cases of the trade-off; None without two goals.
         tries: all cases.
         times: what it took.
+        doubt: why it may not be the best; empty where nothing speaks against it.
     """
 
     design: Design
@@ -59,6 +60,7 @@ class Outcome:
     front: Front | None
     tries: Tries
     times: Times
+    doubt: str = ""
 
 
 def outcome(
@@ -69,6 +71,7 @@ def outcome(
     front: Front | None,
     times: Times,
     interrupted: bool = False,
+    doubt: str = "",
 ) -> Outcome:
     """Judge an answer."""
     if done is None:
@@ -81,7 +84,7 @@ def outcome(
     status, reason = _judged(design, done, found, held)
     if interrupted:
         status, reason = INTERRUPTED, "interrupted: the best case so far, not confirmed"
-    return Outcome(design, status, reason, done, found, held, table, front, tries, times)
+    return Outcome(design, status, reason, done, found, held, table, front, tries, times, doubt)
 
 
 def _judged(
@@ -122,7 +125,7 @@ def _no_case(tries: Tries) -> str:
 
 def answer(made: Outcome) -> Answer:
     """The answer as a run prints its own."""
-    warnings: list[str] = []
+    warnings = [made.doubt] if made.doubt else []
     if made.done is not None:
         for check in made.done.checks[-2:]:
             warnings += check.warnings
@@ -158,7 +161,7 @@ def _entries(made: Outcome) -> Iterator[Entry]:
         return
     yield from _fields(made)
     for each in made.told:
-        yield Entry(each.quantity.words(), each.quantity.shown(each.value), _note(each))
+        yield Entry(each.quantity.words(), each.quantity.shown(each.value), _note(made, each))
     head = "held by" if made.done.found.met else "stopped by"
     for limit in made.limits[:_MOST_LIMITS]:
         yield Entry(head, limit.text)
@@ -183,10 +186,17 @@ def _fields(made: Outcome) -> Iterator[Entry]:
         yield Entry(field.label, field.shown(value), note)
 
 
-def _note(each: Told) -> str:
+def best(made: Outcome) -> str:
+    """What may be said of goals after "least" or "greatest"."""
+    if made.status != MET or made.front is not None:
+        return "wanted"
+    return "found" if made.doubt else "possible"
+
+
+def _note(made: Outcome, each: Told) -> str:
     """What is wanted, and what each model says."""
     quantity = each.quantity
-    wanted = f"{each.goal} possible" if each.goal else f"wanted {quantity.wanted()}"
+    wanted = f"{each.goal} {best(made)}" if each.goal else f"wanted {quantity.wanted()}"
     if not each.met:
         wanted += f", {quantity.shown(abs(each.off))} {'over' if each.off > 0 else 'short'}"
     if len(each.by) == 1 and not quantity.states():

@@ -15,7 +15,7 @@ from fiberbend.design.reading import Design
 from fiberbend.design.search.confirm import BODY
 from fiberbend.design.search.search import Found
 from fiberbend.design.solving.body import BLOCKED, FREE, body_data
-from fiberbend.design.told.outcome import MET, UNCONFIRMED, Outcome, cost, sentence
+from fiberbend.design.told.outcome import MET, UNCONFIRMED, Outcome, best, cost, sentence
 from fiberbend.design.told.values import Told
 from fiberbend.results.folder import DESIGN, RunFolder
 from fiberbend.version import __version__
@@ -71,6 +71,8 @@ def content(made: Outcome, cases: Sequence[str]) -> dict[str, Any]:
         "reason": made.reason,
         "sentence": sentence(made),
         "cost": cost(made),
+        "doubt": made.doubt,
+        "best": best(made),
         "title": made.design.title,
         "cases": list(cases),
         "fields": {} if done is None else dict(tries.pairs(done.found.chosen, done.found.x)),

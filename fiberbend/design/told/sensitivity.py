@@ -54,13 +54,12 @@ class Row:
     changes: tuple[float | None, ...]
 
 
-def sensitivities(design: Design, done: Confirmed) -> list[Row]:
+def sensitivities(design: Design, near: Near) -> list[Row]:
     """The table of an answer: fields that vary first, then all other dimensions and numbers.
 
     By the cell where it has the answer: the section does not know what the pitch does between the
     turns.
     """
-    near = finest(design, done)
     given = dict(near.tries.pairs(near.chosen, near.x))
     own = [(field.path, str(given[field.path])) for field in design.fields.varied]
     case = near.tries.case(near.chosen, near.x)
