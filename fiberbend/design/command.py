@@ -151,16 +151,15 @@ class _Made:
         body = Body(lambda case: run_case(case, None, force=force), self._design.quantities)
         confirmer = Confirmer(self._design, self._search, body, self._tell)
         done = confirmer.confirm(done)
-        times = dataclasses.replace(times, corrected=done.searched_cpu_s)
+        found_again = 0.0
         if front is not None and done.checks:
             begun = time.process_time()
             found, again = self._find(done.corrections)
+            found_again = time.process_time() - begun
             if again is not None and found is not None:
                 front = again
-                moved = dataclasses.replace(done, found=found, checks=())
-                done = confirmer.confirm(moved)
-            spent = time.process_time() - begun
-            times = dataclasses.replace(times, corrected=times.corrected + spent)
+                done = confirmer.confirm(dataclasses.replace(done, found=found))
+        times = dataclasses.replace(times, corrected=done.searched_cpu_s + found_again)
         spent = sum(check.cpu_s for check in done.checks)
         return done, front, dataclasses.replace(times, confirmed=spent)
 

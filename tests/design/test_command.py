@@ -154,3 +154,16 @@ def test_ctrl_c_leaves_what_was_found(tmp_path: Path, monkeypatch: pytest.Monkey
     assert found["fields"]
     assert (out / "nearest.yaml").exists()
     assert (out / "tries.csv").exists()
+
+
+def test_a_trade_off_tells_all_that_its_confirmation_took(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    parts = {"search": {"starts": 2, "descents": 1, "front": 3}, "confirm": "cell"}
+    varied = {"actuator.wall": {"from": "1 mm", "to": "3 mm"}}
+    file = changed(tmp_path, "trade_off", **parts, vary=varied)
+    assert main(["design", file, "--out", str(out), "--quiet"]) == 0
+    found = made(out)
+    spent = sum(check["cpu_s"] for check in found["checks"])
+    # before the front with corrections, and after it
+    assert len(found["checks"]) >= 2
+    assert found["cpu_s"]["confirmation"] == pytest.approx(spent, abs=0.01)
