@@ -16,7 +16,7 @@ from fiberbend.design.search.search import Search
 from fiberbend.design.solving.models import Section
 from fiberbend.design.solving.tries import Tries
 from fiberbend.design.told.limits import limits
-from fiberbend.design.told.outcome import FAILED, INTERRUPTED, UNMET, Times, outcome
+from fiberbend.design.told.outcome import FAILED, INTERRUPTED, MET, UNMET, Times, best, outcome
 from tests.design.made_up import MadeUp, design, none, search
 
 _HANDS = ("right", "left")
@@ -109,6 +109,19 @@ def test_an_angle_out_of_reach_is_not_met_and_the_limit_is_named(tmp_path: Path)
     # the envelope is kept, and no part of what is missed
     assert found.quantities()[1] <= 26.03
     assert "outer width is at its limit, at most 26 mm" in told.reason
+
+
+def test_a_target_that_is_all_but_met_leaves_no_least(tmp_path: Path) -> None:
+    # 89.1° at most, which is within 2 % of 90°
+    vary = {"actuator.wall": {"from": "2.469 mm", "to": "3 mm"}}
+    made = design(tmp_path, vary=vary, targets=[ANGLE], goals=[{"minimise": {"rubber": {}}}])
+    tried = search(made)
+    found = tried.whole(none(made), 0)
+    assert found is not None
+    assert not found.met
+    told = outcome(made, tried.tries, Confirmed(found, tuple(none(made))), [], None, Times())
+    assert told.status == MET
+    assert best(told) == "wanted"
 
 
 def test_cases_without_states_are_no_answer(tmp_path: Path) -> None:

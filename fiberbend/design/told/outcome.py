@@ -188,7 +188,9 @@ def _fields(made: Outcome) -> Iterator[Entry]:
 
 def best(made: Outcome) -> str:
     """What may be said of goals after "least" or "greatest"."""
-    if made.status != MET or made.front is not None:
+    whole = made.done is not None and made.done.found.met
+    if made.status != MET or made.front is not None or not whole:
+        # of a target that is all but met the miss alone was made small
         return "wanted"
     return "found" if made.doubt else "possible"
 
