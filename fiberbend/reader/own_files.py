@@ -14,6 +14,7 @@ from typing import Any
 
 from fiberbend.effects.table import EFFECTS
 from fiberbend.reader.yaml_file import read_yaml
+from fiberbend.schema.paths import value_at
 from fiberbend.schema.problems import CaseError, Problem, found
 from fiberbend.schema.units import parse
 
@@ -89,21 +90,29 @@ def root_paths(data: dict[str, Any], folder: Path) -> None:
 
 
 def rooted_value(path: str, value: Any, folder: Path) -> Any:
-    """The value of a change, or a list of values, of a part's material: its files seen from here.
+    """The value of a change, with the files that it names seen from a folder.
 
     Args:
         path: of the change in a case.
         value: as YAML gives it.
         folder: from which files are seen.
     """
-    head, _, part = path.partition(".")
-    if head != "materials" or part not in _PARTS:
+    # which entry of a list it is does not matter here, and no list is made to have it
+    keys = ["0" if key.isdecimal() else key for key in path.split(".")]
+    data = copy.deepcopy(value)
+    for key in reversed(keys):
+        data = [data] if key == "0" else {key: data}
+    if not isinstance(data, dict):
         return value
-    if isinstance(value, list | tuple):
-        return [rooted_value(path, each, folder) for each in value]
-    data = {"materials": {part: copy.deepcopy(value)}}
     root_paths(data, folder)
-    return data["materials"][part]
+    return value_at(data, ".".join(keys))
+
+
+def rooted_values(path: str, values: Any, folder: Path) -> Any:
+    """Several values of a change, likewise; what is no list of them stays as it is."""
+    if not isinstance(values, list | tuple):
+        return values
+    return [rooted_value(path, value, folder) for value in values]
 
 
 def inlined(data: Mapping[str, Any]) -> Inlined:

@@ -17,6 +17,7 @@ from fiberbend.effects.strip import StripEffect
 from fiberbend.effects.winding import WindingEffect
 from fiberbend.reader.json_schema import json_schema
 from fiberbend.reader.reader import as_case, read_case
+from fiberbend.schema.paths import value_at
 from fiberbend.sweep.points import read_sweep
 from materials.fit.fit import fit_law
 from materials.fit.modes import MODES, Measurement
@@ -230,6 +231,47 @@ def test_a_sweep_has_own_files_too(tmp_path: Path) -> None:
     path.write_text(yaml.safe_dump(sweep), encoding="utf-8")
     points = read_sweep(path).points
     assert [p.case.materials.wall.coefficients["c1"] for p in points] == [0.1, 0.2]
+
+
+@pytest.mark.parametrize("part", ["set", "vary", "points"])
+@pytest.mark.parametrize(
+    ("field", "value", "read"),
+    [
+        ("effects.1.winding.fiber", "thread.yaml", "effects.1.winding.fiber.modulus"),
+        ("materials.wall.data", "pull.csv", "materials.wall.mu"),
+        (
+            "materials",
+            {"wall": "soft.yaml", "floor": "soft.yaml", "sheath": "soft.yaml"},
+            "materials.floor.mu",
+        ),
+    ],
+)
+def test_files_of_a_sweep_are_seen_from_its_file_whatever_is_changed(
+    part: str, field: str, value: Any, read: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for folder, size in (("near", 1), ("far", 9)):
+        (tmp_path / folder).mkdir()
+        for name, text in {
+            "thread.yaml": f"modulus: {size} GPa\ndiameter: 0.4 mm\n",
+            "soft.yaml": f"law: neo-hooke\nmu: {size} MPa\n",
+            "pull.csv": "stretch,nominal stress [MPa]\n"
+            + "".join(f"{s},{size * (s - s**-2)}\n" for s in (1.1, 1.2, 1.3)),
+        }.items():
+            (tmp_path / folder / name).write_text(text, encoding="utf-8")
+    sweep: dict[str, Any] = {"case": yaml.safe_load(SECTION.read_text(encoding="utf-8"))}
+    sweep["case"]["materials"]["wall"] = {"law": "neo-hooke", "data": "dragon-skin-30"}
+    sweep |= {
+        "set": {"set": {field: value}, "vary": {"actuator.wall": ["2 mm"]}},
+        "vary": {"vary": {field: [value]}},
+        "points": {"points": [{field: value}]},
+    }[part]
+    path = tmp_path / "near" / "sweep.yaml"
+    path.write_text(yaml.safe_dump(sweep), encoding="utf-8")
+    monkeypatch.chdir(tmp_path / "far")
+    (point,) = read_sweep(path).points
+    found = value_at(point.case.resolved(), read)
+    assert float(found.split()[0]) == pytest.approx(1000 if "fiber" in field else 1)
+    assert found.endswith(" MPa")
 
 
 # --- tests of one's own -------------------------------------------------------------------------
