@@ -193,13 +193,15 @@ def _asks(value: Any) -> bool:
 
 def _root_tests(value: dict[str, Any], folder: Path) -> None:
     """Make the files of tests of a material independent of where the file lies that names them."""
+    from fiberbend.tensile.shipped import file_of
+
     data = value.get("data")
     if isinstance(data, str):
-        value["data"] = str(folder.resolve() / data)
+        value["data"] = str(file_of(Path(data), folder.resolve()))
     elif isinstance(data, dict):
         for way, file in data.items():
             if isinstance(file, str):
-                data[way] = str(folder.resolve() / file)
+                data[way] = str(file_of(Path(file), folder.resolve()))
 
 
 def _weighs(data: Mapping[str, Any]) -> bool:

@@ -34,6 +34,7 @@ def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
     if problems:
         raise CaseError(problems)
     from fiberbend.tensile.reading import Wanted, limit, read_test
+    from fiberbend.tensile.shipped import file_of
     from materials.fit.fit import fit_law
 
     upto = value.get("upto")
@@ -46,7 +47,7 @@ def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
     tests = []
     for way, file in files.items():
         try:
-            tests.append(read_test(_there(Path(file)), way, Wanted(most=most)).measurement)
+            tests.append(read_test(file_of(Path(file)), way, Wanted(most=most)).measurement)
         except CaseError as error:
             name = Path(file).name
             problems += (Problem(f"{path}.data", f"{name}: {p.text}") for p in error.problems)
@@ -73,13 +74,6 @@ def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
         "tested": [least, greatest],
         "source": f"{said}; {known}" if known else said,
     }
-
-
-def _there(path: Path) -> Path:
-    """A file, or where there is none the test of this name that comes with the program."""
-    from fiberbend.tensile.shipped import file_of
-
-    return path if path.exists() else file_of(Path(path.name))
 
 
 def _wrong(value: Mapping[str, Any], path: str) -> Iterator[Problem]:

@@ -300,6 +300,26 @@ def test_a_law_is_fitted_to_a_test(tmp_path: Path) -> None:
     assert from_file.materials.wall.coefficients == case.materials.wall.coefficients
 
 
+def test_a_name_of_a_test_is_no_file_of_the_working_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "case" / "dragon-skin-30").mkdir(parents=True)
+    (tmp_path / "far").mkdir()
+    data: dict[str, Any] = {"data": "dragon-skin-30", "law": "neo-hooke", "upto": 2}
+    path = write_case(tmp_path / "case", wall=data)
+    known = read_case(path)
+    other = "stretch,nominal stress [MPa]\n1.1,1\n1.2,2\n1.3,3\n"
+    (tmp_path / "far" / "dragon-skin-30").write_text(other, encoding="utf-8")
+    monkeypatch.chdir(tmp_path / "far")
+    assert read_case(path) == known
+    # one beside the case goes before it, one that is missed in another folder is missed
+    own = write_case(tmp_path / "far", wall=data)
+    assert read_case(own) != known
+    lost = write_case(tmp_path / "case", wall=data | {"data": "tests/dragon-skin-30"})
+    with pytest.raises(CaseError, match="dragon-skin-30: No such file"):
+        read_case(lost)
+
+
 def test_a_law_is_fitted_to_tests_of_several_kinds(tmp_path: Path) -> None:
     files = {way: str(DATA / f"kawabata-1981-{way}.csv") for way in MODES}
     case = as_case(SECTION, {"materials.wall": {"data": files, "law": "ogden-2"}})
