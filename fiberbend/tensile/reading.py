@@ -162,9 +162,16 @@ def _read(path: Path, mode: ModeName, wanted: Wanted) -> Read:
     if not inside.any():
         raise ValueError("no points in the range asked for")
     measurement = Measurement(kind, stretch[inside], nominal[inside], path.name)
+    if measurement.stress @ np.log(measurement.stretch) < 0:
+        raise ValueError(
+            f"{stress.name!r} acts against {strain.name!r}, expected both above zero in tension "
+            "and below zero in compression, where stretches are below 1"
+        )
+    # 5 of a column without a unit is 500 %, which a column in percent would silently become
+    unit = " (1 is 100 %)" if strain.what == "strain" and not strain.unit else ""
     said = (
         f"{path.name}: {mode}, {inside.sum()} of {len(numbers)} points, stretch "
         f"{measurement.stretch.min():.4g} to {measurement.stretch.max():.4g}, from "
-        f"{strain.name!r} and {stress.name!r}"
+        f"{strain.name!r}{unit} and {stress.name!r}"
     )
     return Read(measurement, said)
