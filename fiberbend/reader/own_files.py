@@ -244,7 +244,9 @@ def _write(place: Place, weighs: bool) -> dict[str, tuple[str, Mapping[str, int]
         # a rubber has its density also where nothing weighs it
         said.pop("density", None)
     known = said.get("source")
-    said["source"] = f"{path.name}: {known}" if isinstance(known, str) else path.name
+    if known is not None or "name" not in said:
+        # a name has its own source
+        said["source"] = f"{path.name}: {known}" if isinstance(known, str) else path.name
     if place.written:
         # a fabric's numbers stand beside what the strip says of its place
         del place.holder[place.key]

@@ -195,6 +195,23 @@ def test_what_is_wrong_in_an_own_file_has_its_name(
         assert any(line.startswith(begin) for line in found), found
 
 
+@pytest.mark.parametrize(
+    ("field", "text", "name"),
+    [
+        ("materials.wall", "name: dragon-skin-30\n", "dragon-skin-30"),
+        ("materials.wall", "name: dragon-skin-30\ndensity: 1 g/cm^3\n", "dragon-skin-30"),
+        ("effects.1.winding.fiber", "name: nylon\ndiameter: 0.3 mm\n", "nylon"),
+    ],
+)
+def test_an_own_file_may_have_a_name_of_the_table(
+    field: str, text: str, name: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "own.yaml"
+    path.write_text(text, encoding="utf-8")
+    found = value_at(as_case(SECTION, {field: str(path)}).resolved(), field)
+    assert (found if isinstance(found, str) else found["name"]) == name
+
+
 def test_a_file_that_is_not_there() -> None:
     (line,) = complaint({"materials.wall": "none.yaml"})
     assert line == "materials.wall: none.yaml: no such file, expected a file of a material"
@@ -260,11 +277,12 @@ def test_files_of_a_sweep_are_seen_from_its_file_whatever_is_changed(
             (tmp_path / folder / name).write_text(text, encoding="utf-8")
     sweep: dict[str, Any] = {"case": yaml.safe_load(SECTION.read_text(encoding="utf-8"))}
     sweep["case"]["materials"]["wall"] = {"law": "neo-hooke", "data": "dragon-skin-30"}
-    sweep |= {
+    ways: dict[str, dict[str, Any]] = {
         "set": {"set": {field: value}, "vary": {"actuator.wall": ["2 mm"]}},
         "vary": {"vary": {field: [value]}},
         "points": {"points": [{field: value}]},
-    }[part]
+    }
+    sweep |= ways[part]
     path = tmp_path / "near" / "sweep.yaml"
     path.write_text(yaml.safe_dump(sweep), encoding="utf-8")
     monkeypatch.chdir(tmp_path / "far")
