@@ -60,7 +60,7 @@ def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
         raise CaseError([Problem(f"{path}.law", str(error))]) from None
     names = ", ".join(test.name for test in tests)
     least = min(1.0, *(float(test.stretch.min()) for test in tests))
-    greatest = max(float(test.stretch.max()) for test in tests)
+    greatest = max(1.0, *(float(test.stretch.max()) for test in tests))
     said = (
         f"{fit.form.name} fitted to {names} from a stretch of {least:.4g} to {greatest:.4g}, rms "
         f"{100 * fit.rms:.2g} % of the greatest stress"

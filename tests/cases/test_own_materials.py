@@ -318,6 +318,15 @@ def test_a_law_is_fitted_to_a_test(tmp_path: Path) -> None:
     assert from_file.materials.wall.coefficients == case.materials.wall.coefficients
 
 
+def test_a_law_is_fitted_to_a_test_in_compression(tmp_path: Path) -> None:
+    rows = "".join(f"{s},{0.3 * (s - s**-2)}\n" for s in (0.95, 0.9, 0.8, 0.7))
+    head = "stretch,nominal stress [MPa]\n"
+    (tmp_path / "pressed.csv").write_text(head + rows, encoding="utf-8")
+    case = read_case(write_case(tmp_path, wall={"data": "pressed.csv", "law": "neo-hooke"}))
+    assert case.materials.wall.coefficients["mu"] == pytest.approx(0.3)
+    assert case.materials.wall.tested == (0.7, 1.0)
+
+
 def test_a_name_of_a_test_is_no_file_of_the_working_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
