@@ -203,6 +203,7 @@ def fit(
     cycle: int = 1,
     since: str = "",
     upto: str = "",
+    decimal: Literal[".", ","] | None = None,
     weights: Literal["plain", "relative"] = "plain",
     stable: bool = True,
     only: Sequence[ModeName] = (),
@@ -224,6 +225,7 @@ def fit(
         cycle: which loading, from 1 on; 0: all rows.
         since: least stretch, such as "stretch 1".
         upto: greatest stretch, such as "strain 50 %".
+        decimal: mark before decimals; found by default.
         weights: points of a mode count alike, or by one over their stress.
         stable: ask that the law is stable up to the greatest stretch.
         only: modes that are fitted, and the others compared; all by default.
@@ -247,6 +249,7 @@ def fit(
             cycle=cycle,
             least=limit(since) if since else None,
             most=limit(upto) if upto else None,
+            decimal=decimal,
         )
     except ValueError as error:
         raise CaseError([Problem("fit", str(error))]) from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 _WAYS = tuple(keys(TestFiles))
 _FITTED = ("data", "law", "upto")
 _BESIDE = ("density", "bulk", "source")
+_OPTION = re.compile(r"(?<!\w)--[a-z]")
 
 
 def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
@@ -50,7 +52,9 @@ def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
             tests.append(read_test(file_of(Path(file)), way, Wanted(most=most)).measurement)
         except CaseError as error:
             name = Path(file).name
-            problems += (Problem(f"{path}.data", f"{name}: {p.text}") for p in error.problems)
+            problems += (
+                Problem(f"{path}.data", _of_case(f"{name}: {p.text}")) for p in error.problems
+            )
     if problems:
         raise CaseError(problems)
     try:
@@ -74,6 +78,13 @@ def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
         "tested": [least, greatest],
         "source": f"{said}; {known}" if known else said,
     }
+
+
+def _of_case(text: str) -> str:
+    """What is wrong with a test, where options of the command that reads tests cannot be given."""
+    if not _OPTION.search(text):
+        return text
+    return f"{text}: options of `fiberbend fit`, whose material file a case takes"
 
 
 def _wrong(value: Mapping[str, Any], path: str) -> Iterator[Problem]:

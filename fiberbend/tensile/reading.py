@@ -91,6 +91,8 @@ def read_test(path: Path, mode: ModeName = "uniaxial", wanted: Wanted | None = N
         raise CaseError([Problem(str(path), f"{error.strerror}, expected a file")]) from None
     except ValueError as error:
         text = str(error).removeprefix(path.name).removeprefix(":").strip(" ,")
+        # the reader of tables speaks of measured points of a case
+        text = text.replace("decimal: ',' in the case", "--decimal ,")
         raise CaseError([Problem(str(path), text)]) from None
 
 

@@ -327,6 +327,13 @@ def test_a_law_is_fitted_to_a_test_in_compression(tmp_path: Path) -> None:
     assert case.materials.wall.tested == (0.7, 1.0)
 
 
+def test_options_that_a_case_cannot_give_are_told_to_be_those_of_fit(tmp_path: Path) -> None:
+    text = "strain [%],stress [MPa]\n10,0.1\n20,0.2\n30,0.3\n"
+    (tmp_path / "plain.csv").write_text(text, encoding="utf-8")
+    (line,) = complaint({"materials.wall": {"data": f"{tmp_path}/plain.csv", "law": "neo-hooke"}})
+    assert "or --as true: options of `fiberbend fit`, whose material file a case takes" in line
+
+
 def test_a_name_of_a_test_is_no_file_of_the_working_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

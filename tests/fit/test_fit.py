@@ -201,3 +201,14 @@ def test_a_fit_says_the_stress_of_its_material() -> None:
     stretch = np.linspace(1, 2, 7)
     along, _, free = best.material.principal(*UNIAXIAL.stretches(stretch))
     assert best.stress(UNIAXIAL, stretch) == pytest.approx((along - free) / stretch, rel=1e-12)
+
+
+def test_commas_that_may_be_thousands_are_read_as_told(tmp_path: Path) -> None:
+    rows = [(s, 6 * (s - s**-2)) for s in (1.15, 1.2, 1.25, 1.3)]
+    text = "".join(f"{s:.3f};{p:.3f}\n" for s, p in rows).replace(".", ",")
+    path = tmp_path / "commas.csv"
+    path.write_text(f"stretch;nominal stress [MPa]\n{text}", encoding="utf-8")
+    with pytest.raises(fiberbend.CaseError, match="or --decimal ,"):
+        fiberbend.fit(path, "neo-hooke")
+    found = fiberbend.fit(path, "neo-hooke", decimal=",")
+    assert found.parameters["mu"] == pytest.approx(6, rel=1e-3)

@@ -205,6 +205,11 @@ REFUSED = {
         Wanted(stress="engineering stress [kPa]"),
         "'engineering stress [MPa]' has another unit than 'kPa', expected none beside it",
     ),
+    "commas that may be thousands": (
+        "stretch;engineering stress (MPa)\n1,100;1,200\n1,200;2,300\n",
+        Wanted(),
+        "line 2: '1,100' is 1.100 or 1100, expected a point before decimals, or --decimal ,",
+    ),
     "a third cycle": (FILES["stretch"], Wanted(cycle=3), "one loading and no cycles"),
 }
 
