@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -212,3 +213,22 @@ def test_commas_that_may_be_thousands_are_read_as_told(tmp_path: Path) -> None:
         fiberbend.fit(path, "neo-hooke")
     found = fiberbend.fit(path, "neo-hooke", decimal=",")
     assert found.parameters["mu"] == pytest.approx(6, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        ({"weights": "Relative"}, "weights: 'Relative', expected one of 'plain', 'relative'"),
+        ({"meant": "nominal"}, "meant: 'nominal', expected one of 'engineering', 'true'"),
+        ({"decimal": ";"}, "decimal: ';', expected one of"),
+        ({"only": "biaxial"}, "only: 'biaxial', expected one of 'uniaxial'"),
+        ({"only": "pure-shear"}, "no test in pure-shear, expected one"),
+        ({"gauge": "0 mm"}, '"0 mm", expected a length above zero'),
+        ({"area": ("-6 mm", "-3 mm")}, '"-6 mm", expected a length above zero'),
+        ({"area": "6 mm"}, "area '6 mm', expected width and thickness"),
+    ],
+)
+def test_words_that_are_not_known_are_refused(words: dict[str, Any], line: str) -> None:
+    with pytest.raises(fiberbend.CaseError) as error:
+        fiberbend.fit(RUBBER, "neo-hooke", **words)
+    assert line in str(error.value)
