@@ -69,6 +69,10 @@ def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
         f"{fit.form.name} fitted to {names} from a stretch of {least:.4g} to {greatest:.4g}, rms "
         f"{100 * fit.rms:.2g} % of the greatest stress"
     )
+    if fit.loose:
+        said += "; its terms nearly cancel or their errors are ten times as great: take fewer terms"
+    elif fit.unsettled:
+        said += f"; the tests do not settle {', '.join(fit.unsettled)}"
     known = value.get("source")
     kept = {key: value[key] for key in ("density", "bulk") if key in value}
     return {

@@ -327,6 +327,16 @@ def test_a_law_is_fitted_to_a_test_in_compression(tmp_path: Path) -> None:
     assert case.materials.wall.tested == (0.7, 1.0)
 
 
+def test_the_source_says_what_the_tests_do_not_settle() -> None:
+    def source(law: str) -> str:
+        data = {"data": "dragon-skin-30", "law": law, "upto": 2}
+        return str(as_case(SECTION, {"materials.wall": data}).materials.wall.source)
+
+    assert source("ogden-1").endswith("of the greatest stress")
+    assert "nearly cancel" in source("ogden")
+    assert source("ogden-2").endswith("the tests do not settle mu1, alpha1")
+
+
 def test_options_that_a_case_cannot_give_are_told_to_be_those_of_fit(tmp_path: Path) -> None:
     text = "strain [%],stress [MPa]\n10,0.1\n20,0.2\n30,0.3\n"
     (tmp_path / "plain.csv").write_text(text, encoding="utf-8")
