@@ -184,7 +184,7 @@ def _list(value: Any) -> list[Any]:
 
 
 def _names_file(value: Any) -> bool:
-    return isinstance(value, str) and value.endswith(_ENDINGS)
+    return isinstance(value, str | Path) and str(value).endswith(_ENDINGS)
 
 
 def _asks(value: Any) -> bool:
@@ -196,11 +196,11 @@ def _root_tests(value: dict[str, Any], folder: Path) -> None:
     from fiberbend.tensile.shipped import file_of
 
     data = value.get("data")
-    if isinstance(data, str):
+    if isinstance(data, str | Path):
         value["data"] = str(file_of(Path(data), folder.resolve()))
     elif isinstance(data, dict):
         for way, file in data.items():
-            if isinstance(file, str):
+            if isinstance(file, str | Path):
                 data[way] = str(file_of(Path(file), folder.resolve()))
 
 

@@ -250,6 +250,14 @@ def test_a_sweep_has_own_files_too(tmp_path: Path) -> None:
     assert [p.case.materials.wall.coefficients["c1"] for p in points] == [0.1, 0.2]
 
 
+def test_a_mapping_takes_paths_of_python_too(tmp_path: Path) -> None:
+    (tmp_path / "soft.yaml").write_text("law: neo-hooke\nmu: 0.4 MPa\n", encoding="utf-8")
+    assert wall(tmp_path / "soft.yaml").parameters == {"mu": 0.4}
+    assert wall({"data": TEST, "law": "yeoh-2"}) == wall({"data": str(TEST), "law": "yeoh-2"})
+    several = {"data": {"uniaxial": TEST}, "law": "yeoh-2"}
+    assert wall(several) == wall({"data": str(TEST), "law": "yeoh-2"})
+
+
 @pytest.mark.parametrize("part", ["set", "vary", "points"])
 @pytest.mark.parametrize(
     ("field", "value", "read"),
