@@ -127,13 +127,9 @@ class Fitted:
         Raises:
             CaseError: no density.
         """
-        from fiberbend.fit.material_file import text
+        from fiberbend.fit.material_file import check_density, text
 
-        if density:
-            try:
-                parse(density, "density")
-            except ValueError as error:
-                raise CaseError([Problem("density", f'"{density}", {error}')]) from None
+        check_density("density", density)
         Path(target).write_text(text(self.found, self.found.best, density), encoding="utf-8")
 
     def band(

@@ -232,3 +232,32 @@ def test_words_that_are_not_known_are_refused(words: dict[str, Any], line: str) 
     with pytest.raises(fiberbend.CaseError) as error:
         fiberbend.fit(RUBBER, "neo-hooke", **words)
     assert line in str(error.value)
+
+
+def test_densities_below_zero_and_a_test_twice_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(fiberbend.CaseError, match="given more than once, expected each test once"):
+        fiberbend.fit([RUBBER, RUBBER], "neo-hooke")
+    found = fiberbend.fit(RUBBER, "neo-hooke")
+    with pytest.raises(fiberbend.CaseError, match="expected a density zero or above"):
+        found.save(tmp_path / "rubber.yaml", density="-1 g/cm^3")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("option", "line"),
+    [
+        (["--density=-1 g/cm^3"], '--density: "-1 g/cm^3", expected a density zero or above'),
+        (["--refits", "5"], "--refits: no effect without --case, expected a case"),
+    ],
+)
+def test_options_of_no_effect_or_sense_are_refused(
+    option: list[str],
+    line: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["fit", RUBBER, "--law", "neo-hooke", *option]) == 1
+    assert line in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
