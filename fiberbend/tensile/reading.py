@@ -18,6 +18,7 @@ from fiberbend.tensile.columns import (
     stresses,
     stretches,
 )
+from fiberbend.tensile.shipped import near
 
 if TYPE_CHECKING:
     from materials.fit.modes import Measurement
@@ -88,7 +89,8 @@ def read_test(path: Path, mode: ModeName = "uniaxial", wanted: Wanted | None = N
     try:
         return _read(path, mode, wanted or Wanted())
     except OSError as error:
-        raise CaseError([Problem(str(path), f"{error.strerror}, expected a file")]) from None
+        text = f"{error.strerror}, expected a file{near(path)}"
+        raise CaseError([Problem(str(path), text)]) from None
     except ValueError as error:
         text = str(error).removeprefix(path.name).removeprefix(":").strip(" ,")
         # the reader of tables speaks of measured points of a case

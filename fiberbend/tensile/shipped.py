@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from fiberbend.schema.problems import meant
+
 
 def folder() -> Path:
     """Where they are."""
@@ -28,3 +30,16 @@ def file_of(path: Path, seen_from: Path | None = None) -> Path:
     shipped = path.parent == Path() and not path.suffix and path.name in names()
     # a folder of results may have the name of a rubber
     return folder() / f"{path.name}.csv" if shipped and not own.is_file() else own
+
+
+def near(path: Path) -> str:
+    """The end of a message on a missing file: the nearest name of a test, where it may be meant."""
+    if path.suffix not in ("", ".csv"):
+        return ""
+    # another number is another rubber
+    alike = (name for name in names() if _digits(name) == _digits(path.stem))
+    return meant(path.stem, alike)
+
+
+def _digits(text: str) -> str:
+    return "".join(filter(str.isdigit, text))

@@ -224,6 +224,12 @@ def test_what_is_not_clear_is_refused(name: str, tmp_path: Path) -> None:
     assert str(error.value).count("test.csv") == 1
 
 
+def test_a_name_that_is_nearly_that_of_a_test() -> None:
+    for name in ("dragon-skin-10", "dragon-skin-10-medium.csv"):
+        with pytest.raises(CaseError, match=r"a file; did you mean dragon-skin-10-medium\?"):
+            read_test(file_of(Path(name)))
+
+
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(CaseError, match="No such file"):
         read_test(tmp_path / "none.csv")
