@@ -261,3 +261,14 @@ def test_options_of_no_effect_or_sense_are_refused(
     assert cli.main(["fit", RUBBER, "--law", "neo-hooke", *option]) == 1
     assert line in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("offset", "told"), [(0.0, False), (0.004, True)])
+def test_a_stress_at_rest_is_told(offset: float, told: bool, tmp_path: Path) -> None:
+    stretch = np.linspace(1, 1.6, 13)
+    stress = 0.06 * (stretch - stretch**-2) + offset
+    rows = "".join(f"{a:.6f},{b:.6f}\n" for a, b in zip(stretch, stress, strict=True))
+    path = tmp_path / "test.csv"
+    path.write_text(f"stretch,nominal stress [MPa]\n{rows}", encoding="utf-8")
+    said = str(fiberbend.fit(path, "neo-hooke"))
+    assert ("test.csv: 4 kPa at rest, 5.2 % of the greatest stress: the zero" in said) is told
