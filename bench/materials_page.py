@@ -36,9 +36,9 @@ of the shear modulus young/3. With a smaller Poisson's ratio ν it has the shear
 and this ratio; what lies beyond small strains, two numbers do not say.
 
 **Tests of your own.** `{data: tensile.csv, law: yeoh-2, upto: 2}` fits the law to a tensile test,
-a CSV file beside the case with columns such as `strain [%]` and `engineering stress [MPa]`, up to
-the stretch 2. Further tests of the same rubber go beside it: `data: {uniaxial: bar.csv,
-pure-shear: sheet.csv, equibiaxial: bubble.csv}`. The law is one of the laws of [the case
+a CSV file beside the case with columns such as `engineering strain [%]` and `engineering stress
+[MPa]`, up to the stretch 2. Further tests of the same rubber go beside it: `data: {uniaxial:
+bar.csv, pure-shear: sheet.csv, equibiaxial: bubble.csv}`. The law is one of the laws of [the case
 file](case_file.md), or one with a number of its terms. Coefficients are fitted when the case is
 read, such that the law is stable as far as the tests go; a run keeps them in its
 case.resolved.yaml with a line on where they come from.

@@ -73,8 +73,8 @@ class Material:
             raise ValueError(f"bulk {self.bulk}: expected a positive number")
         if self.density is not None and not (math.isfinite(self.density) and self.density >= 0):
             raise ValueError(f"density {self.density}: expected a number, 0 or more")
-        if self.tested is not None and not 0 < self.tested[0] <= 1 < self.tested[1]:
-            least, most = self.tested
+        least, most = self.tested or (1.0, 2.0)
+        if not 0 < least <= 1 <= most or least == most:
             raise ValueError(f"tested {least:g} to {most:g}: expected stretches with 1 within")
         stresses = (p.name for p in law.parameters if p.unit != "1")
         scale = sum(abs(self.values[name]) for name in stresses)

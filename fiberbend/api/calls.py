@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import copy
 import dataclasses
 import os
 import shutil
@@ -266,7 +267,7 @@ def _as_file(file: Mapping[str, Any] | Path | str) -> Iterator[Path]:
     if isinstance(base, str):
         data["case"] = str(Path(base).resolve())
     elif isinstance(base, Mapping):
-        base = {**base, "output": dict(base.get("output") or {})}
+        base = copy.deepcopy(dict(base))
         root_paths(base, Path())
         data["case"] = base
     data |= _rooted(data)
@@ -281,17 +282,17 @@ def _as_file(file: Mapping[str, Any] | Path | str) -> Iterator[Path]:
 
 def _rooted(sweep: Mapping[str, Any]) -> dict[str, Any]:
     """Changes of a sweep whose own files of materials are seen from the working folder."""
-    from fiberbend.reader.own_files import rooted_value
+    from fiberbend.reader.own_files import rooted_value, rooted_values
 
     found: dict[str, Any] = {}
-    for part in ("set", "vary", "zip"):
+    for part, rooted in (("set", rooted_value), ("vary", rooted_values), ("zip", rooted_values)):
         changes = sweep.get(part)
         if isinstance(changes, Mapping):
-            found[part] = {key: rooted_value(key, value, Path()) for key, value in changes.items()}
+            found[part] = {key: rooted(str(key), value, Path()) for key, value in changes.items()}
     points = sweep.get("points")
     if isinstance(points, list | tuple):
         found["points"] = [
-            {key: rooted_value(key, value, Path()) for key, value in point.items()}
+            {key: rooted_value(str(key), value, Path()) for key, value in point.items()}
             if isinstance(point, Mapping)
             else point
             for point in points

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
 from fiberbend.api.calls import TURN, AnyCase, Settings
 from fiberbend.fit.comparison import Asked, Comparison, compared, law_names
@@ -13,6 +13,7 @@ from fiberbend.notebook import blocks
 from fiberbend.reader.reader import as_case
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.units import parse
+from fiberbend.tensile.columns import Meant
 from fiberbend.tensile.reading import ModeName, Wanted, limit
 
 if TYPE_CHECKING:
@@ -126,13 +127,9 @@ class Fitted:
         Raises:
             CaseError: no density.
         """
-        from fiberbend.fit.material_file import text
+        from fiberbend.fit.material_file import check_density, text
 
-        if density:
-            try:
-                parse(density, "density")
-            except ValueError as error:
-                raise CaseError([Problem("density", f'"{density}", {error}')]) from None
+        check_density("density", density)
         Path(target).write_text(text(self.found, self.found.best, density), encoding="utf-8")
 
     def band(
@@ -203,9 +200,10 @@ def fit(
     cycle: int = 1,
     since: str = "",
     upto: str = "",
+    decimal: Literal[".", ","] | None = None,
     weights: Literal["plain", "relative"] = "plain",
     stable: bool = True,
-    only: Sequence[ModeName] = (),
+    only: Sequence[ModeName] | ModeName = (),
 ) -> Fitted:
     """Fit laws of rubber to tests; as the command `fiberbend fit`, but nothing is written.
 
@@ -224,6 +222,7 @@ def fit(
         cycle: which loading, from 1 on; 0: all rows.
         since: least stretch, such as "stretch 1".
         upto: greatest stretch, such as "strain 50 %".
+        decimal: mark before decimals; found by default.
         weights: points of a mode count alike, or by one over their stress.
         stable: ask that the law is stable up to the greatest stretch.
         only: modes that are fitted, and the others compared; all by default.
@@ -231,6 +230,11 @@ def fit(
     Raises:
         CaseError: a file, a law or an option is wrong.
     """
+    only = [only] if isinstance(only, str) else only
+    _known("meant", [] if meant is None else [meant], get_args(Meant))
+    _known("weights", [weights], ("plain", "relative"))
+    _known("decimal", [] if decimal is None else [decimal], (".", ","))
+    _known("only", only, get_args(ModeName))
     modes: tuple[tuple[ModeName, Files], ...] = (
         ("uniaxial", uniaxial),
         ("pure-shear", pure_shear),
@@ -242,17 +246,45 @@ def fit(
             strain=strain,
             stress=stress,
             meant=meant,
-            gauge=parse(gauge, "length") if gauge else None,
-            area=parse(area[0], "length") * parse(area[1], "length") if area else None,
+            gauge=_length(gauge) if gauge else None,
+            area=_area(area) if area else None,
             cycle=cycle,
             least=limit(since) if since else None,
             most=limit(upto) if upto else None,
+            decimal=decimal,
         )
     except ValueError as error:
         raise CaseError([Problem("fit", str(error))]) from None
     files = tuple((mode, Path(path)) for mode, given in modes for path in _several(given))
     laws = law_names([law] if isinstance(law, str) else law)
     return Fitted(compared(Asked(files, laws, wanted, weights, stable, tuple(only))))
+
+
+def _known(name: str, given: Sequence[str], known: Sequence[str]) -> None:
+    """Refuse words that an argument does not know; a type alone refuses nothing.
+
+    Raises:
+        CaseError: one of them.
+    """
+    for word in given:
+        if word not in known:
+            text = f"{word!r}, expected one of {', '.join(map(repr, known))}"
+            raise CaseError([Problem(name, text)])
+
+
+def _length(text: str) -> float:
+    """A length above zero, mm."""
+    value = parse(text, "length")
+    if not value > 0:
+        raise ValueError(f'"{text}", expected a length above zero')
+    return value
+
+
+def _area(sides: tuple[str, str]) -> float:
+    """The cross-section, mm²."""
+    if isinstance(sides, str) or len(sides) != 2:
+        raise ValueError(f'area {sides!r}, expected width and thickness such as ("6 mm", "3 mm")')
+    return _length(sides[0]) * _length(sides[1])
 
 
 def _several(files: Files) -> Sequence[Path | str]:

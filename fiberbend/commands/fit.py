@@ -92,6 +92,7 @@ def fit(
         open_it: Show the picture.
     """
     from fiberbend.fit.comparison import Asked, compared, law_names
+    from fiberbend.fit.material_file import check_density
     from fiberbend.fit.words import case_lines, lines
     from fiberbend.tensile.reading import Wanted
 
@@ -119,8 +120,9 @@ def fit(
         not unstable,
         only,
     )
-    _count("--refits", refits)
-    _density(density)
+    if _count("--refits", refits) and case is None:
+        raise CaseError([Problem("--refits", "no effect without --case, expected a case")])
+    check_density("--density", density)
     files = _targets(asked, out, case is not None, overwrite)
     settle_folders()
     checked = None if case is None else _case(case, part)
@@ -255,13 +257,3 @@ def _count(option: str, number: int) -> int:
     if number < 0:
         raise CaseError([Problem(option, f"{number}, expected a whole number from 0 on")])
     return number
-
-
-def _density(text: str) -> None:
-    from fiberbend.schema.units import parse
-
-    if text:
-        try:
-            parse(text, "density")
-        except ValueError as error:
-            raise CaseError([Problem("--density", f'"{text}", {error}')]) from None

@@ -15,7 +15,7 @@ from fiberbend.design.fields import Fields, Pairs, read_fields
 from fiberbend.design.file import DesignFile, Goal, Search, problems
 from fiberbend.design.quantities.quantity import Quantity
 from fiberbend.reader.base_case import read_base
-from fiberbend.reader.own_files import rooted_value
+from fiberbend.reader.own_files import rooted_values
 from fiberbend.reader.reader import parse_case
 from fiberbend.reader.yaml_file import YamlContent, line_numbers, read_yaml, setting_path
 from fiberbend.schema.paths import put, value_at
@@ -99,7 +99,7 @@ def _checked(source: YamlContent, path: Path, settings: Sequence[str]) -> Design
     fields = Fields((), ())
     try:
         # files of materials among the choices are seen from this file
-        vary = {field: rooted_value(field, v, path.parent) for field, v in file.vary.items()}
+        vary = {field: rooted_values(field, v, path.parent) for field, v in file.vary.items()}
         fields = read_fields(vary)
     except CaseError as error:
         wrong += error.problems

@@ -91,6 +91,11 @@ def compared(asked: Asked) -> Comparison:
 
     if not asked.files:
         raise CaseError([Problem("fiberbend fit", "no test, expected a file such as DATA.csv")])
+    given = [(mode, path.resolve()) for mode, path in asked.files]
+    for mode, path in given:
+        if given.count((mode, path)) > 1:
+            # errors would be those of twice as many points
+            raise CaseError([Problem(str(path), "given more than once, expected each test once")])
     every = [(mode, read_test(file_of(path), mode, asked.wanted)) for mode, path in asked.files]
     reads = tuple(read for mode, read in every if not asked.only or mode in asked.only)
     beside = tuple(read for mode, read in every if asked.only and mode not in asked.only)

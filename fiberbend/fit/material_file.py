@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fiberbend.fit.words import coefficients, parameters, percent
+from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.schema.units import parse
 from fiberbend.version import __version__
 
 if TYPE_CHECKING:
@@ -39,6 +41,22 @@ def text(found: Comparison, fit: Fit, density: str = "") -> str:
         f'source: "{fit.form.name} fitted to {_plain(names)}"',
     ]
     return "\n".join([*head, *body]) + "\n"
+
+
+def check_density(where: str, text: str) -> None:
+    """Refuse what is no density of a case; empty: none is given.
+
+    Raises:
+        CaseError: it is none; at `where`.
+    """
+    if not text:
+        return
+    try:
+        value = parse(text, "density")
+    except ValueError as error:
+        raise CaseError([Problem(where, f'"{text}", {error}')]) from None
+    if value < 0:
+        raise CaseError([Problem(where, f'"{text}", expected a density zero or above')])
 
 
 def _plain(name: str) -> str:

@@ -15,9 +15,14 @@ from materials.fit.modes import MODES
 if TYPE_CHECKING:
     from fiberbend.fit.comparison import Comparison
     from materials.fit.fit import Fit
+    from materials.fit.modes import Measurement
 
 HEADS = ("law", "rms error", "AIC", "stable to stretch", "parameters")
 """Of the columns of `summary`."""
+_AT_REST = 0.005
+"""Part of a test's greatest logarithmic strain up to which it is at rest."""
+_OFF = 0.03
+"""Part of its greatest stress from which on that at rest is told; a stiff beginning has less."""
 _SMALL = 0.1
 """MPa below which the moduli of a law are shown in kPa."""
 
@@ -82,7 +87,9 @@ def with_error(value: float, error: float) -> str:
 
 
 def remarks_of(found: Comparison) -> Iterator[str]:
-    """What has to be said of the fits, a line each."""
+    """What has to be said of the tests and the fits, a line each."""
+    for read in found.reads:
+        yield from _off_zero(read.measurement)
     for fit in found.fits:
         name = fit.form.name
         if fit.held:
@@ -105,6 +112,19 @@ def remarks_of(found: Comparison) -> Iterator[str]:
     if len(found.measured) == 1:
         what = "fitted" if found.beside else "measured"
         yield f"only {found.measured[0]} was {what}: below is how far laws differ in other modes"
+
+
+def _off_zero(test: Measurement) -> Iterator[str]:
+    """A stress at rest, which a law cannot have and takes for stiffness."""
+    strain, stress = np.abs(np.log(test.stretch)), np.abs(test.stress)
+    rest = strain <= _AT_REST * strain.max()
+    off = float(stress[rest].mean()) if rest.any() else 0.0
+    part = off / max(float(stress.max()), 1e-300)
+    if part > _OFF:
+        yield (
+            f"{test.name}: {1e3 * off:.3g} kPa at rest, {percent(part)} of the greatest stress: "
+            "the zero of the load may be off, and moduli with it"
+        )
 
 
 def _unsettled(fit: Fit) -> Iterator[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.columns import MIDDLE
 from fiberbend.effects.effect import ARC, CHAMBER, ENDS, HOOPS, WOUND
@@ -65,9 +66,10 @@ class Analytic(ModelKind):
         """Details of effects, and compressibility."""
         yield from super().leaves_out(case)
         for part, material in dict(case.materials).items():
-            if material is not None and material.bulk is not None:
+            if material is not None and convert.material(material).bulk is not None:
                 text = "in closed forms every material is incompressible"
-                yield f"materials.{part}.bulk", text
+                key = "bulk" if material.young is None else "poisson"
+                yield f"materials.{part}.{key}", text
 
     def completed(self, case: Case) -> Case:
         """A closed form has no fields to write."""

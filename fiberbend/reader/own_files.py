@@ -14,6 +14,7 @@ from typing import Any
 
 from fiberbend.effects.table import EFFECTS
 from fiberbend.reader.yaml_file import read_yaml
+from fiberbend.schema.paths import value_at
 from fiberbend.schema.problems import CaseError, Problem, found
 from fiberbend.schema.units import parse
 
@@ -89,21 +90,29 @@ def root_paths(data: dict[str, Any], folder: Path) -> None:
 
 
 def rooted_value(path: str, value: Any, folder: Path) -> Any:
-    """The value of a change, or a list of values, of a part's material: its files seen from here.
+    """The value of a change, with the files that it names seen from a folder.
 
     Args:
         path: of the change in a case.
         value: as YAML gives it.
         folder: from which files are seen.
     """
-    head, _, part = path.partition(".")
-    if head != "materials" or part not in _PARTS:
+    # which entry of a list it is does not matter here, and no list is made to have it
+    keys = ["0" if key.isdecimal() else key for key in path.split(".")]
+    data = copy.deepcopy(value)
+    for key in reversed(keys):
+        data = [data] if key == "0" else {key: data}
+    if not isinstance(data, dict):
         return value
-    if isinstance(value, list | tuple):
-        return [rooted_value(path, each, folder) for each in value]
-    data = {"materials": {part: copy.deepcopy(value)}}
     root_paths(data, folder)
-    return data["materials"][part]
+    return value_at(data, ".".join(keys))
+
+
+def rooted_values(path: str, values: Any, folder: Path) -> Any:
+    """Several values of a change, likewise; what is no list of them stays as it is."""
+    if not isinstance(values, list | tuple):
+        return values
+    return [rooted_value(path, value, folder) for value in values]
 
 
 def inlined(data: Mapping[str, Any]) -> Inlined:
@@ -175,7 +184,7 @@ def _list(value: Any) -> list[Any]:
 
 
 def _names_file(value: Any) -> bool:
-    return isinstance(value, str) and value.endswith(_ENDINGS)
+    return isinstance(value, str | Path) and str(value).endswith(_ENDINGS)
 
 
 def _asks(value: Any) -> bool:
@@ -184,13 +193,15 @@ def _asks(value: Any) -> bool:
 
 def _root_tests(value: dict[str, Any], folder: Path) -> None:
     """Make the files of tests of a material independent of where the file lies that names them."""
+    from fiberbend.tensile.shipped import file_of
+
     data = value.get("data")
-    if isinstance(data, str):
-        value["data"] = str(folder.resolve() / data)
+    if isinstance(data, str | Path):
+        value["data"] = str(file_of(Path(data), folder.resolve()))
     elif isinstance(data, dict):
         for way, file in data.items():
-            if isinstance(file, str):
-                data[way] = str(folder.resolve() / file)
+            if isinstance(file, str | Path):
+                data[way] = str(file_of(Path(file), folder.resolve()))
 
 
 def _weighs(data: Mapping[str, Any]) -> bool:
@@ -233,7 +244,9 @@ def _write(place: Place, weighs: bool) -> dict[str, tuple[str, Mapping[str, int]
         # a rubber has its density also where nothing weighs it
         said.pop("density", None)
     known = said.get("source")
-    said["source"] = f"{path.name}: {known}" if isinstance(known, str) else path.name
+    if known is not None or "name" not in said:
+        # a name has its own source
+        said["source"] = f"{path.name}: {known}" if isinstance(known, str) else path.name
     if place.written:
         # a fabric's numbers stand beside what the strip says of its place
         del place.holder[place.key]

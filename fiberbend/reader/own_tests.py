@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 _WAYS = tuple(keys(TestFiles))
 _FITTED = ("data", "law", "upto")
 _BESIDE = ("density", "bulk", "source")
+_OPTION = re.compile(r"(?<!\w)--[a-z]")
 
 
 def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
@@ -34,6 +36,7 @@ def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
     if problems:
         raise CaseError(problems)
     from fiberbend.tensile.reading import Wanted, limit, read_test
+    from fiberbend.tensile.shipped import file_of
     from materials.fit.fit import fit_law
 
     upto = value.get("upto")
@@ -46,10 +49,12 @@ def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
     tests = []
     for way, file in files.items():
         try:
-            tests.append(read_test(_there(Path(file)), way, Wanted(most=most)).measurement)
+            tests.append(read_test(file_of(Path(file)), way, Wanted(most=most)).measurement)
         except CaseError as error:
             name = Path(file).name
-            problems += (Problem(f"{path}.data", f"{name}: {p.text}") for p in error.problems)
+            problems += (
+                Problem(f"{path}.data", _of_case(f"{name}: {p.text}")) for p in error.problems
+            )
     if problems:
         raise CaseError(problems)
     try:
@@ -59,11 +64,15 @@ def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
         raise CaseError([Problem(f"{path}.law", str(error))]) from None
     names = ", ".join(test.name for test in tests)
     least = min(1.0, *(float(test.stretch.min()) for test in tests))
-    greatest = max(float(test.stretch.max()) for test in tests)
+    greatest = max(1.0, *(float(test.stretch.max()) for test in tests))
     said = (
         f"{fit.form.name} fitted to {names} from a stretch of {least:.4g} to {greatest:.4g}, rms "
         f"{100 * fit.rms:.2g} % of the greatest stress"
     )
+    if fit.loose:
+        said += "; its terms nearly cancel or their errors are ten times as great: take fewer terms"
+    elif fit.unsettled:
+        said += f"; the tests do not settle {', '.join(fit.unsettled)}"
     known = value.get("source")
     kept = {key: value[key] for key in ("density", "bulk") if key in value}
     return {
@@ -75,11 +84,11 @@ def fitted(value: Mapping[str, Any], path: str) -> dict[str, Any]:
     }
 
 
-def _there(path: Path) -> Path:
-    """A file, or where there is none the test of this name that comes with the program."""
-    from fiberbend.tensile.shipped import file_of
-
-    return path if path.exists() else file_of(Path(path.name))
+def _of_case(text: str) -> str:
+    """What is wrong with a test, where options of the command that reads tests cannot be given."""
+    if not _OPTION.search(text):
+        return text
+    return f"{text}: options of `fiberbend fit`, whose material file a case takes"
 
 
 def _wrong(value: Mapping[str, Any], path: str) -> Iterator[Problem]:

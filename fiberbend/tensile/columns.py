@@ -20,6 +20,8 @@ _TRUE = ("true", "cauchy", "logarithmic", "log", "hencky")
 _ENGINEERING = ("engineering", "eng", "nominal", "pk1", "1pk")
 _OTHER = ("second", "2nd", "pk2", "2pk", "green", "lagrange", "almansi", "biot")
 """Words of measures that are not known: such columns are none of a strain or a stress."""
+_PRESSED = ("compressive", "compression", "compressed")
+"""Words of columns that machines count above zero where a specimen is pressed."""
 _WORDS: dict[Quantity, tuple[str, ...]] = {
     "stretch": ("stretch", "lambda", "λ"),
     "strain": ("strain", "ε", "epsilon"),
@@ -31,7 +33,8 @@ _MEASURES = ("strain", "stress")
 """What is engineering or true; stretches, displacements and forces need no such word."""
 _OPTIONS: dict[Quantity, str] = {"displacement": "strain", "force": "stress"}
 """Options that name such columns."""
-_NO_UNIT = ("", "1", "-", "mm/mm", "m/m")
+_PARTS = ("1", "-", "mm/mm", "m/m")
+"""Units of a part of the length at rest, beside %."""
 STRETCHES = (0.05, 20.0)
 """What a rubber can be stretched to."""
 _STRESSES = (1e-9, 1e6)
@@ -120,11 +123,12 @@ def stretches(column: Column, values: Floats, gauge: float | None) -> Floats:
     """
     import numpy as np
 
+    _signed(column, values)
     if column.what == "displacement" and gauge is not None:
         values = values * _factor(column, "length") / gauge
     elif column.unit == "%":
         values = values / 100
-    elif column.unit not in _NO_UNIT:
+    elif column.unit not in ("", *_PARTS):
         raise ValueError(f"{column.name!r} in {column.unit!r}, expected % or a pure number")
     elif not column.unit and column.what == "strain" and np.abs(values).max() > _IMPLAUSIBLE:
         raise ValueError(
@@ -155,6 +159,7 @@ def stresses(column: Column, values: Floats, stretch: Floats, area: float | None
     """
     import numpy as np
 
+    _signed(column, values)
     if column.what == "force" and area is not None:
         found = values * _factor(column, "force") / area
     else:
@@ -168,13 +173,28 @@ def stresses(column: Column, values: Floats, stretch: Floats, area: float | None
     return np.asarray(found)
 
 
+def _signed(column: Column, values: Floats) -> None:
+    """Refuse compression that is counted above zero: it would be read as tension.
+
+    Raises:
+        ValueError: a column of compression whose values are mostly above zero.
+    """
+    pressed = column.what != "stretch" and _words(_apart(column.name)[0]) & set(_PRESSED)
+    if pressed and values.sum() > 0:
+        raise ValueError(
+            f"{column.name!r} counts compression above zero, expected strains and stresses below "
+            "zero in compression"
+        )
+
+
 def _factor(column: Column, kind: str) -> float:
     """What one of a column's unit is within the program."""
     if not column.unit:
         shown = KINDS[kind].shown
         raise ValueError(f"{column.name!r} has no unit, expected one such as [{shown}]")
     try:
-        return factor(column.unit, kind)
+        # mm2 as machines write mm^2
+        return factor(re.sub(r"(?<=m)2\b", "^2", column.unit), kind)
     except ValueError as error:
         raise ValueError(f"{column.name!r}: {error}") from None
 
@@ -195,15 +215,30 @@ def others(names: Sequence[str], column: Column) -> list[Column]:
 def _asked(names: Sequence[str], asked: str, what: Quantity, meant: Meant | None) -> Column:
     """The column that a user names, by its name or its number, with or without a unit."""
     bare, unit = _apart(asked)
-    for wanted, own in ((asked, ""), (bare, unit)):
-        for i, name in enumerate(names):
-            if wanted.casefold() in (name.casefold(), _apart(name)[0].casefold(), str(i + 1)):
-                column = _read(i, name)
-                if column.what not in (None, what):
-                    raise ValueError(f"{name!r} is a {column.what}, found under --{what}")
-                column = dataclasses.replace(column, what=what, unit=own or column.unit)
-                return _settled(column, meant)
+    wholes = [name.casefold() for name in names]
+    bares = [_apart(name)[0].casefold() for name in names]
+    numbers = [str(i + 1) for i in range(len(names))]
+    for wanted, own in ((asked.casefold(), ""), (bare.casefold(), unit)):
+        for known in (wholes, bares, numbers):
+            there = [i for i, text in enumerate(known) if text == wanted]
+            if len(there) > 1:
+                text = " or ".join(numbers[i] for i in there)
+                raise ValueError(f"{asked!r} is more than one column, expected its number, {text}")
+            if there:
+                return _settled(_told(there[0], names[there[0]], own, what), meant)
     raise ValueError(f"no column {asked!r}, found {_listed(names)}")
+
+
+def _told(place: int, name: str, unit: str, what: Quantity) -> Column:
+    """A column that a user calls a quantity, with the unit that he gives where it has none."""
+    column = _read(place, name)
+    if unit and column.unit and unit != column.unit:
+        raise ValueError(f"{name!r} has another unit than {unit!r}, expected none beside it")
+    if unit and not column.unit:
+        column = dataclasses.replace(_read(place, f"{name} [{unit}]"), name=name)
+    if column.what not in (None, what):
+        raise ValueError(f"{name!r} is a {column.what}, found under --{what}")
+    return dataclasses.replace(column, what=what)
 
 
 def _named(names: Sequence[str], kinds: Sequence[Quantity], meant: Meant | None) -> Column:
@@ -249,16 +284,21 @@ def _listed(names: Sequence[str]) -> str:
 
 def _read(place: int, name: str) -> Column:
     bare, unit = _apart(name)
-    words = set(re.sub(r"[^\w]+|_", " ", bare.casefold()).split())
+    words = _words(bare)
     meant: Meant | None = "engineering" if words & set(_ENGINEERING) else None
     meant = "true" if words & set(_TRUE) else meant
     what = next((kind for kind, known in _WORDS.items() if words & set(known)), None)
     if words & set(_OTHER):
         what = None
-    if what == "displacement" and unit in ("%", "mm/mm", "m/m"):
-        # a part of the length at rest
+    if what == "displacement" and "ratio" in words:
+        what = "stretch"
+    elif what == "displacement" and unit in ("%", *_PARTS):
         what, meant = "strain", "engineering"
     return Column(place, name, what, meant, unit)
+
+
+def _words(text: str) -> set[str]:
+    return set(re.sub(r"[^\w]+|_", " ", text.casefold()).split())
 
 
 def _apart(name: str) -> tuple[str, str]:

@@ -18,6 +18,7 @@ from fiberbend.tensile.columns import (
     stresses,
     stretches,
 )
+from fiberbend.tensile.shipped import near
 
 if TYPE_CHECKING:
     from materials.fit.modes import Measurement
@@ -88,9 +89,12 @@ def read_test(path: Path, mode: ModeName = "uniaxial", wanted: Wanted | None = N
     try:
         return _read(path, mode, wanted or Wanted())
     except OSError as error:
-        raise CaseError([Problem(str(path), f"{error.strerror}, expected a file")]) from None
+        text = f"{error.strerror}, expected a file{near(path)}"
+        raise CaseError([Problem(str(path), text)]) from None
     except ValueError as error:
         text = str(error).removeprefix(path.name).removeprefix(":").strip(" ,")
+        # the reader of tables speaks of measured points of a case
+        text = text.replace("decimal: ',' in the case", "--decimal ,")
         raise CaseError([Problem(str(path), text)]) from None
 
 
@@ -162,9 +166,16 @@ def _read(path: Path, mode: ModeName, wanted: Wanted) -> Read:
     if not inside.any():
         raise ValueError("no points in the range asked for")
     measurement = Measurement(kind, stretch[inside], nominal[inside], path.name)
+    if measurement.stress @ np.log(measurement.stretch) < 0:
+        raise ValueError(
+            f"{stress.name!r} acts against {strain.name!r}, expected both above zero in tension "
+            "and below zero in compression, where stretches are below 1"
+        )
+    # 5 of a column without a unit is 500 %, which a column in percent would silently become
+    unit = " (1 is 100 %)" if strain.what == "strain" and not strain.unit else ""
     said = (
         f"{path.name}: {mode}, {inside.sum()} of {len(numbers)} points, stretch "
         f"{measurement.stretch.min():.4g} to {measurement.stretch.max():.4g}, from "
-        f"{strain.name!r} and {stress.name!r}"
+        f"{strain.name!r}{unit} and {stress.name!r}"
     )
     return Read(measurement, said)

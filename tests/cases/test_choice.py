@@ -19,6 +19,7 @@ from fiberbend.models.choice import (
     objection,
 )
 from fiberbend.reader.reader import parse_case, read_case
+from fiberbend.schema.problems import CaseError
 from tests.cases.bad_cases import BLOCKED, HOOPS, SMEARED, WEIGHT
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -99,6 +100,17 @@ def test_what_a_closed_form_leaves_out_is_said_but_not_refused() -> None:
     paths = [path for path, _ in closed.leaves_out(case("model=analytic", BLOCKED, BULK))]
     assert paths == ["effects.1.winding", "effects.2.blocked-tip", "materials.wall.bulk"]
     assert list(closed.leaves_out(case("model=auto", HOOPS))) == []
+
+
+def test_a_closed_form_is_not_chosen_for_what_poissons_ratio_says() -> None:
+    """The ratio stands for a bulk modulus, without the key `bulk`."""
+    wall = "materials.wall={young: 1 MPa, poisson: 0.3}"
+    found = list(MODELS["analytic"].leaves_out(case("model=analytic", wall)))
+    assert "materials.wall.poisson" in [path for path, _ in found]
+    whole = "materials.wall={young: 1 MPa, poisson: 0.5}"
+    assert choose_model(case("model=auto", HOOPS, whole))[0].name == "analytic"
+    with pytest.raises(CaseError, match=r"analytic not materials\.wall\.poisson"):
+        case("model=auto", HOOPS, wall)
 
 
 def choose_half(case: Case) -> tuple[bool, str]:

@@ -17,6 +17,7 @@ from fiberbend.effects.strip import StripEffect
 from fiberbend.effects.winding import WindingEffect
 from fiberbend.reader.json_schema import json_schema
 from fiberbend.reader.reader import as_case, read_case
+from fiberbend.schema.paths import value_at
 from fiberbend.sweep.points import read_sweep
 from materials.fit.fit import fit_law
 from materials.fit.modes import MODES, Measurement
@@ -194,6 +195,23 @@ def test_what_is_wrong_in_an_own_file_has_its_name(
         assert any(line.startswith(begin) for line in found), found
 
 
+@pytest.mark.parametrize(
+    ("field", "text", "name"),
+    [
+        ("materials.wall", "name: dragon-skin-30\n", "dragon-skin-30"),
+        ("materials.wall", "name: dragon-skin-30\ndensity: 1 g/cm^3\n", "dragon-skin-30"),
+        ("effects.1.winding.fiber", "name: nylon\ndiameter: 0.3 mm\n", "nylon"),
+    ],
+)
+def test_an_own_file_may_have_a_name_of_the_table(
+    field: str, text: str, name: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "own.yaml"
+    path.write_text(text, encoding="utf-8")
+    found = value_at(as_case(SECTION, {field: str(path)}).resolved(), field)
+    assert (found if isinstance(found, str) else found["name"]) == name
+
+
 def test_a_file_that_is_not_there() -> None:
     (line,) = complaint({"materials.wall": "none.yaml"})
     assert line == "materials.wall: none.yaml: no such file, expected a file of a material"
@@ -232,6 +250,56 @@ def test_a_sweep_has_own_files_too(tmp_path: Path) -> None:
     assert [p.case.materials.wall.coefficients["c1"] for p in points] == [0.1, 0.2]
 
 
+def test_a_mapping_takes_paths_of_python_too(tmp_path: Path) -> None:
+    (tmp_path / "soft.yaml").write_text("law: neo-hooke\nmu: 0.4 MPa\n", encoding="utf-8")
+    assert wall(tmp_path / "soft.yaml").parameters == {"mu": 0.4}
+    assert wall({"data": TEST, "law": "yeoh-2"}) == wall({"data": str(TEST), "law": "yeoh-2"})
+    several = {"data": {"uniaxial": TEST}, "law": "yeoh-2"}
+    assert wall(several) == wall({"data": str(TEST), "law": "yeoh-2"})
+
+
+@pytest.mark.parametrize("part", ["set", "vary", "points"])
+@pytest.mark.parametrize(
+    ("field", "value", "read"),
+    [
+        ("effects.1.winding.fiber", "thread.yaml", "effects.1.winding.fiber.modulus"),
+        ("materials.wall.data", "pull.csv", "materials.wall.mu"),
+        (
+            "materials",
+            {"wall": "soft.yaml", "floor": "soft.yaml", "sheath": "soft.yaml"},
+            "materials.floor.mu",
+        ),
+    ],
+)
+def test_files_of_a_sweep_are_seen_from_its_file_whatever_is_changed(
+    part: str, field: str, value: Any, read: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for folder, size in (("near", 1), ("far", 9)):
+        (tmp_path / folder).mkdir()
+        for name, text in {
+            "thread.yaml": f"modulus: {size} GPa\ndiameter: 0.4 mm\n",
+            "soft.yaml": f"law: neo-hooke\nmu: {size} MPa\n",
+            "pull.csv": "stretch,nominal stress [MPa]\n"
+            + "".join(f"{s},{size * (s - s**-2)}\n" for s in (1.1, 1.2, 1.3)),
+        }.items():
+            (tmp_path / folder / name).write_text(text, encoding="utf-8")
+    sweep: dict[str, Any] = {"case": yaml.safe_load(SECTION.read_text(encoding="utf-8"))}
+    sweep["case"]["materials"]["wall"] = {"law": "neo-hooke", "data": "dragon-skin-30"}
+    ways: dict[str, dict[str, Any]] = {
+        "set": {"set": {field: value}, "vary": {"actuator.wall": ["2 mm"]}},
+        "vary": {"vary": {field: [value]}},
+        "points": {"points": [{field: value}]},
+    }
+    sweep |= ways[part]
+    path = tmp_path / "near" / "sweep.yaml"
+    path.write_text(yaml.safe_dump(sweep), encoding="utf-8")
+    monkeypatch.chdir(tmp_path / "far")
+    (point,) = read_sweep(path).points
+    found = value_at(point.case.resolved(), read)
+    assert float(found.split()[0]) == pytest.approx(1000 if "fiber" in field else 1)
+    assert found.endswith(" MPa")
+
+
 # --- tests of one's own -------------------------------------------------------------------------
 
 
@@ -256,6 +324,52 @@ def test_a_law_is_fitted_to_a_test(tmp_path: Path) -> None:
     (tmp_path / "my.yaml").write_text(yaml.safe_dump(data), encoding="utf-8")
     from_file = read_case(write_case(tmp_path, wall="my.yaml"))
     assert from_file.materials.wall.coefficients == case.materials.wall.coefficients
+
+
+def test_a_law_is_fitted_to_a_test_in_compression(tmp_path: Path) -> None:
+    rows = "".join(f"{s},{0.3 * (s - s**-2)}\n" for s in (0.95, 0.9, 0.8, 0.7))
+    head = "stretch,nominal stress [MPa]\n"
+    (tmp_path / "pressed.csv").write_text(head + rows, encoding="utf-8")
+    case = read_case(write_case(tmp_path, wall={"data": "pressed.csv", "law": "neo-hooke"}))
+    assert case.materials.wall.coefficients["mu"] == pytest.approx(0.3)
+    assert case.materials.wall.tested == (0.7, 1.0)
+
+
+def test_the_source_says_what_the_tests_do_not_settle() -> None:
+    def source(law: str) -> str:
+        data = {"data": "dragon-skin-30", "law": law, "upto": 2}
+        return str(as_case(SECTION, {"materials.wall": data}).materials.wall.source)
+
+    assert source("ogden-1").endswith("of the greatest stress")
+    assert "nearly cancel" in source("ogden")
+    assert source("ogden-2").endswith("the tests do not settle mu1, alpha1")
+
+
+def test_options_that_a_case_cannot_give_are_told_to_be_those_of_fit(tmp_path: Path) -> None:
+    text = "strain [%],stress [MPa]\n10,0.1\n20,0.2\n30,0.3\n"
+    (tmp_path / "plain.csv").write_text(text, encoding="utf-8")
+    (line,) = complaint({"materials.wall": {"data": f"{tmp_path}/plain.csv", "law": "neo-hooke"}})
+    assert "or --as true: options of `fiberbend fit`, whose material file a case takes" in line
+
+
+def test_a_name_of_a_test_is_no_file_of_the_working_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "case" / "dragon-skin-30").mkdir(parents=True)
+    (tmp_path / "far").mkdir()
+    data: dict[str, Any] = {"data": "dragon-skin-30", "law": "neo-hooke", "upto": 2}
+    path = write_case(tmp_path / "case", wall=data)
+    known = read_case(path)
+    other = "stretch,nominal stress [MPa]\n1.1,1\n1.2,2\n1.3,3\n"
+    (tmp_path / "far" / "dragon-skin-30").write_text(other, encoding="utf-8")
+    monkeypatch.chdir(tmp_path / "far")
+    assert read_case(path) == known
+    # one beside the case goes before it, one that is missed in another folder is missed
+    own = write_case(tmp_path / "far", wall=data)
+    assert read_case(own) != known
+    lost = write_case(tmp_path / "case", wall=data | {"data": "tests/dragon-skin-30"})
+    with pytest.raises(CaseError, match="dragon-skin-30: No such file"):
+        read_case(lost)
 
 
 def test_a_law_is_fitted_to_tests_of_several_kinds(tmp_path: Path) -> None:

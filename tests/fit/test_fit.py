@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -201,3 +202,73 @@ def test_a_fit_says_the_stress_of_its_material() -> None:
     stretch = np.linspace(1, 2, 7)
     along, _, free = best.material.principal(*UNIAXIAL.stretches(stretch))
     assert best.stress(UNIAXIAL, stretch) == pytest.approx((along - free) / stretch, rel=1e-12)
+
+
+def test_commas_that_may_be_thousands_are_read_as_told(tmp_path: Path) -> None:
+    rows = [(s, 6 * (s - s**-2)) for s in (1.15, 1.2, 1.25, 1.3)]
+    text = "".join(f"{s:.3f};{p:.3f}\n" for s, p in rows).replace(".", ",")
+    path = tmp_path / "commas.csv"
+    path.write_text(f"stretch;nominal stress [MPa]\n{text}", encoding="utf-8")
+    with pytest.raises(fiberbend.CaseError, match="or --decimal ,"):
+        fiberbend.fit(path, "neo-hooke")
+    found = fiberbend.fit(path, "neo-hooke", decimal=",")
+    assert found.parameters["mu"] == pytest.approx(6, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        ({"weights": "Relative"}, "weights: 'Relative', expected one of 'plain', 'relative'"),
+        ({"meant": "nominal"}, "meant: 'nominal', expected one of 'engineering', 'true'"),
+        ({"decimal": ";"}, "decimal: ';', expected one of"),
+        ({"only": "biaxial"}, "only: 'biaxial', expected one of 'uniaxial'"),
+        ({"only": "pure-shear"}, "no test in pure-shear, expected one"),
+        ({"gauge": "0 mm"}, '"0 mm", expected a length above zero'),
+        ({"area": ("-6 mm", "-3 mm")}, '"-6 mm", expected a length above zero'),
+        ({"area": "6 mm"}, "area '6 mm', expected width and thickness"),
+    ],
+)
+def test_words_that_are_not_known_are_refused(words: dict[str, Any], line: str) -> None:
+    with pytest.raises(fiberbend.CaseError) as error:
+        fiberbend.fit(RUBBER, "neo-hooke", **words)
+    assert line in str(error.value)
+
+
+def test_densities_below_zero_and_a_test_twice_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(fiberbend.CaseError, match="given more than once, expected each test once"):
+        fiberbend.fit([RUBBER, RUBBER], "neo-hooke")
+    found = fiberbend.fit(RUBBER, "neo-hooke")
+    with pytest.raises(fiberbend.CaseError, match="expected a density zero or above"):
+        found.save(tmp_path / "rubber.yaml", density="-1 g/cm^3")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("option", "line"),
+    [
+        (["--density=-1 g/cm^3"], '--density: "-1 g/cm^3", expected a density zero or above'),
+        (["--refits", "5"], "--refits: no effect without --case, expected a case"),
+    ],
+)
+def test_options_of_no_effect_or_sense_are_refused(
+    option: list[str],
+    line: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["fit", RUBBER, "--law", "neo-hooke", *option]) == 1
+    assert line in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("offset", "told"), [(0.0, False), (0.004, True)])
+def test_a_stress_at_rest_is_told(offset: float, told: bool, tmp_path: Path) -> None:
+    stretch = np.linspace(1, 1.6, 13)
+    stress = 0.06 * (stretch - stretch**-2) + offset
+    rows = "".join(f"{a:.6f},{b:.6f}\n" for a, b in zip(stretch, stress, strict=True))
+    path = tmp_path / "test.csv"
+    path.write_text(f"stretch,nominal stress [MPa]\n{rows}", encoding="utf-8")
+    said = str(fiberbend.fit(path, "neo-hooke"))
+    assert ("test.csv: 4 kPa at rest, 5.2 % of the greatest stress: the zero" in said) is told

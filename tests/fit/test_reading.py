@@ -59,11 +59,12 @@ FILES = {
         STRESS,
     ),
     "elongation": lines("Elongation (%),nominal stress (bar)", 100 * (STRETCH - 1), 10 * STRESS),
+    "extension ratio": lines("extension ratio,nominal stress [N/mm2]", STRETCH, STRESS),
 }
 
 
 @pytest.mark.parametrize("name", FILES)
-def file_ofs_of_all_kinds_say_the_same(name: str, tmp_path: Path) -> None:
+def test_files_of_all_kinds_say_the_same(name: str, tmp_path: Path) -> None:
     found = read(tmp_path, FILES[name]).measurement
     assert found.stretch == pytest.approx(STRETCH, rel=1e-9)
     assert found.stress == pytest.approx(STRESS, rel=1e-9)
@@ -79,6 +80,23 @@ def test_columns_by_number_and_by_name(tmp_path: Path) -> None:
     assert found.measurement.stretch == pytest.approx(STRETCH)
     assert found.measurement.stress == pytest.approx(STRESS)
     assert "from 'Dehnung' and 'Spannung'" in found.said
+
+
+def test_a_column_is_what_its_unit_says(tmp_path: Path) -> None:
+    text = lines("elongation,nominal stress [MPa]", 100 * (STRETCH - 1), STRESS)
+    found = read(tmp_path, text, Wanted(strain="elongation [%]"))
+    assert found.measurement.stretch == pytest.approx(STRETCH, rel=1e-9)
+
+
+def test_a_strain_without_a_unit_is_told(tmp_path: Path) -> None:
+    text = lines("engineering strain,nominal stress [MPa]", STRETCH - 1, STRESS)
+    assert "from 'engineering strain' (1 is 100 %) and" in read(tmp_path, text).said
+    assert "100 %" not in read(tmp_path, FILES["percent"]).said
+
+
+def test_compression_is_below_zero(tmp_path: Path) -> None:
+    text = lines("compressive eng. strain,eng stress [MPa]", 1 / STRETCH - 1, -STRESS)
+    assert read(tmp_path, text).measurement.stretch == pytest.approx(1 / STRETCH, rel=1e-9)
 
 
 def test_forces_and_displacements(tmp_path: Path) -> None:
@@ -162,6 +180,36 @@ REFUSED = {
         "line 3: 'engineering stress [MPa]' is 'nan', expected a number",
     ),
     "no file of columns": ("hello\n", Wanted(), "one column 'hello'"),
+    "compression above zero": (
+        lines("engineering compressive strain,eng stress [MPa]", STRETCH - 1, STRESS),
+        Wanted(),
+        "'engineering compressive strain' counts compression above zero, expected strains",
+    ),
+    "stresses of compression above zero": (
+        lines("engineering strain,compressive eng stress [MPa]", 1 / STRETCH - 1, STRESS),
+        Wanted(),
+        "'compressive eng stress [MPa]' counts compression above zero",
+    ),
+    "stresses against strains": (
+        lines("engineering strain,eng stress [MPa]", 1 / STRETCH - 1, STRESS),
+        Wanted(),
+        "'eng stress [MPa]' acts against 'engineering strain', expected both above zero in",
+    ),
+    "a name of two columns": (
+        lines("eng strain,eng stress [MPa],eng strain", STRETCH - 1, STRESS, STRETCH - 1),
+        Wanted(strain="eng strain"),
+        "'eng strain' is more than one column, expected its number, 1 or 3",
+    ),
+    "another unit than the file's": (
+        FILES["stretch"],
+        Wanted(stress="engineering stress [kPa]"),
+        "'engineering stress [MPa]' has another unit than 'kPa', expected none beside it",
+    ),
+    "commas that may be thousands": (
+        "stretch;engineering stress (MPa)\n1,100;1,200\n1,200;2,300\n",
+        Wanted(),
+        "line 2: '1,100' is 1.100 or 1100, expected a point before decimals, or --decimal ,",
+    ),
     "a third cycle": (FILES["stretch"], Wanted(cycle=3), "one loading and no cycles"),
 }
 
@@ -174,6 +222,12 @@ def test_what_is_not_clear_is_refused(name: str, tmp_path: Path) -> None:
     assert message in str(error.value)
     assert len(str(error.value).splitlines()) == 1
     assert str(error.value).count("test.csv") == 1
+
+
+def test_a_name_that_is_nearly_that_of_a_test() -> None:
+    for name in ("dragon-skin-10", "dragon-skin-10-medium.csv"):
+        with pytest.raises(CaseError, match=r"a file; did you mean dragon-skin-10-medium\?"):
+            read_test(file_of(Path(name)))
 
 
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
