@@ -107,6 +107,7 @@ def test_tables_and_the_trade_off(tmp_path: Path) -> None:
     assert rows["actuator.wall"]["varied"] == "yes"
     assert rows["actuator.floor"]["by"] == "0.1 mm"
     assert rows["materials.wall.c1"]["by"] == "1 %"
+    assert rows["materials.wall.c1"]["value"].endswith(" MPa")
     assert (out / "design_front.png").exists()
     # another design in its place is asked for
     assert main(["design", file, "--out", str(out), "--quiet"]) == 1

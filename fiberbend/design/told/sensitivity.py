@@ -23,6 +23,7 @@ from fiberbend.schema.paths import put
 from fiberbend.schema.problems import CaseError
 from fiberbend.schema.units import KINDS, factor, parse
 from fiberbend.sweep.fields import labels
+from materials.laws.table import LAWS
 
 _LENGTH_STEP = 0.1
 _PART = 0.01
@@ -122,8 +123,11 @@ def _of_laws(design: Design, near: Near, case: Case) -> Iterator[Row]:
     tries = near.tries
     here = tries.at(near.chosen, near.x)
     for part, spec in dict(case.materials).items():
-        known = {} if spec is None or spec.name is None else convert.material(spec).parameters
-        for key, value in known.items():
+        if spec is None or spec.name is None:
+            continue
+        material = convert.material(spec)
+        units = {one.name: one.unit for one in LAWS[material.law].parameters}
+        for key, value in material.parameters.items():
             path = f"materials.{part}.{key}"
             slopes = tries.model.slopes(case, tries.wanted, [path]) if value else None
             if slopes is None:
@@ -135,7 +139,8 @@ def _of_laws(design: Design, near: Near, case: Case) -> Iterator[Row]:
                 sides.append(np.array([q.read(seen) for q in design.quantities]))
             column = (sides[0] - sides[1]) / (2 * _SMALL * abs(value))
             field = Varied(path, f"{part} {key}", value, 2 * value)
-            yield _row(near, field, field.label, value, column, varied=False)
+            text = f"{value:g}" if units[key] == "1" else f"{value:g} {units[key]}"
+            yield _row(near, field, field.label, text, column, varied=False)
 
 
 def _row(
