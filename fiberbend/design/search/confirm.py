@@ -17,7 +17,7 @@ from fiberbend.design.quantities.quantity import Quantity
 from fiberbend.design.quantities.seen import Reading, Seen, State
 from fiberbend.design.reading import Design
 from fiberbend.design.search.search import Found, Search
-from fiberbend.design.search.wishes import Correction
+from fiberbend.design.search.wishes import LOOSE, Correction
 from fiberbend.design.solving.body import Body
 from fiberbend.design.solving.models import Cell, States, UnsolvedError
 from fiberbend.design.solving.tries import Tries
@@ -118,7 +118,7 @@ class Confirmer:
             check = self._cell(done.found) if model == CELL else self._whole(done.found)
             done = self._add(done, check, correct=True)
             self._tell(self._line(check))
-            if not check.whole or self._agrees(check) or number == _MOST - 1:
+            if not check.whole or self._agrees(done, check) or number == _MOST - 1:
                 break
             begun = time.process_time()
             moved = self._search.again(done.found, done.corrections)
@@ -146,10 +146,11 @@ class Confirmer:
             done, found=found, corrections=corrections, checks=(*done.checks, check)
         )
 
-    def _agrees(self, check: Check) -> bool:
+    def _agrees(self, done: Confirmed, check: Check) -> bool:
         """Whether the section, corrected, had foreseen all that models differ in."""
+        loose = done.found.wishes.loose
         return all(
-            abs(fine - foreseen) <= _near(quantity, fine)
+            abs(fine - foreseen) <= _near(quantity, fine, loose)
             for fine, foreseen, quantity in zip(
                 check.values, check.foreseen, self.design.quantities, strict=True
             )
@@ -205,9 +206,11 @@ class Confirmer:
         return f"{check.model}: {', '.join(parts)}"
 
 
-def _near(quantity: Quantity[Any], fine: float) -> float:
+def _near(quantity: Quantity[Any], fine: float, loose: bool) -> float:
     """How far a finer model may be from what is foreseen: finer where a target is."""
     near = AGREES * max(quantity.scale, abs(fine))
+    if quantity.is_ is not None and loose:
+        return min(near, (1 - LOOSE) * quantity.slack)
     return near if quantity.within is None else min(near, quantity.slack / 2)
 
 

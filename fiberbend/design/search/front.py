@@ -51,7 +51,7 @@ def trade_off(
     if not first.met or not second.met:
         return first if second.met or not second.better(first) else second
     low, high = _signed(second)[1], _signed(first)[1]
-    found = [first, second]
+    found, loose = [first, second], first.wishes.loose or second.wishes.loose
     count = search.design.search.front
     tell(f"both goals are known at their best: {count - 2} cases between them")
     last: dict[object, Found] = {}
@@ -63,7 +63,7 @@ def trade_off(
                 (each for each in ends if each is not None),
                 key=lambda each: repr(each.chosen) != key,
             )
-            new = search.descend(chosen, near.x, corrections, 0, cap)
+            new = search.descend(chosen, near.x, corrections, 0, cap, loose)
             if new is not None and new.met:
                 found.append(new)
                 last[key] = new

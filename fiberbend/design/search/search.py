@@ -92,7 +92,9 @@ class Search:
     def again(self, found: Found, corrections: Sequence[Correction]) -> Found:
         """The best case from one that is known, with other corrections; its choices stay."""
         wishes = found.wishes
-        new = self.descend(found.chosen, found.x, corrections, wishes.goal, wishes.cap)
+        new = self.descend(
+            found.chosen, found.x, corrections, wishes.goal, wishes.cap, wishes.loose
+        )
         if new is None:
             return found
         return self._nearest(new, corrections) or found
@@ -104,9 +106,11 @@ class Search:
         corrections: Sequence[Correction],
         goal: int | None,
         cap: Cap | None = None,
+        loose: bool = False,
     ) -> Found | None:
         """Go down from a case."""
         wishes = self._wishes(chosen, corrections, goal, cap)
+        wishes = dataclasses.replace(wishes, loose=loose)
         minimum = self._minimum(wishes, start, True)
         return None if minimum is None else Found(chosen, minimum, wishes, _met(minimum))
 
@@ -121,6 +125,12 @@ class Search:
         """Where targets are missed, the case that misses least: the goal does not count there."""
         if best is None or best.met:
             return best
+        if not best.wishes.loose and len(best.minimum.values.zero):
+            # not all values can be had exactly, but perhaps as nearly as they are asked for
+            goal, cap = best.wishes.goal, best.wishes.cap
+            near = self.descend(best.chosen, best.x, corrections, goal, cap, loose=True)
+            if near is not None and near.met:
+                return near
         minimum = self._minimum(best.wishes, best.x, False)
         if minimum is None:
             return best

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from fiberbend.design.fields import Pairs
+from fiberbend.design.quantities.quantity import Quantity
 from fiberbend.design.reading import Design
 from fiberbend.design.search.minimum import Slopes, Values
 from fiberbend.design.solving.tries import Tries
@@ -17,6 +18,8 @@ from fiberbend.design.solving.tries import Tries
 Floats = Any
 TOLERANCE = 1e-3
 """Part of a target within which a search has met it."""
+LOOSE = 0.9
+"""Part of what a value may be off that a search uses up; finer models have the rest."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -74,6 +77,7 @@ class Wishes:
         goal: index of the goal that is improved; None: nearness to the base case.
         scales: of every goal, internal unit.
         cap: on the other goal; None: on none.
+        loose: values that are to be met may be off as far as they still are.
     """
 
     design: Design
@@ -83,6 +87,14 @@ class Wishes:
     goal: int | None
     scales: tuple[float, ...]
     cap: Cap | None = None
+    loose: bool = False
+
+    def bounds(self, target: Quantity[Any]) -> tuple[float, float]:
+        """Least and greatest value of a target; one value where it is aimed at."""
+        low, high = target.bounds()
+        if not self.loose or target.is_ is None:
+            return low, high
+        return low - LOOSE * target.slack, high + LOOSE * target.slack
 
     def quantities(self, x: Sequence[float]) -> Floats | None:
         """All quantities as the finer model would have them; None where there is no answer."""
@@ -98,7 +110,7 @@ class Wishes:
             return None
         below, zero = [], []
         for value, target in zip(found, self.design.targets, strict=False):
-            low, high = target.bounds()
+            low, high = self.bounds(target)
             if low == high:
                 zero.append((value - low) / target.scale)
                 continue
@@ -119,7 +131,7 @@ class Wishes:
         slopes = np.array([c.ratio for c in self.corrections])[:, None] * raw
         below, zero = [], []
         for slope, target in zip(slopes, self.design.targets, strict=False):
-            low, high = target.bounds()
+            low, high = self.bounds(target)
             if low == high:
                 zero.append(slope / target.scale)
                 continue
@@ -141,7 +153,7 @@ class Wishes:
         """Index of the target and key of each condition: those below zero, then those at zero."""
         below, zero = [], []
         for index, target in enumerate(self.design.targets):
-            low, high = target.bounds()
+            low, high = self.bounds(target)
             if low == high:
                 zero.append((index, "is"))
                 continue

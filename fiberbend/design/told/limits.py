@@ -59,7 +59,9 @@ def limits(design: Design, found: Found) -> list[Limit]:
     for (index, key), weight, off in zip(found.wishes.conditions(), weights, missed, strict=True):
         # what is missed is what the others stop
         if index >= 0 and abs(weight) > _COUNTS and not off:
-            lines.append(_of_target(design.targets[index], key, float(weight), gains))
+            target = design.targets[index]
+            bounds = found.wishes.bounds(target)
+            lines.append(_of_target(target, bounds, key, float(weight), gains))
     most = max((abs(line.weight) for line in lines), default=0.0)
     told = [line for line in lines if abs(line.weight) > _OF_MOST * most]
     return sorted(told, key=lambda line: -abs(line.weight))
@@ -73,7 +75,9 @@ def _of_end(field: Varied, weight: float, end: float, side: str, way: str, gains
     return Limit(field.path, text, weight)
 
 
-def _of_target(target: Quantity[Any], key: str, weight: float, gains: _Gains) -> Limit:
+def _of_target(
+    target: Quantity[Any], bounds: tuple[float, float], key: str, weight: float, gains: _Gains
+) -> Limit:
     """A target is held exactly, or leans on its bound."""
     step = _PART * target.scale
     gain = gains.of(abs(weight) * _PART)
@@ -83,7 +87,7 @@ def _of_target(target: Quantity[Any], key: str, weight: float, gains: _Gains) ->
         text = f"{target.words()} is held at {target.wanted()}"
     else:
         way = "more" if key == "most" else "less"
-        low, high = target.bounds()
+        low, high = bounds
         bound = target.shown(high if key == "most" else low)
         text = f"{target.words()} is at its limit, at {key} {bound}"
     text += f"; {target.shown(abs(step))} {way} would {gain}"
