@@ -23,6 +23,10 @@ _AT_REST = 0.005
 """Part of a test's greatest logarithmic strain up to which it is at rest."""
 _OFF = 0.03
 """Part of its greatest stress from which on that at rest is told; a stiff beginning has less."""
+_SLACK = 0.005
+"""Part of its greatest stress below which a test has hardly one."""
+_FAR = 0.1
+"""Part of its greatest logarithmic strain from which on it should have one."""
 _SMALL = 0.1
 """MPa below which the moduli of a law are shown in kPa."""
 
@@ -115,7 +119,7 @@ def remarks_of(found: Comparison) -> Iterator[str]:
 
 
 def _off_zero(test: Measurement) -> Iterator[str]:
-    """A stress at rest, which a law cannot have and takes for stiffness."""
+    """A stress at rest, or none far from it: no law has that, and a fit spreads it over all."""
     strain, stress = np.abs(np.log(test.stretch)), np.abs(test.stress)
     rest = strain <= _AT_REST * strain.max()
     off = float(stress[rest].mean()) if rest.any() else 0.0
@@ -124,6 +128,13 @@ def _off_zero(test: Measurement) -> Iterator[str]:
         yield (
             f"{test.name}: {1e3 * off:.3g} kPa at rest, {percent(part)} of the greatest stress: "
             "the zero of the load may be off, and moduli with it"
+        )
+    slack = (stress <= _SLACK * stress.max()) & (strain > _FAR * strain.max())
+    if slack.any():
+        reach = test.stretch[slack][np.argmax(strain[slack])]
+        yield (
+            f"{test.name}: hardly a stress at stretch {reach:.4g}: slack, or lengths in place of "
+            "displacements, and moduli are too small"
         )
 
 

@@ -286,7 +286,9 @@ def _read(place: int, name: str) -> Column:
     bare, unit = _apart(name)
     words = _words(bare)
     meant: Meant | None = "engineering" if words & set(_ENGINEERING) else None
-    meant = "true" if words & set(_TRUE) else meant
+    if words & set(_TRUE):
+        # a name that says both says nothing
+        meant = None if meant else "true"
     what = next((kind for kind, known in _WORDS.items() if words & set(known)), None)
     if words & set(_OTHER):
         what = None

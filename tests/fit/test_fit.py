@@ -272,3 +272,17 @@ def test_a_stress_at_rest_is_told(offset: float, told: bool, tmp_path: Path) -> 
     path.write_text(f"stretch,nominal stress [MPa]\n{rows}", encoding="utf-8")
     said = str(fiberbend.fit(path, "neo-hooke"))
     assert ("test.csv: 4 kPa at rest, 5.2 % of the greatest stress: the zero" in said) is told
+
+
+@pytest.mark.parametrize("begin", [0.0, 2.0, 33.0])
+def test_slack_and_lengths_in_place_of_displacements_are_told(begin: float, tmp_path: Path) -> None:
+    stretch = np.linspace(1, 1.6, 13)
+    force = 18 * 0.06 * (stretch - stretch**-2)
+    rows = "".join(
+        f"{33 * (a - 1) + begin:.6f},{b:.6f}\n" for a, b in zip(stretch, force, strict=True)
+    )
+    path = tmp_path / "test.csv"
+    path.write_text(f"extension [mm],load [N]\n{rows}", encoding="utf-8")
+    found = fiberbend.fit(path, "neo-hooke", gauge="33 mm", area=("6 mm", "3 mm"))
+    line = f"test.csv: hardly a stress at stretch {1 + begin / 33:.4g}: slack, or lengths in place"
+    assert (line in str(found)) is (begin > 0)

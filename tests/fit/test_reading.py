@@ -210,6 +210,11 @@ REFUSED = {
         Wanted(),
         "line 2: '1,100' is 1.100 or 1100, expected a point before decimals, or --decimal ,",
     ),
+    "true and engineering": (
+        lines("true engineering strain,eng stress [MPa]", STRETCH - 1, STRESS),
+        Wanted(),
+        "'true engineering strain' is an engineering or a true strain, expected --as",
+    ),
     "a third cycle": (FILES["stretch"], Wanted(cycle=3), "one loading and no cycles"),
 }
 
