@@ -63,6 +63,9 @@ _LOADED = {
     "fiberbend.commands.design:design": (
         "Find the case that does what is wanted, and confirm it by the whole body."
     ),
+    "fiberbend.commands.table:table": (
+        "Write the law of a section as a table: energy, force and moment, for rods."
+    ),
     "fiberbend.commands.report:report": "Write report.html of a run, a sweep or a design again.",
 }
 for _place, _text in _LOADED.items():

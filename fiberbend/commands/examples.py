@@ -54,6 +54,11 @@ EXAMPLES = {
   fiberbend design cases/designs/bend_at_pressure.yaml
   fiberbend design cases/designs/blocked_force.yaml --set actuator.length="80 mm"
 """,
+    "table": """Examples:
+  fiberbend table cases/section.yaml
+  fiberbend table cases/section.yaml --error 0.5% --from "10 kPa" --out law
+  fiberbend table cases/cell.yaml --error 1% --set effects.pressure.angle="120 deg"
+""",
     "report": """Examples:
   fiberbend report runs/section --open
   fiberbend report runs/section --out section.html

@@ -110,3 +110,8 @@ class HoldEffect(Effect):
         targets = {name: value for name, value in given.items() if value is not None}
         ramps = (Ramp(HOLD, 1.0, conjugated=False),) if self._moves() else ()
         return Built((Hold(targets),), ramps)
+
+
+def hold(stretch: float, bend: float) -> HoldEffect:
+    """Stretch and bending angle held, of the whole length, rad."""
+    return HoldEffect.model_construct(stretch=stretch, bend=bend)

@@ -138,7 +138,7 @@ def _enters(case: Case) -> Iterator[tuple[str, Any]]:
     yield "straight", str(case.straight)
     wound = [effect for effect in case.effects if effect.winds()]
     for part in (case.actuator, case.materials, *wound):
-        for path, value in _flat(part, type(part).__name__):
+        for path, value in flat(part, type(part).__name__):
             if path.rpartition(".")[2] not in _NOTHING:
                 yield path, value
 
@@ -158,7 +158,7 @@ def _apart(one: Mapping[str, Any], other: Mapping[str, Any]) -> float:
     return total
 
 
-def _flat(value: Any, path: str) -> Iterator[tuple[str, Any]]:
+def flat(value: Any, path: str) -> Iterator[tuple[str, Any]]:
     """Plain values of parts of a case, by their paths; named materials and fibers by numbers."""
     if isinstance(value, Spec):
         given = value.by_numbers()
@@ -169,4 +169,4 @@ def _flat(value: Any, path: str) -> Iterator[tuple[str, Any]]:
         yield path, value
         return
     for name, part in parts:
-        yield from _flat(part, f"{path}.{name}")
+        yield from flat(part, f"{path}.{name}")

@@ -11,6 +11,7 @@ import numpy as np
 from mpi4py import MPI
 
 from fem.effects.effect import Discrete
+from fem.effects.sums.hold import HOLD, Hold
 from fem.kinematics.domain import Domain
 from fem.kinematics.uniform import CURVATURE, STRETCH, Uniform
 from fem.march.hooks import AfterStep
@@ -266,6 +267,27 @@ class Small:
         way, size = (np.linalg.norm(w[moved]) for w in (new.w - state.w, state.w))
         if way > _FAR * size:
             return None
+        if not outcome.factorisations:
+            self._newton.assemble()
+            self._newton.factorise(unknown, conditions)
+        return new if equilibrium.modes() == 0 else None
+
+    def held(self, state: State, holding: Hold, pressure: float) -> State | None:
+        """A stable state near another one, whose stretch and bend are held; None: none found.
+
+        Args:
+            state: of this case, which holds the same motions.
+            holding: at what.
+            pressure: MPa.
+        """
+        scene, equilibrium = self.scene, self._march.equilibrium
+        scene.exchange({holding.key: holding.discrete(scene.body)})
+        unknown, conditions = self.conditions(state, "value", pressure)
+        scene.set_scalar(HOLD, 1.0)
+        outcome = self._newton.solve(state.w, unknown, conditions)
+        if not outcome.converged or not equilibrium.tells_stability:
+            return None
+        new = equilibrium.capture()
         if not outcome.factorisations:
             self._newton.assemble()
             self._newton.factorise(unknown, conditions)

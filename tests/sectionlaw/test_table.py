@@ -1,0 +1,262 @@
+"""The law of a section by a table is that of trials and of its own energy."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fiberbend.cli import main
+from fiberbend.reader.reader import parse_case
+from fiberbend.schema.problems import CaseError
+from fiberbend.sectionlaw import words
+from fiberbend.sectionlaw.chart import Chart
+from fiberbend.sectionlaw.law import Free
+from fiberbend.sectionlaw.made import Made, unpacked
+from fiberbend.sectionlaw.store import Store, digest_of
+from fiberbend.sectionlaw.table import refuse, table_of
+from fiberbend.trial.solve import solve
+from fiberbend.trial.wanted import Wanted
+from tests.trial.cases import Data, checked, shipped, under, wound
+
+BENT: Data = under(shipped("section"), angle="120 deg")
+ERROR = 1e-3
+TUBE: Data = under(shipped("extending"), to="20 kPa")
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Store:
+    return Store(tmp_path_factory.mktemp("cache") / "tables")
+
+
+@pytest.fixture(scope="module")
+def made(store: Store) -> Made:
+    return table_of(checked(BENT), ERROR, store=store)
+
+
+def places(made: Made, count: int) -> list[tuple[np.ndarray[Any, Any], float]]:
+    """Strains and pressures inside the table, away from its edges."""
+    random = np.random.default_rng(5)
+    low, high = np.array([axis.lines[[0, -1]] for axis in made.law.table.axes]).T
+    points = low + random.uniform(0.1, 0.9, (count, 3)) * (high - low)
+    strains = made.law.chart.strains(points)
+    return [(strains[i : i + 1], float(points[i, 2])) for i in range(count)]
+
+
+def test_the_chart_has_exact_derivatives() -> None:
+    chart, at, pressure, step = Chart(5.0, -0.01, 0.02, 0.3), np.array([1.1, 0.02]), 0.07, 1e-6
+    moved = []
+    for number in range(3):
+        sides = []
+        for sign in (1, -1):
+            x = np.array([*at, pressure])
+            x[number] += sign * step
+            sides.append(
+                (chart.place(x[None, :2], x[2]), chart.first(chart.place(x[None, :2], x[2]), x[2]))
+            )
+        moved.append([(a - b) / (2 * step) for a, b in zip(*sides, strict=True)])
+    place = chart.place(at[None, :], pressure)
+    first = np.column_stack([row[0][0] for row in moved])
+    assert chart.first(place, pressure)[0, :2] == pytest.approx(first, rel=1e-7, abs=1e-7)
+    second = np.column_stack([row[1][0][1] for row in moved])
+    assert chart.second(place, pressure)[0] == pytest.approx(second, rel=1e-6, abs=1e-4)
+    points = np.array([[*place[0], pressure]])
+    assert chart.strains(points)[0] == pytest.approx(at, rel=1e-12)
+    forces = np.array([[3.0, -20.0, 110.0]])
+    assert chart.forces(points, chart.slopes(points, forces)) == pytest.approx(forces, rel=1e-12)
+
+
+def test_forces_are_slopes_of_the_solved_energy(made: Made) -> None:
+    """Of the law, of which the table's spline knows both: N, M and area by differences."""
+    for strains, pressure in places(made, 6):
+        for number, step in enumerate((1e-5, 1e-6)):
+            away = np.zeros((1, 2))
+            away[0, number] = step
+            sides = [made.law.value(strains + sign * away, pressure) for sign in (1, -1)]
+            slope = (sides[0] - sides[1])[0] / (2 * step)
+            told = made.law.gradient(strains, pressure)[0, number]
+            assert told == pytest.approx(slope, rel=1e-6, abs=1e-4)
+            bent = [made.law.gradient(strains + sign * away, pressure)[0] for sign in (1, -1)]
+            rates = (bent[0] - bent[1]) / (2 * step)
+            assert made.law.hessian(strains, pressure)[0, number] == pytest.approx(rates, rel=1e-5)
+            area = [made.law.chamber(strains + sign * away, pressure)[0] for sign in (1, -1)]
+            rate = (area[0] - area[1]) / (2 * step)
+            told = made.law.chamber_gradient(strains, pressure)[0, number]
+            assert told == pytest.approx(rate, rel=1e-5, abs=1e-3)
+        step = 1e-6
+        sides = [made.law.value(strains, pressure + sign * step) for sign in (1, -1)]
+        area = -(sides[0] - sides[1])[0] / (2 * step)
+        assert made.law.chamber(strains, pressure)[0] == pytest.approx(area, rel=1e-6)
+        sides = [made.law.chamber(strains, pressure + sign * step) for sign in (1, -1)]
+        rate = (sides[0] - sides[1])[0] / (2 * step)
+        assert made.law.chamber_slope(strains, pressure)[0] == pytest.approx(rate, rel=1e-4)
+
+
+def test_solved_energies_and_forces_belong_together(made: Made) -> None:
+    """The energies of the samples alone, at neighbours in the grid, against their forces."""
+    samples = made.samples
+    fitted = made.law.table.samples
+    e, u, pressure = (np.unique(fitted.points[:, number]) for number in range(3))
+    known = {tuple(point): number for number, point in enumerate(samples.points.tolist())}
+    row = [known[(x, u[len(u) // 2], pressure[len(pressure) // 2])] for x in e.tolist()]
+    values, slopes = samples.values[row], samples.slopes[row, 0]
+    gained = np.diff(values)
+    steps = np.diff(e)
+    mean = steps * (slopes[1:] + slopes[:-1]) / 2
+    # the trapezoid's own error is of third order in the step
+    assert gained == pytest.approx(mean, abs=0.02 * float(np.abs(mean).max()))
+
+
+def test_free_states_are_those_of_trials(made: Made) -> None:
+    """At pressures at which no table was compared while it was made."""
+    greatest = made.law.table.axes[-1].lines[-1] / 1.05
+    pressures = tuple(float(greatest * part) for part in (0.2, 0.45, 0.9))
+    answer = solve(checked(BENT), Wanted(pressures=pressures))
+    assert answer.converged
+    angle = max(point.angle for point in answer.free)
+    for point in answer.free:
+        near = Free(1.0 + 0.9 * (point.stretch - 1), 0.9 * point.angle / made.length)
+        found = made.law.free(point.pressure, near)
+        assert found.curvature * made.length == pytest.approx(point.angle, abs=1e-3 * angle)
+        assert found.stretch == pytest.approx(point.stretch, abs=1e-4)
+        area = made.law.chamber(np.array([found]), point.pressure)[0]
+        assert area * made.length == pytest.approx(point.volume, rel=2e-3)
+
+
+def test_errors_are_those_asked_for(made: Made) -> None:
+    told = made.checked
+    assert max(told.force, told.moment, told.area, told.angle) <= ERROR
+    assert told.states >= 32
+    out = "\n".join(words.lines(made))
+    for piece in ("kPa", "1/m", "not fitted", "asked for 0.1 %"):
+        assert piece in out
+
+
+def test_a_straight_tube_is_its_own_mirror_image(store: Store) -> None:
+    made = table_of(checked(TUBE), 1e-2, store=store)
+    axes = made.law.table.axes
+    pressure, most = float(axes[-1].lines.mean()), float(-made.law.chart.least)
+    stretch = float(axes[0].lines.mean())
+    for part in (0.3, 0.8):
+        sides = [np.array([[stretch, sign * part * most]]) for sign in (1, -1)]
+        left, right = (made.law.gradient(side, pressure)[0] for side in sides)
+        scale = np.abs(left).max()
+        assert left[0] == pytest.approx(right[0], abs=1e-2 * scale)
+        assert left[1] == pytest.approx(-right[1], rel=2e-2)
+    exact = made.forces
+    points = {tuple(p): row for p, row in zip(made.samples.points.tolist(), exact, strict=True)}
+    pairs = [
+        (row, points[(e, 1 - u, p)])
+        for (e, u, p), row in points.items()
+        if (e, 1 - u, p) in points and u < 0.5
+    ]
+    assert len(pairs) >= 9
+    for one, other in pairs:
+        assert one == pytest.approx(other * [1, -1, 1], rel=1e-6, abs=1e-5)
+    free = solve(checked(TUBE), Wanted(pressures=(pressure,))).free[0]
+    found = made.law.free(pressure, Free(stretch, 0.0))
+    assert found.stretch == pytest.approx(free.stretch, abs=2e-4)
+    assert found.curvature * made.length == pytest.approx(0.0, abs=1e-3)
+
+
+def test_the_cache_gives_the_same(made: Made, store: Store) -> None:
+    again = table_of(checked(BENT), ERROR, store=store)
+    assert again.seconds == made.seconds
+    for strains, pressure in places(made, 3):
+        assert np.array_equal(
+            again.law.gradient(strains, pressure), made.law.gradient(strains, pressure)
+        )
+    assert again.packed() == made.packed()
+    assert again.checked == made.checked
+
+
+def test_what_enters_has_another_digest() -> None:
+    digest = digest_of(checked(BENT), ERROR, None)
+    assert digest == digest_of(checked(BENT | {"title": "another"}), ERROR, None)
+    thick = {**BENT, "actuator": BENT["actuator"] | {"wall": "3 mm"}}
+    soft = {**BENT, "materials": BENT["materials"] | {"wall": "ecoflex-0030"}}
+    others = [thick, soft, under(BENT, angle="90 deg")]
+    others.append(
+        wound(BENT, pattern="double-helix", pitch="4 mm", fiber="kevlar", **{"as": "smeared"})
+    )
+    found = {digest_of(checked(other), ERROR, None) for other in others}
+    found |= {digest_of(checked(BENT), 1e-2, None), digest_of(checked(BENT), ERROR, 0.01)}
+    assert len(found | {digest}) == 7
+
+
+def test_a_damaged_table_is_no_table(made: Made, tmp_path: Path) -> None:
+    kept = Store(tmp_path / "tables")
+    kept.keep(made)
+    file = tmp_path / "tables" / f"{made.digest}.npz"
+    content = bytearray(file.read_bytes())
+    content[len(content) // 2] ^= 0xFF
+    file.write_bytes(bytes(content))
+    assert kept.find(made.digest) is None
+    assert "damaged" in kept.remarks[0]
+    with pytest.raises(ValueError, match="no table"):
+        unpacked(b"nothing")
+
+
+def test_the_csv_has_units_and_all_states(made: Made) -> None:
+    rows = list(csv.DictReader(io.StringIO(words.text(made))))
+    assert len(rows) == len(made.samples.values)
+    assert set(rows[0]) == set(words.COLUMNS)
+    row = rows[len(rows) // 2]
+    strains = np.array([[float(row["stretch"]), 1e-3 * float(row["curvature_1_per_m"])]])
+    pressure = 1e-3 * float(row["pressure_kPa"])
+    told = made.law.gradient(strains, pressure)[0]
+    span = np.ptp(made.forces, axis=0)
+    assert float(row["force_N"]) == pytest.approx(told[0], abs=ERROR * span[0])
+    assert float(row["moment_Nmm"]) == pytest.approx(told[1], abs=ERROR * span[1])
+
+
+@pytest.mark.parametrize(
+    ("data", "text"),
+    [
+        (shipped("single_helix"), "bends in its plane"),
+        (shipped("s_shape"), "zones"),
+        (under(BENT, {"hold": {"stretch": 1.01}}, to="20 kPa"), "effects.2.hold"),
+        (under(BENT, {"straight": {}}, to="20 kPa"), "no load but a pressure"),
+        (BENT | {"model": "body", "mesh": {}}, "expected section or cell"),
+        (
+            under(BENT, {"blocked-tip": {}}, to="20 kPa") | {"model": "body", "mesh": {}},
+            "effects.2.blocked-tip",
+        ),
+    ],
+)
+def test_what_it_cannot_have_is_refused_by_name(data: Data, text: str) -> None:
+    with pytest.raises(CaseError, match=text):
+        refuse(parse_case(data))
+
+
+def test_a_pressure_from_which_it_is(store: Store) -> None:
+    with pytest.raises(CaseError, match="--from: 900 kPa"):
+        table_of(checked(BENT), ERROR, 0.9, store)
+
+
+def test_the_command(
+    tmp_path: Path, made: Made, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    import yaml
+
+    case = tmp_path / "finger.yaml"
+    case.write_text(yaml.safe_dump(BENT), encoding="utf-8")
+    monkeypatch.setattr("fiberbend.sectionlaw.table.Store", lambda: None)
+    monkeypatch.setattr("fiberbend.sectionlaw.table._made", lambda *_: made)
+    monkeypatch.setattr("fiberbend.sectionlaw.store.Store.find", lambda *_: None)
+    monkeypatch.setattr("fiberbend.sectionlaw.store.Store.keep", lambda *_: None)
+    folder = tmp_path / "law"
+    assert main(["table", str(case), "--out", str(folder)]) == 0
+    out = capsys.readouterr().out
+    assert "free       beside trials" in out
+    assert unpacked((folder / "table.npz").read_bytes()).digest == made.digest
+    assert (folder / "table.csv").read_text(encoding="utf-8").startswith("stretch,")
+    assert (folder / "table.png").stat().st_size > 10_000
+    assert main(["table", str(case), "--out", str(folder)]) == 1
+    assert "--overwrite" in capsys.readouterr().err
+    assert main(["table", str(case), "--error", "40 %"]) == 1
+    assert main(["table", str(case), "--from", "3 mm"]) == 1
