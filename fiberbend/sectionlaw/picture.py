@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 STYLE = Style(width=280.0, height=105.0, font_size=11.0)
-_CURVES, _POINTS = 5, 120
+_POINTS = 120
 _FROM, _TO = 0.15, 0.85
 """Of the colour map."""
 _TITLES = ("moment without force (N mm)", "stretch without force", "energy per length (N)")
@@ -33,24 +33,24 @@ def draw(made: Made, style: Style = STYLE) -> Figure:
     import matplotlib as mpl
 
     low, high = made.law.table.axes[-1].lines[[0, -1]].tolist()
-    colors = mpl.colormaps["viridis"](np.linspace(_FROM, _TO, _CURVES))
+    free = [(pressure, state) for pressure, state in made.free if low <= pressure <= high]
+    pressures = sorted({low, *(pressure for pressure, _ in free)})
+    colors = mpl.colormaps["viridis"](np.linspace(_FROM, _TO, len(pressures)))
     with own_style(), any_sign():
         page = style.figure()
         panels = page.subplots(1, 3, gridspec_kw={"wspace": 0.32})
-        pressures = np.linspace(low, high, _CURVES)
-        for pressure, color in zip(pressures.tolist(), colors, strict=True):
+        for pressure, color in zip(pressures, colors, strict=True):
             curve = _without_force(made, pressure)
             moments = made.law.gradient(curve, pressure)[:, 1]
             rows = (moments, curve[:, 0], made.law.value(curve, pressure))
             for axes, row in zip(panels, rows, strict=True):
                 label = f"{1e3 * pressure:.3g} kPa"
                 axes.plot(1e3 * curve[:, 1], row, color=color, lw=1.6, label=label)
-        for pressure, state in made.free:
-            if low <= pressure <= high:
-                here = np.array([state])
-                heights = (0.0, state.stretch, made.law.value(here, pressure)[0])
-                for axes, height in zip(panels, heights, strict=True):
-                    axes.plot(1e3 * state.curvature, height, "o", color="black", ms=4)
+        for pressure, state in free:
+            here = np.array([state])
+            heights = (0.0, state.stretch, made.law.value(here, pressure)[0])
+            for axes, height in zip(panels, heights, strict=True):
+                axes.plot(1e3 * state.curvature, height, "o", color="black", ms=4)
         for axes, title in zip(panels, _TITLES, strict=True):
             _look(axes, title, style)
         panels[0].plot([], [], "o", color="black", ms=4, label="free, by a trial")

@@ -56,9 +56,9 @@ def lines(made: Made) -> Iterator[str]:
     if checked.softest > 0:
         yield "  convex     in stretch and curvature, everywhere in the range"
     else:
-        stretch, curvature, pressure = checked.where
+        where, curvature, pressure = checked.where
         yield (
-            f"  not convex at stretch {stretch:.4g}, curvature {1e3 * curvature:.4g} 1/m, "
+            f"  not convex at stretch {where:.4g}, curvature {1e3 * curvature:.4g} 1/m, "
             f"{1e3 * pressure:.4g} kPa and about it: a rod may lose its stability there"
         )
     for remark in made.remarks:

@@ -25,7 +25,11 @@ from tests.trial.cases import Data, checked, shipped, under, wound
 
 BENT: Data = under(shipped("section"), angle="120 deg")
 ERROR = 1e-3
-TUBE: Data = under(shipped("extending"), to="20 kPa")
+TUBE: Data = wound(
+    under(shipped("extending", model="section"), to="40 kPa"),
+    **{"fiber": "kevlar", "as": "smeared"},
+    families=[{"angle_from_axis": "90 deg", "spacing": "3 mm"}],
+)
 
 
 @pytest.fixture(scope="module")
