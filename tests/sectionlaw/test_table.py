@@ -17,10 +17,16 @@ from fiberbend.sectionlaw import words
 from fiberbend.sectionlaw.chart import Chart
 from fiberbend.sectionlaw.law import Free
 from fiberbend.sectionlaw.made import Made, unpacked
+from fiberbend.sectionlaw.range import box_of, reach_of
 from fiberbend.sectionlaw.store import Store, digest_of
 from fiberbend.sectionlaw.table import refuse, table_of
+from fiberbend.sectionlaw.walk import Walk
 from fiberbend.trial.solve import solve
 from fiberbend.trial.wanted import Wanted
+from rod.layout import Layout
+from rod.rod import Level, Rod, TipLoad
+from rod.statics import Path as LoadPath
+from rod.statics import solve as rod_solve
 from tests.trial.cases import Data, checked, shipped, under, wound
 
 BENT: Data = under(shipped("section"), angle="120 deg")
@@ -74,8 +80,7 @@ def test_the_chart_has_exact_derivatives() -> None:
     assert chart.forces(points, chart.slopes(points, forces)) == pytest.approx(forces, rel=1e-12)
 
 
-def test_forces_are_slopes_of_the_solved_energy(made: Made) -> None:
-    """Of the law, of which the table's spline knows both: N, M and area by differences."""
+def test_the_law_has_exact_derivatives(made: Made) -> None:
     for strains, pressure in places(made, 6):
         for number, step in enumerate((1e-5, 1e-6)):
             away = np.zeros((1, 2))
@@ -100,19 +105,43 @@ def test_forces_are_slopes_of_the_solved_energy(made: Made) -> None:
         assert made.law.chamber_slope(strains, pressure)[0] == pytest.approx(rate, rel=1e-4)
 
 
-def test_solved_energies_and_forces_belong_together(made: Made) -> None:
-    """The energies of the samples alone, at neighbours in the grid, against their forces."""
-    samples = made.samples
-    fitted = made.law.table.samples
-    e, u, pressure = (np.unique(fitted.points[:, number]) for number in range(3))
-    known = {tuple(point): number for number, point in enumerate(samples.points.tolist())}
-    row = [known[(x, u[len(u) // 2], pressure[len(pressure) // 2])] for x in e.tolist()]
-    values, slopes = samples.values[row], samples.slopes[row, 0]
-    gained = np.diff(values)
-    steps = np.diff(e)
-    mean = steps * (slopes[1:] + slopes[:-1]) / 2
-    # the trapezoid's own error is of third order in the step
-    assert gained == pytest.approx(mean, abs=0.02 * float(np.abs(mean).max()))
+@pytest.mark.parametrize("data", [BENT, TUBE], ids=["hemicircle", "tube"])
+def test_solved_forces_are_slopes_of_the_solved_energy(data: Data) -> None:
+    """Of states of the section, without a spline: N, M and the area of the chamber."""
+    case = checked(data)
+    box = box_of(reach_of(case))
+    walk = Walk(case, box)
+    low, high = np.array(box.ranges).T
+    for part in ((0.4, 0.3, 0.6), (0.7, 0.6, 0.2)):
+        point = low + np.array(part) * (high - low)
+        _, slopes = walk.sample(point[None, :])
+        steps = 3e-3 * (high - low)
+        for number, step in enumerate(steps):
+            away = np.zeros(3)
+            away[number] = step
+            near = point + np.outer([-2, -1, 1, 2], away)
+            weights = np.array([1, -8, 8, -1]) / (12 * step)
+            found = weights @ walk.sample(near)[0]
+            span = np.abs(slopes[0, number]) + 1e-3 * np.abs(slopes[0] * steps).max() / step
+            assert slopes[0, number] == pytest.approx(found, abs=1e-5 * span)
+
+
+def test_a_rod_takes_it(made: Made) -> None:
+    """By itself it bends as the section does; a moment at its tip is that of every piece."""
+    pressure, state = made.free[-1]
+    layout = Layout(np.full(8, made.length / 8))
+    near = np.tile([1.0 + 0.95 * (state.stretch - 1.0), 0.95 * state.curvature], (8, 1))
+    level = Level(pressure=pressure, tip=1.0)
+    angle = state.curvature * made.length
+    turns = []
+    for moment in (0.0, 10.0, -10.0):
+        rod = Rod(layout, made.law, tip=TipLoad(moment=(moment, 0.0, 0.0)))
+        found = rod_solve(rod, near, LoadPath(level, level), 0.0).strains
+        forces = made.law.gradient(found, pressure)
+        assert forces == pytest.approx(np.tile([0.0, moment], (8, 1)), abs=1e-5)
+        turns.append(float(layout.lengths @ found[:, 1]))
+    assert turns[0] == pytest.approx(angle, rel=1e-3)
+    assert turns[2] < turns[0] < turns[1]
 
 
 def test_free_states_are_those_of_trials(made: Made) -> None:
