@@ -25,7 +25,7 @@ INTERVALS, PRESSURE_INTERVALS = 3, 1
 _OUTSIDE = 1e-9
 _LEAST = 32
 """Fewest points to which a table is compared."""
-_SPLIT = 0.1
+_SPLIT = 0.5
 """Jumps beyond this part of the greatest one halve an interval."""
 
 

@@ -57,7 +57,7 @@ EXAMPLES = {
     "table": """Examples:
   fiberbend table cases/section.yaml
   fiberbend table cases/section.yaml --error 0.5% --from "10 kPa" --out law
-  fiberbend table cases/cell.yaml --error 1% --set effects.0.pressure.angle="120 deg"
+  fiberbend table cases/circle.yaml --set actuator.wall="3 mm"
 """,
     "report": """Examples:
   fiberbend report runs/section --open
