@@ -53,9 +53,11 @@ def noise_along(
 
     Args:
         body: the kinematics, at rest.
-        discretes: the potentials with code of their own, there.
+        discretes: the potentials with code of their own.
         names: of the scalars.
     """
     potentials = list(discretes)
+    for each in potentials:
+        each.update(body.w.x.array)
     squares = {name: sum(each.noise_along(name) for each in potentials) for name in names}
     return {name: float(np.sqrt(total(body.domain.comm, s))) for name, s in squares.items()}

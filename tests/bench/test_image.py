@@ -63,7 +63,7 @@ def test_what_changes_seldom_comes_first() -> None:
 
 def test_the_image_has_the_source_and_nothing_else() -> None:
     given = {str(path) for path in image.context(ROOT, PATTERNS)}
-    packages = ("analytic", "fem", "fiberbend", "geometry", "machine", "materials")
+    packages = ("analytic", "fem", "fiberbend", "geometry", "machine", "materials", "rod")
     for package in packages:
         for path in (ROOT / package).rglob("*"):
             name = str(path.relative_to(ROOT))

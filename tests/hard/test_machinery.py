@@ -12,12 +12,14 @@ import numpy as np
 import pytest
 from petsc4py import PETSc
 
+import fem.scene
 import fem.solver.newton
 from bench.hard_cases import find
 from bench.hard_procedures import unloaded
 from fem.march.records import Rules
 from fem.scene import Scene
 from fem.solver.newton import Settings
+from fem.solver.side_conditions import Stationary
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case
 from fiberbend.running import assembly
@@ -98,13 +100,14 @@ def test_forces_are_measured_by_those_before(monkeypatch: Patch) -> None:
     """Back at no load there is no force to be measured by: before, 'no convergence'."""
     monkeypatch.setattr(fem.solver.newton, "FADED", 0.0)
     monkeypatch.setattr(Scene, "_solid_noise", lambda _: 0.0)
+    monkeypatch.setattr(Stationary, "noise", lambda _: 0.0)
     done = unloaded(find("unloaded"), "section")
     assert done.run["status"] == "failed"
 
 
 def test_forces_are_no_finer_than_round_off(monkeypatch: Patch) -> None:
     """Of fibers 1e8 times as stiff as rubber the first digits of a strain are all there is."""
-    monkeypatch.setattr(Scene, "_noise", lambda _: 0.0)
+    monkeypatch.setattr(fem.scene, "summed_noise", lambda *_: 0.0)
     monkeypatch.setattr(Scene, "_solid_noise", lambda _: 0.0)
     assert solve("fiber-1000").status == "failed"
 
