@@ -9,10 +9,14 @@ import dataclasses
 import functools
 import os
 import tempfile
+import zipfile
+import zlib
 from pathlib import Path
 
 _OTHERS, _GROUP, _STICKY = 0o002, 0o020, 0o1000
 CACHE = "XDG_CACHE_HOME"
+DAMAGED = (zipfile.BadZipFile, zlib.error, ValueError, EOFError, KeyError, NotImplementedError)
+"""How reading a file of arrays ends that is cut off or changed: zip has a check sum of each."""
 
 
 class MachineError(Exception):

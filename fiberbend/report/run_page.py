@@ -34,9 +34,10 @@ from fiberbend.report.page import (
 from fiberbend.results.folder import CASE_FILE, HISTORY_FILE, MESH, REPORT, RUN_FILE, RunFolder
 from fiberbend.results.scenery import scenery
 from fiberbend.results.space import Space
-from fiberbend.results.states import DAMAGED, States, read_snapshot, snapshot_paths
+from fiberbend.results.states import States, read_snapshot, snapshot_paths
 from fiberbend.states.labels import short_number
 from fiberbend.states.snapshot import Write
+from machine.folders import DAMAGED
 
 _MOST_PICTURES = 4_000_000
 """Bytes of pictures of the body that the page contains; further ones are links."""

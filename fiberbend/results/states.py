@@ -5,8 +5,6 @@ from __future__ import annotations
 import dataclasses
 import functools
 import json
-import zipfile
-import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -22,9 +20,8 @@ from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.mesh.data import MeshData
 from geometry.winding.segments import EmbeddedFibers
+from machine.folders import DAMAGED
 
-DAMAGED = (zipfile.BadZipFile, zlib.error, ValueError, EOFError, KeyError)
-"""How reading a file of arrays ends that is cut off or changed: zip has a check sum of each."""
 STEP = "step_"
 """Begins the labels of states that nobody has asked for by angle or pressure."""
 LAST = "last"

@@ -21,10 +21,11 @@ from fiberbend.results.folder import (
     RunFolder,
     checkpoints,
 )
-from fiberbend.results.states import DAMAGED, LAST, STEP, read_snapshot, snapshot_paths
+from fiberbend.results.states import LAST, STEP, read_snapshot, snapshot_paths
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.states.snapshot import Snapshot
 from geometry.mesh.data import MeshData
+from machine.folders import DAMAGED
 
 
 @dataclasses.dataclass(frozen=True)

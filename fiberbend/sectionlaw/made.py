@@ -11,6 +11,7 @@ import numpy as np
 
 from fiberbend.sectionlaw.chart import Chart
 from fiberbend.sectionlaw.law import Free, SectionLaw
+from machine.folders import DAMAGED
 from rod.functions import Floats
 from rod.spline import Axis, Samples
 from rod.table import Table
@@ -123,8 +124,6 @@ def unpacked(content: bytes) -> Made:
     Raises:
         ValueError: it is none.
     """
-    import zipfile
-
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as file:
             given = {name: file[name] for name in file.files}
@@ -142,5 +141,5 @@ def unpacked(content: bytes) -> Made:
         checked = Checked(**known | {"where": tuple(known["where"])})
         remarks = tuple(about.pop("remarks"))
         return Made(law=law, checked=checked, samples=samples, free=free, remarks=remarks, **about)
-    except (KeyError, TypeError, ValueError, OSError, zipfile.BadZipFile) as error:
+    except (*DAMAGED, TypeError, OSError) as error:
         raise ValueError(f"no table: {error}") from None

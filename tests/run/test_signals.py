@@ -72,7 +72,8 @@ def test_a_run_says_from_its_beginning_that_it_runs(tmp_path: Path) -> None:
 @pytest.mark.mpi
 def test_told_to_stop_on_two_ranks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """By mpirun, which has an exit code of its own; with time to end beside other tests."""
-    monkeypatch.setenv("OMPI_MCA_odls_base_sigkill_timeout", "3")
+    for runtime in ("OMPI", "PRTE"):  # the second is Open MPI 5
+        monkeypatch.setenv(f"{runtime}_MCA_odls_base_sigkill_timeout", "10")
     _, text, run = _stop(2, signal.SIGINT, tmp_path)
     if run["status"] == "interrupted":  # else killed by mpirun within a long call, its steps kept
         assert_said(text, run)

@@ -10,8 +10,8 @@ import numpy as np
 
 from fiberbend import columns as col
 from fiberbend.results.folder import ZONES, RunFolder
-from fiberbend.results.states import DAMAGED
 from fiberbend.running.zones.march import Solved, ZoneMarch
+from machine.folders import DAMAGED
 
 
 def save(folder: RunFolder, zone: ZoneMarch) -> None:
@@ -48,7 +48,7 @@ def take_up(
         about = json.loads(str(arrays.pop("about")))
     except FileNotFoundError:
         return False
-    except (*DAMAGED, KeyError):
+    except DAMAGED:
         say(f"{path} is damaged: {zone.name} is solved again")
         return False
     known = all(map(col.is_column, about["rows"][-1]))
