@@ -53,19 +53,19 @@ class Rod(SlenderModel):
                 yield f"{path}.volume", text
             if own is not None and ((own.to or 0.0) < 0 or (own.angle or 0.0) < 0):
                 yield path, "the law of a section is of pressures above zero, and no vacuum"
-        symmetry = Symmetry.of(case.acting)
-        if not symmetry.across and not self._wound_alike(case):
-            yield "effects", "its law is of stretch and curvature, and its winding twists it"
+        wound, symmetry = self._wound(case), Symmetry.of(case.acting)
+        if not wound.plane:
+            yield "effects", f"the law of its section is of stretch and curvature: {wound.words()}"
         elif symmetry.across:
             reasons = "; ".join(symmetry.across)
-            yield "effects", f"its law is of bending in the plane x = 0: {reasons}"
+            yield "effects", f"the law of its section is of bending in the plane x = 0: {reasons}"
         if case.output.fields and "fields" in case.output.model_fields_set:
             yield "output.fields", "a rod has no fields: its sections are known by their law alone"
 
-    def _wound_alike(self, case: Case) -> bool:
-        """Whether its section has both mirror planes."""
+    def _wound(self, case: Case) -> Symmetry:
+        """Symmetry of its section."""
         beside = (effect.beside() for effect in case.effects)
-        return Symmetry.of([effect for effect in beside if effect is not None]).plane
+        return Symmetry.of([effect for effect in beside if effect is not None])
 
     def leaves_out(self, case: Case) -> Iterator[Objection]:
         """How sections near the caps differ from others."""

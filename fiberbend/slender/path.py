@@ -165,7 +165,8 @@ class Course:
         report.factorisations += point.iterations
         report.per_step.append(point.iterations)
         self.points.append(point)
-        for goal in self._requests.at_angles:
+        stop = self._requests.stop_at_angle
+        for goal in dict.fromkeys((*self._requests.at_angles, *([] if stop is None else [stop]))):
             if abs(point.angle - goal) <= _SAME * max(1.0, abs(goal)):
                 report.hits.append((report.steps, goal))
         count = len(self._slender.ramps)
