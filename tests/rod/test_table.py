@@ -11,8 +11,9 @@ from scipy.interpolate import BSpline
 from rod.functions import Floats
 from rod.law import Linear, Zones
 from rod.layout import Layout
+from rod.loads import TipForce
 from rod.motion import Motion
-from rod.rod import Level, Rod, TipLoad
+from rod.rod import Level, Rod
 from rod.spline import Axis, Samples, fitted
 from rod.statics import NoEquilibriumError, Path, Volume, march
 from rod.table import NotReachedError, Table, tabulate
@@ -151,8 +152,8 @@ def test_what_cannot_be_reached_is_refused() -> None:
 
 def rod_of(table: Table, pieces: int = 6) -> Rod:
     bar = Bar()
-    plain = bar.rod(pieces, tip=TipLoad(force=(0.0, -0.01, 0.0)))
-    return Rod(plain.layout, table, plain.inertia, (0.0, -9810.0, 0.0), plain.tip)
+    plain = bar.rod(pieces, tip=[TipForce((0.0, -0.01, 0.0))])
+    return Rod(plain.layout, table, plain.inertia, plain.terms)
 
 
 def test_a_rod_by_a_table_is_one_by_the_law() -> None:
@@ -174,9 +175,9 @@ def test_a_rod_by_a_table_is_one_by_the_law() -> None:
 
 def test_a_rod_by_a_table_keeps_its_energy() -> None:
     rod = rod_of(tabulate(Counted(), RANGES, 1e-3))
-    level = Level(pressure=0.02, weight=1.0)
+    level = Level(0.02, (1.0,))
     start = march(
-        rod, np.tile([1.0, 0.0], (6, 1)), Path(Level(), Level(0.02, 0.2)), [0.0, 0.5, 1.0]
+        rod, np.tile([1.0, 0.0], (6, 1)), Path(Level(), Level(0.02, (0.2,))), [0.0, 0.5, 1.0]
     )
     motion = Motion(rod, lambda time: level)
     moving = motion.at(start[-1].strains)
@@ -247,3 +248,15 @@ def test_a_table_of_another_number_of_strains() -> None:
     rod = Rod(layout, table)
     state = march(rod, layout.at_rest(), Path(Level(), Level(pressure=0.1)), [1.0])[0]
     np.testing.assert_allclose(state.strains, np.tile([0.05, 0.0], (3, 1)), atol=1e-9)
+
+
+def test_first_and_second_derivatives_at_once_are_those_one_by_one() -> None:
+    table, strains, pressure = tabulate(Counted(), RANGES, 1e-2), inside(5), 0.03
+    first, second = table.both(strains, pressure)
+    np.testing.assert_array_equal(table.first(strains, pressure), first)
+    np.testing.assert_array_equal(first[:, :2], table.gradient(strains, pressure))
+    np.testing.assert_array_equal(-first[:, 2], table.chamber(strains, pressure))
+    np.testing.assert_array_equal(second[:, :2, :2], table.hessian(strains, pressure))
+    np.testing.assert_array_equal(-second[:, 2, :2], table.chamber_gradient(strains, pressure))
+    np.testing.assert_array_equal(-second[:, :2, 2], table.chamber_gradient(strains, pressure))
+    np.testing.assert_array_equal(-second[:, 2, 2], table.chamber_slope(strains, pressure))
