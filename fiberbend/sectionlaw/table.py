@@ -156,7 +156,7 @@ def _made(
             law, known = _fitted(large, walk, box, reach, error)
             side = None
             if more:
-                side = side_of(all_held, strains, law, box, reach.moment, alike, tell)
+                side = side_of(all_held, strains, law, box, reach, alike, tell)
         except NoStateError as stop:
             last = str(stop)
             continue
