@@ -41,7 +41,7 @@ _PRESSURES: Floats = np.array([0.0, 0.08, 0.22, 0.44, 0.7, 1.0])
 _PLANE_LINES = (np.linspace(0.0, 1.0, 3), np.linspace(0.0, 1.0, 7), _PRESSURES)
 _TWISTED_LINES = (np.linspace(0.0, 1.0, 2), np.linspace(0.0, 1.0, 5), _PRESSURES[[0, 1, 2, 4, 5]])
 """Of the pull, of curvature and twist, and of the pressure."""
-_TWISTED_DEGREE, _MOST = 4, 900
+_TWISTED_DEGREE, _MOST = 3, 900
 """A table of three strains has some thousand coefficients: splines of a lower degree, and no more
 states than a minute and a gigabyte take."""
 
