@@ -1,4 +1,4 @@
-"""Runs that are kept: the histories of bodies and rods, with what they cost and where they are from."""
+"""Runs that are kept: histories of bodies and rods, what they cost and where they are from."""
 
 from __future__ import annotations
 

@@ -17,8 +17,6 @@ LOADED = "60 kPa"
 COARSE, FINE = "coarse", "fine"
 MESHES = (COARSE, FINE)
 """The reference, and one by which its own error is known."""
-RODS = {"model": "rod"}
-BODIES = {"model": "body"}
 
 
 @dataclasses.dataclass(frozen=True)
