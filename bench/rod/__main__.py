@@ -10,7 +10,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from bench.rod import numerics, record
+from bench.rod import numerics, page, record
 from bench.rod.scenes import BY_NAME, COARSE, MESHES, SCENES
 
 
@@ -21,7 +21,7 @@ def _solve(given: argparse.Namespace) -> None:
         if file.exists() and not given.again:
             continue
         out = None if given.out is None else given.out / f"{name}.{given.model}.{given.mesh}"
-        found = record.solve(scene, given.model, given.mesh, out)
+        found = record.solve(scene, given.model, given.mesh, out, given.twice)
         record.keep(found, file)
         print(name, found.status, found.reason, f"{found.cpu_s:.1f} s", flush=True)
 
@@ -35,10 +35,14 @@ def main() -> None:
     solve.add_argument("--model", default="rod")
     solve.add_argument("--mesh", default=COARSE, choices=MESHES)
     solve.add_argument("--again", action="store_true", help="also those that are kept")
+    solve.add_argument("--twice", action="store_true", help="once before, so that tables are made")
     solve.add_argument("--out", type=Path, help="folder for whole runs")
+    commands.add_parser("page", help="write docs/evidence/rod.md from the records")
     given = parser.parse_args()
     if given.command == "solve":
         _solve(given)
+    elif given.command == "page":
+        page.PAGE.write_text(page.page(), encoding="utf-8")
     else:
         numerics.report()
 

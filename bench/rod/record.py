@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import json
 import resource
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +27,7 @@ class Record:
         status: how it ended.
         reason: why so.
         cpu_s: processor time of the call of `fiberbend.run`, kernels compiled before.
+        first_cpu_s: of a call before, which made the tables; None: there was none.
         compiled: whether kernels had to be compiled nevertheless.
         unknowns: of the model.
         iterations: of Newton's method.
@@ -41,6 +41,7 @@ class Record:
     status: str
     reason: str
     cpu_s: float
+    first_cpu_s: float | None
     compiled: bool
     unknowns: int | None
     iterations: int | None
@@ -66,7 +67,9 @@ def path_of(scene: str, model: str, mesh: str) -> Path:
     return FOLDER / f"{scene}.{model}.{mesh}.json"
 
 
-def solve(scene: Scene, model: str, mesh: str, out: Path | None) -> Record:
+def solve(
+    scene: Scene, model: str, mesh: str, out: Path | None = None, twice: bool = False
+) -> Record:
     """Run a scene.
 
     Args:
@@ -74,8 +77,14 @@ def solve(scene: Scene, model: str, mesh: str, out: Path | None) -> Record:
         model: by which model.
         mesh: of which mesh.
         out: folder for the whole run; None: only the record is kept.
+        twice: solve it once before, so that tables are made.
     """
     case = scene.case(model, mesh)
+    first = None
+    if twice:
+        began = _seconds()
+        run(case, force=True, states=False)
+        first = round(_seconds() - began, 3)
     began = _seconds()
     result = run(case, out=out, overwrite=True, force=True)
     spent = _seconds() - began
@@ -86,6 +95,7 @@ def solve(scene: Scene, model: str, mesh: str, out: Path | None) -> Record:
         status=result.status,
         reason=result.reason,
         cpu_s=round(spent, 3),
+        first_cpu_s=first,
         compiled=bool(about.get("wall_s", {}).get("compile", 0.0) > _QUICK),
         unknowns=about.get("unknowns"),
         iterations=about.get("newton_iterations"),
@@ -127,14 +137,7 @@ def keep(record: Record, path: Path) -> None:
 def read(path: Path) -> Record:
     """A record as it was kept."""
     content = json.loads(path.read_text(encoding="utf-8"))
+    content.setdefault("first_cpu_s", None)
     content["columns"] = tuple(content["columns"])
     content["rows"] = tuple(tuple(row) for row in content["rows"])
     return Record(**content)
-
-
-def kept(scenes: tuple[Scene, ...], model: str, mesh: str) -> Iterator[tuple[Scene, Record]]:
-    """Those scenes of which there is a record."""
-    for scene in scenes:
-        path = path_of(scene.name, model, mesh)
-        if path.exists():
-            yield scene, read(path)

@@ -30,9 +30,10 @@ class Scene:
         changes: entries of the case that differ.
         axial: lengths of the body's elements, coarse and fine, mm.
         section: elements through its parts, coarse and fine.
-        column: by which states of both are compared.
-        obstacle: whose touch and force are compared.
-        band: of the tip, mm.
+        angle: column of the turn that is compared.
+        obstacle: whose touch and force are compared; of strips the column of the force.
+        band: of the tip that is asked for, mm.
+        force_band: of the obstacle's force, in parts.
     """
 
     name: str
@@ -41,9 +42,10 @@ class Scene:
     changes: dict[str, Any]
     axial: tuple[float, float] = (8.0, 4.0)
     section: tuple[int, int] = (1, 2)
-    column: str = "pressure_kPa"
+    angle: str = "angle_deg"
     obstacle: str = ""
     band: float = 1.5
+    force_band: float = 0.06
 
     def case(self, model: str, mesh: str = COARSE) -> dict[str, Any]:
         """The case of a model: nothing differs but that line.
@@ -84,7 +86,9 @@ WITH_WEIGHT = {
 WEIGHT = {"gravity": {"direction": "-y"}}
 
 
-def _loaded(name: str, title: str, *loads: dict[str, Any], after: bool = False) -> Scene:
+def _loaded(
+    name: str, title: str, *loads: dict[str, Any], after: bool = False, angle: str = "angle_deg"
+) -> Scene:
     """The short baseline under loads that act before the pressure, or after it."""
     inflation = {"pressure": {"to": LOADED}}
     acting = [inflation, *loads] if after else [*loads, inflation]
@@ -95,7 +99,7 @@ def _loaded(name: str, title: str, *loads: dict[str, Any], after: bool = False) 
     }
     if WEIGHT.keys() & {key for load in loads for key in load}:
         changes["materials"] = WITH_WEIGHT
-    return Scene(name, title, FREE, changes, column="load_tip_load" if after else "pressure_kPa")
+    return Scene(name, title, FREE, changes, angle=angle)
 
 
 def _force(x: float, y: float) -> dict[str, Any]:
@@ -113,10 +117,24 @@ def _tube(name: str, title: str, *loads: dict[str, Any]) -> Scene:
         "effects": [*loads, {"pressure": _TUBE}, {"winding": TUBE_WINDING}],
         "output": _TUBE_OUTPUT,
     }
-    return Scene(name, title, "twisting", changes, axial=(4.0, 2.0), section=(1, 1), band=3.0)
+    return Scene(
+        name,
+        title,
+        "twisting",
+        changes,
+        axial=(4.0, 2.0),
+        section=(1, 1),
+        angle="twist_deg",
+        band=3.0,
+    )
 
 
 _TOUCHING = {"at_pressures": [f"{p / 2:g} kPa" for p in range(10, 210, 10)]}
+_LONG = {
+    "at_pressures": [f"{p} kPa" for p in range(10, 180, 10)],
+    "at_angles": ["90 deg", "180 deg", "270 deg", "360 deg"],
+    "stop_at_angle": "360 deg",
+}
 _BLOCKED = {"at_pressures": [f"{p} kPa" for p in range(10, 210, 10)]}
 _STRIPS = [
     {"pressure": {"to": "200 kPa"}},
@@ -126,12 +144,14 @@ _STRIPS = [
 _THUMB = {"at_pressures": [f"{p} kPa" for p in range(2, 26, 2)]}
 
 SCENES = (
-    _loaded("free", "free bending, 120 mm"),
+    dataclasses.replace(_loaded("free", "free bending, 120 mm"), band=1.0),
     _loaded("weight_down", "weight along −y", WEIGHT),
     _loaded("weight_up", "weight along +y", {"gravity": {"direction": "+y"}}),
     _loaded("weight_back", "weight along −z", {"gravity": {"direction": "-z"}}),
     _loaded("tip_down", "tip force 0.2 N along −y", _force(0.0, -0.2)),
-    _loaded("tip_side", "tip force 0.2 N along x", _force(0.2, 0.0)),
+    _loaded(
+        "tip_side", "tip force 0.2 N along x", _force(0.2, 0.0), angle="side_angle_deg"
+    ),
     _loaded("tip_after", "the force along −y after the pressure", _force(0.0, -0.2), after=True),
     _loaded(
         "tip_moment",
@@ -139,7 +159,9 @@ SCENES = (
         {"tip-load": {"moment": ["50 N mm", "0 N mm", "0 N mm"]}},
     ),
     _loaded("tip_mass", "tip mass 20 g, weight along −y", WEIGHT, {"tip-mass": {"mass": "20 g"}}),
-    Scene("long", "free bending, 160 mm to 360°", FREE, {}, (4.0, 2.0), (1, 1), "angle_deg"),
+    Scene("long", "free bending, 160 mm to 360°", FREE, {"output": _LONG}, (4.0, 2.0), (1, 1),
+        band=1.0,
+    ),
     Scene(
         "bar", "around a bar", "grasp", {"output": _TOUCHING}, (4.0, 2.0), (1, 1),
         obstacle="cylinder",
@@ -150,11 +172,12 @@ SCENES = (
     ),
     Scene(
         "blocked", "between roof and post", "blocked_contact", {"output": _BLOCKED}, (4.0, 2.0),
-        (1, 1), obstacle="post",
+        (1, 1), obstacle="post", force_band=0.1,
     ),
     Scene(
         "strips", "kept straight by strips", "blocked_tip",
         {"effects": _STRIPS, "output": _BLOCKED}, (4.0, 2.0), (1, 1),
+        obstacle="tip_force_N", force_band=0.1,
     ),
     _tube("tube", "a tube that twists"),
     _tube("tube_weight", "the tube, weight along −y", WEIGHT),
