@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from fiberbend.case.case import Case, Mesh
 from fiberbend.case.zones import path_of, zone_cases
-from fiberbend.columns import ELEMENTS, RUN
-from fiberbend.effects.effect import ZONES, mirror_breakers
+from fiberbend.columns import ELEMENTS, RUN, SOLVED
+from fiberbend.effects.effect import ZONES
+from fiberbend.effects.records import mirror_breakers
 from fiberbend.models.costs.price import Price, price
 from fiberbend.models.costs.size import ProblemSize as ProblemSize
 from fiberbend.models.costs.size import thread_mb
@@ -92,6 +93,8 @@ class ModelKind(ABC):
     """Groups of columns of history.csv, see `fiberbend.columns`; others are refused."""
     line: ClassVar[str] = ""
     """Where it has no elements: its name among `fiberbend.models.closed_form.analytic_curves`."""
+    slender: ClassVar[bool] = False
+    """It is a rod by the law of its section, without elements of its own."""
     ends: ClassVar[bool] = False
     """It has the caps, and the bend near them."""
     gives_blocked_force: ClassVar[bool] = False
@@ -225,7 +228,7 @@ class ModelKind(ABC):
 class MeshedModel(ModelKind):
     """A model of finite elements."""
 
-    fills = frozenset({RUN, ELEMENTS})
+    fills = frozenset({RUN, SOLVED, ELEMENTS})
     shared: ClassVar[bool] = False
     """All ranks solve it together; else one rank does."""
     resumes: ClassVar[bool] = False
