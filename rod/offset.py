@@ -1,4 +1,4 @@
-"""A law whose strains are apart from those of another by what a pressure makes of its piece."""
+"""A law whose strains are apart from those of another by what a pressure makes of the pieces."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ class Offset:
 
     Attributes:
         law: of the forces.
-        coefficients: c, (d, m), a row for each power of P in MPa, by the free strains.
+        coefficients: c by power of P in MPa, piece and free strain, (d, n, m); or (d, m), of any
+            piece.
     """
 
     law: Law
     coefficients: Floats
 
     def _moved(self, pressure: float) -> tuple[Floats, Floats, Floats]:
-        """δ and its first two derivatives by P, (m,) each."""
+        """δ and its first two derivatives by P, (n, m) or (m,) each."""
         power = 1.0 + np.arange(len(self.coefficients))
         value = pressure**power
         slope = power * pressure ** (power - 1)
         # of the first power none, also where P is zero
         bent = power * (power - 1) * pressure ** np.maximum(power - 2, 0.0)
-        return (
-            value @ self.coefficients,
-            slope @ self.coefficients,
-            bent @ self.coefficients,
+        moved, first, second = (
+            np.tensordot(each, self.coefficients, 1) for each in (value, slope, bent)
         )
+        return moved, first, second
 
     def value(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""
@@ -55,7 +55,7 @@ class Offset:
         moved, slope, _ = self._moved(pressure)
         here = strains - moved
         own = self.law.chamber(here, pressure)
-        out: Floats = own + self.law.gradient(here, pressure) @ slope
+        out: Floats = own + np.sum(self.law.gradient(here, pressure) * slope, axis=1)
         return out
 
     def chamber_gradient(self, strains: Floats, pressure: float) -> Floats:
@@ -63,19 +63,25 @@ class Offset:
         moved, slope, _ = self._moved(pressure)
         here = strains - moved
         own = self.law.chamber_gradient(here, pressure)
-        out: Floats = own + self.law.hessian(here, pressure) @ slope
+        out: Floats = own + _times(self.law.hessian(here, pressure), slope)
         return out
 
     def chamber_slope(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""
         moved, slope, bent = self._moved(pressure)
         here = strains - moved
-        stiff = slope @ self.law.hessian(here, pressure) @ slope
-        cross = self.law.chamber_gradient(here, pressure) @ slope
+        cross = 2 * self.law.chamber_gradient(here, pressure)
+        cross = cross + _times(self.law.hessian(here, pressure), slope)
+        forces = self.law.gradient(here, pressure)
         own = self.law.chamber_slope(here, pressure)
-        out: Floats = own - 2 * cross - stiff + self.law.gradient(here, pressure) @ bent
+        out: Floats = own + np.sum(forces * bent - cross * slope, axis=1)
         return out
 
     def outside(self, strains: Floats, pressure: float) -> str:
         """See `rod.law.Law`: of the law of the forces."""
         return self.law.outside(strains - self._moved(pressure)[0], pressure)
+
+
+def _times(matrices: Floats, vectors: Floats) -> Floats:
+    """Products of (n, m, m) with (n, m) or (m,), (n, m)."""
+    return np.einsum("nij,nj->ni", matrices, np.broadcast_to(vectors, matrices.shape[:2]))

@@ -87,7 +87,12 @@ WEIGHT = {"gravity": {"direction": "-y"}}
 
 
 def _loaded(
-    name: str, title: str, *loads: dict[str, Any], after: bool = False, angle: str = "angle_deg"
+    name: str,
+    title: str,
+    *loads: dict[str, Any],
+    after: bool = False,
+    angle: str = "angle_deg",
+    finer: int = 2,
 ) -> Scene:
     """The short baseline under loads that act before the pressure, or after it."""
     inflation = {"pressure": {"to": LOADED}}
@@ -99,7 +104,7 @@ def _loaded(
     }
     if WEIGHT.keys() & {key for load in loads for key in load}:
         changes["materials"] = WITH_WEIGHT
-    return Scene(name, title, FREE, changes, angle=angle)
+    return Scene(name, title, FREE, changes, section=(1, finer), angle=angle)
 
 
 def _force(x: float, y: float) -> dict[str, Any]:
@@ -148,9 +153,9 @@ SCENES = (
     _loaded("weight_down", "weight along −y", WEIGHT),
     _loaded("weight_up", "weight along +y", {"gravity": {"direction": "+y"}}),
     _loaded("weight_back", "weight along −z", {"gravity": {"direction": "-z"}}),
-    _loaded("tip_down", "tip force 0.2 N along −y", _force(0.0, -0.2)),
+    _loaded("tip_down", "tip force 0.2 N along −y", _force(0.0, -0.2), finer=1),
     _loaded(
-        "tip_side", "tip force 0.2 N along x", _force(0.2, 0.0), angle="side_angle_deg"
+        "tip_side", "tip force 0.2 N along x", _force(0.2, 0.0), angle="side_angle_deg", finer=1
     ),
     _loaded("tip_after", "the force along −y after the pressure", _force(0.0, -0.2), after=True),
     _loaded(

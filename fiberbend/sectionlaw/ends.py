@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from fiberbend.trial.wanted import Point, Wanted
 from fiberbend.uniform.small import Small
 from rod.functions import Floats
 from rod.law import Law
+from rod.layout import Layout
 from rod.offset import Offset
 
 PARTS = ("root cap", "root end", "tip end", "tip cap")
@@ -56,17 +57,29 @@ class Ends:
         out: Floats = powers @ self.coefficients[PARTS.index(part)]
         return out
 
-    def offset(self, law: Law, part: str, length: float, strains: Sequence[str]) -> Offset:
-        """The law of a part with what it has beside the forces, spread evenly over it.
+    def offset(self, law: Law, layout: Layout, chamber: slice) -> Offset:
+        """The law of a rod with what its ends have beside the forces, spread evenly over each part.
 
         Args:
-            law: of the forces.
-            part: one of `PARTS`.
-            length: of the part at rest, mm.
-            strains: that are free, of `_STRAINS`; what others would have is left out.
+            law: of the forces, of all pieces.
+            layout: of the rod; what strains that are not free would have is left out.
+            chamber: its pieces between the caps.
         """
-        columns = [_STRAINS.index(name) for name in strains]
-        return Offset(law, self.coefficients[PARTS.index(part)][:, columns] / length)
+        lengths, (pieces, count) = layout.lengths, layout.shape
+        reach = np.cumsum(lengths[chamber])
+        near = int(np.argmin(np.abs(reach - self.zone))) + 1
+        near = max(1, min(near, len(reach) // 2))
+        borders = (0, chamber.start, chamber.start + near, chamber.stop - near, chamber.stop)
+        parts = [slice(*borders[:2]), slice(*borders[1:3]), slice(*borders[3:])]
+        parts.append(slice(chamber.stop, pieces))
+        columns = [_STRAINS.index(name) if name in _STRAINS else -1 for name in layout.strains]
+        added = np.zeros((self.coefficients.shape[1], pieces, count))
+        for part, coefficients in zip(parts, self.coefficients, strict=True):
+            for place, column in enumerate(columns):
+                if column >= 0:
+                    each = coefficients[:, column] / lengths[part].sum()
+                    added[:, part, place] = each[:, None]
+        return Offset(law, added)
 
     def packed(self) -> bytes:
         """As a JSON file."""

@@ -33,21 +33,29 @@ def law() -> Offset:
     return Offset(own, COEFFICIENTS)
 
 
-def test_derivatives_are_those_of_differences(law: Offset) -> None:
+@pytest.fixture(params=[COEFFICIENTS, np.stack([COEFFICIENTS, 2 * COEFFICIENTS], axis=1)])
+def each(request: pytest.FixtureRequest, law: Offset) -> Offset:
+    """The same of all pieces, and one for each."""
+    return Offset(law.law, request.param)
+
+
+def test_derivatives_are_those_of_differences(each: Offset) -> None:
     for number in range(2):
         away = TINY * np.eye(2)[number] * (1.0, 0.01)[number]
         size = away[number]
-        slope = (law.value(STRAINS + away, PRESSURE) - law.value(STRAINS - away, PRESSURE)) / 2
-        assert slope / size == pytest.approx(law.gradient(STRAINS, PRESSURE)[:, number], rel=1e-6)
-        bend = (law.gradient(STRAINS + away, PRESSURE) - law.gradient(STRAINS - away, PRESSURE)) / 2
-        assert bend / size == pytest.approx(law.hessian(STRAINS, PRESSURE)[:, number], rel=1e-6)
+        slope = (each.value(STRAINS + away, PRESSURE) - each.value(STRAINS - away, PRESSURE)) / 2
+        assert slope / size == pytest.approx(each.gradient(STRAINS, PRESSURE)[:, number], rel=1e-6)
+        bend = (
+            each.gradient(STRAINS + away, PRESSURE) - each.gradient(STRAINS - away, PRESSURE)
+        ) / 2
+        assert bend / size == pytest.approx(each.hessian(STRAINS, PRESSURE)[:, number], rel=1e-6)
     more, less = PRESSURE + TINY, PRESSURE - TINY
-    area = -(law.value(STRAINS, more) - law.value(STRAINS, less)) / (2 * TINY)
-    assert area == pytest.approx(law.chamber(STRAINS, PRESSURE), rel=1e-7)
-    mixed = -(law.gradient(STRAINS, more) - law.gradient(STRAINS, less)) / (2 * TINY)
-    assert mixed == pytest.approx(law.chamber_gradient(STRAINS, PRESSURE), rel=1e-6)
-    slope = (law.chamber(STRAINS, more) - law.chamber(STRAINS, less)) / (2 * TINY)
-    assert slope == pytest.approx(law.chamber_slope(STRAINS, PRESSURE), rel=1e-5)
+    area = -(each.value(STRAINS, more) - each.value(STRAINS, less)) / (2 * TINY)
+    assert area == pytest.approx(each.chamber(STRAINS, PRESSURE), rel=1e-7)
+    mixed = -(each.gradient(STRAINS, more) - each.gradient(STRAINS, less)) / (2 * TINY)
+    assert mixed == pytest.approx(each.chamber_gradient(STRAINS, PRESSURE), rel=1e-6)
+    slope = (each.chamber(STRAINS, more) - each.chamber(STRAINS, less)) / (2 * TINY)
+    assert slope == pytest.approx(each.chamber_slope(STRAINS, PRESSURE), rel=1e-5)
 
 
 def test_without_pressure_it_is_the_law(law: Offset) -> None:

@@ -17,6 +17,7 @@ from fiberbend.trial.solve import solve
 from fiberbend.trial.wanted import Wanted
 from fiberbend.uniform.small import Small
 from rod.law import Linear
+from rod.layout import Layout
 from tests.trial.cases import Data, checked, shipped, under
 
 GREATEST = 0.06
@@ -107,11 +108,20 @@ def test_what_is_damaged_is_made_anew(free: Ends, tmp_path: Path) -> None:
     assert "damaged" in store.remarks[-1]
 
 
-def test_the_offset_of_a_law_is_spread_over_its_part(free: Ends) -> None:
-    law = Linear(np.diag([100.0, 4000.0]), np.array([1.0, 0.0]))
-    part = free.offset(law, "root cap", 15.0, ("stretch", "curvature"))
-    alone = np.array([[1.0, 0.0]]) + free.added("root cap", GREATEST)[:2] / 15.0
-    assert np.abs(part.gradient(alone, GREATEST)).max() < 1e-12
+@pytest.mark.parametrize("strains", [("stretch", "curvature"), ("shear_y", "curvature", "twist")])
+def test_the_offset_of_a_law_is_spread_over_its_parts(free: Ends, strains: tuple[str, ...]) -> None:
+    lengths = np.array([7.5] * 2 + [5.0] * 12 + [15.0])
+    layout = Layout(lengths, strains)
+    law = Linear(np.diag(np.linspace(100.0, 4000.0, len(strains))), layout.at_rest()[0])
+    found = free.offset(law, layout, slice(2, 14))
+    forces = found.gradient(layout.at_rest(), GREATEST)
+    # from rest to where no force acts
+    alone = -np.linalg.solve(law.hessian(layout.at_rest(), GREATEST), forces[..., None])[..., 0]
+    turns = lengths * alone[:, strains.index("curvature")]
+    parts = [turns[:2].sum(), turns[2:5].sum(), turns[11:14].sum(), turns[14]]
+    for part, turn in zip(PARTS, parts, strict=True):
+        assert turn == pytest.approx(free.added(part, GREATEST)[1], rel=1e-12)
+    assert not turns[5:11].any()
 
 
 def test_zones_are_refused() -> None:
