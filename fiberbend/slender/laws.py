@@ -19,11 +19,6 @@ ERROR = 1e-3
 """Of the table of a section, as `fiberbend.sectionlaw.table.table_of` has it."""
 
 
-WIDE = 3.0
-"""Times the usual margins of its range: the weight of the baseline bends its root two and a half
-times as far as it bends the whole."""
-
-
 @dataclasses.dataclass(frozen=True)
 class SectionLaw:
     """The law of the section between the caps.
@@ -62,11 +57,13 @@ def section_law(case: Case) -> SectionLaw:
     from fiberbend.slender.beside import section_case
 
     store = Store()
-    made = table_of(section_case(case), ERROR, 0.0, store, WIDE)
+    made = table_of(section_case(case), ERROR, None, store)
     known = made.checked
     return SectionLaw(
         law=made.law,
-        free=np.array([(pressure, *state) for pressure, state in made.free]),
+        free=np.array(
+            [(pressure, state.stretch, state.curvature) for pressure, state in made.free]
+        ),
         model=made.model,
         states=made.solved,
         seconds=made.seconds,
