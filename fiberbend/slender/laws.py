@@ -72,13 +72,13 @@ def section_law(case: Case) -> SectionLaw:
     )
 
 
-def along(case: Case, made: SectionLaw, cap: Law, layout: Layout, chamber: slice) -> Law:
+def along(case: Case, made: SectionLaw, cap: Linear, layout: Layout, chamber: slice) -> Law:
     """The law of each piece: of chamber and caps, with the turns of their ends under pressure.
 
     Args:
         case: of model rod.
         made: the law of its section.
-        cap: the law of its caps.
+        cap: the law of its caps as beams; the clamp makes that at the root stiffer.
         layout: pieces of the rod.
         chamber: those between the caps.
 
@@ -89,12 +89,15 @@ def along(case: Case, made: SectionLaw, cap: Law, layout: Layout, chamber: slice
     from fiberbend.slender.beside import section_case
 
     ends = ends_of(section_case(case), float(made.free[:, 0].max()))
-    inside = np.zeros(len(layout.lengths), dtype=int)
-    inside[chamber] = 1
-    return ends.offset(Zones((cap, made.law), inside.tolist()), layout, chamber)
+    count, place = len(layout.lengths), layout.strains.index("curvature")
+    beam = float(layout.lengths[: chamber.start].sum()) * np.linalg.inv(cap.stiffness)[place, place]
+    root = dataclasses.replace(cap, stiffness=cap.stiffness * (beam / ends.flexibility))
+    borders = (0, chamber.start, chamber.stop, count)
+    pieces = np.repeat(np.arange(3), np.diff(borders)).tolist()
+    return ends.offset(Zones((root, made.law, cap), pieces), layout, chamber)
 
 
-def cap_law(case: Case, section: Section, strains: tuple[str, ...]) -> Law:
+def cap_law(case: Case, section: Section, strains: tuple[str, ...]) -> Linear:
     """The law of a solid cap: each material along the axis by its modulus at rest.
 
     A line at (x, y) from the line of centroids stretches by λ + k_x y − k_y x; the materials side

@@ -13,6 +13,8 @@ from fiberbend.schema.problems import CaseError
 from fiberbend.sectionlaw import ends
 from fiberbend.sectionlaw.ends import PARTS, Ends, ends_of, unpacked
 from fiberbend.sectionlaw.store import Store
+from fiberbend.slender.laws import cap_law
+from fiberbend.slender.moments import section_of
 from fiberbend.trial.solve import solve
 from fiberbend.trial.wanted import Wanted
 from fiberbend.uniform.small import Small
@@ -69,6 +71,13 @@ def test_ends_turn_in_the_plane_of_bending_alone(free: Ends) -> None:
         assert turns[0] > 0.005
         assert np.abs(turns[1:]).max() < 1e-9
         assert not free.added(part, 0.0).any()
+
+
+def test_the_clamp_makes_the_root_stiffer_than_a_beam(free: Ends) -> None:
+    case = checked(FREE)
+    beam = cap_law(case, section_of(case), ("stretch", "curvature"))
+    turn = 15.0 * np.linalg.inv(beam.stiffness)[1, 1]
+    assert free.flexibility == pytest.approx(turn / 1.15, rel=0.02)
 
 
 def test_a_tube_turns_about_its_line_and_its_mirror_image_the_other_way(store: Store) -> None:
