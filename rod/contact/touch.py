@@ -139,6 +139,11 @@ class Touch:
 
     # --- the term ----------------------------------------------------------------------------------
 
+    @property
+    def conservative(self) -> bool:
+        """See `rod.term.Term`."""
+        return True
+
     def potential(self, shape: Shape, amount: float) -> float:
         """Π, N mm."""
         shift, share = self._moved(amount)
