@@ -11,14 +11,13 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
 from rod.contact.obstacles import Obstacle
+from rod.contact.points import Points, placed
 from rod.contact.skin import Skin
-from rod.contact.split import Split
-from rod.functions import Floats, Ints, cross_matrix
+from rod.functions import Floats
 from rod.shape import Shape
 
 ROUND_OFF = 1e-12
@@ -45,17 +44,8 @@ class Touched:
     gap: float
 
 
-class _Points(NamedTuple):
-    """Points of the skin that may touch."""
-
-    which: Ints
-    """In the skin, (q,)."""
-    x: Floats
-    """Places in space, (q, 3), mm."""
-
-
 class Touch:
-    """An obstacle and a rod's surface; a `rod.term.Term`.
+    """An obstacle and a rod's surface; a `rod.term.Iterated`.
 
     The amount is the share of the stiffness; with a `travel` it is a distance in mm by which the
     obstacle has moved along it, and the stiffness is whole.
@@ -67,9 +57,14 @@ class Touch:
         travel: direction in which the obstacle is moved, of any length above zero.
         keeps: the points stick to the surface: they are pulled as well as pushed.
 
+    Attributes:
+        conservative: it is the derivative of its potential.
+
     Raises:
         ValueError: a stiffness that is not positive, a travel without direction.
     """
+
+    conservative = True
 
     def __init__(
         self,
@@ -81,9 +76,8 @@ class Touch:
     ) -> None:
         if not stiffness > 0:
             raise ValueError(f"contact stiffness {stiffness} MPa/mm, expected a positive value")
-        self.skin, self.obstacle, self.stiffness = skin, obstacle, stiffness
-        self.keeps = keeps
-        self._reach = skin.reach
+        self._skin, self._obstacle, self._stiffness = skin, obstacle, stiffness
+        self._keeps, self._reach = keeps, skin.reach
         self._travel: Floats | None = None
         if travel is not None:
             way = np.asarray(travel, dtype=float)
@@ -92,153 +86,191 @@ class Touch:
                 raise ValueError(f"travel of an obstacle: a direction expected, not {travel}")
             self._travel = way / size
 
-    # --- what touches ------------------------------------------------------------------------------
-
-    def _moved(self, amount: float) -> tuple[Floats | float, float]:
-        """By how much the obstacle has moved, mm, and the share of its stiffness."""
-        return (0.0, amount) if self._travel is None else (amount * self._travel, 1.0)
-
-    def _points(self, shape: Shape, shift: Floats | float) -> _Points:
-        """Those of pieces that are near enough to touch."""
-        skin = self.skin
-        if self.keeps:
-            stations = np.arange(len(skin.pieces))
-        else:
-            # a point is no further from the nearer end of its piece than half an arc and its arm
-            away = self.obstacle.gap(shape.places - shift)
-            arm = self._reach + shape.arcs / 2
-            close = np.minimum(away[:-1], away[1:]) <= arm * (1 + ROUND_OFF)
-            stations = np.flatnonzero(close[skin.pieces])
-            if not len(stations):
-                return _Points(np.empty(0, dtype=np.intp), np.empty((0, 3)))
-        return self._placed(shape, stations)
-
-    def _placed(self, shape: Shape, stations: Ints) -> _Points:
-        """Points of stations in space."""
-        skin = self.skin
-        frames = shape.between(skin.pieces[stations], skin.parts[stations])
-        row = np.full(len(skin.pieces), -1, dtype=np.intp)
-        row[stations] = np.arange(len(stations))
-        row = row[skin.station]
-        which = np.flatnonzero(row >= 0)
-        at = frames[row[which]]
-        x = np.einsum("pij,pj->pi", at[:, :, :2], skin.places[which]) + at[..., 3]
-        return _Points(which, x)
-
-    def _depths(self, shape: Shape, shift: Floats | float) -> tuple[_Points, Floats]:
-        """Points that touch, and their depths in mm."""
-        points = self._points(shape, shift)
-        if not len(points.which):
-            return points, np.empty(0)
-        nearer = ROUND_OFF * shape.layout.lengths.sum()
-        depth = nearer - self.obstacle.gap(points.x - shift)
-        if self.keeps:
-            return points, depth
-        deep = depth > 0
-        return _Points(points.which[deep], points.x[deep]), depth[deep]
-
     # --- the term ----------------------------------------------------------------------------------
-
-    @property
-    def conservative(self) -> bool:
-        """See `rod.term.Term`."""
-        return True
 
     def potential(self, shape: Shape, amount: float) -> float:
         """Π, N mm."""
-        shift, share = self._moved(amount)
-        points, depth = self._depths(shape, shift)
-        return share * self.stiffness / 2 * float(self.skin.areas[points.which] @ depth**2)
+        points, depth = self._deep(shape, amount)
+        return self._share(amount) * self._stiffness / 2 * float(points.areas @ depth**2)
 
     def residual(self, shape: Shape, amount: float) -> Floats:
         """∂Π/∂ε, (n, m)."""
-        shift, share = self._moved(amount)
-        points, depth = self._depths(shape, shift)
-        if not len(depth):
-            return np.zeros(shape.layout.shape)
-        push = -share * self.stiffness * self.skin.areas[points.which] * depth
-        force = push[:, None] * self.obstacle.near(points.x - shift).normal
-        split, frame = self._split(shape, points)
-        return split.gathered(split.fine.pulled(self._loads(split, frame, points, force)))
+        return self.pressed(*self._deep(shape, amount), amount)
 
     def tangent(self, shape: Shape, amount: float) -> Floats:
         """∂²Π/∂ε², (n m, n m)."""
-        shift, share = self._moved(amount)
-        points, depth = self._depths(shape, shift)
-        count = shape.strains.size
-        if not len(depth):
-            return np.zeros((count, count))
-        near = self.obstacle.near(points.x - shift)
-        stiff = share * self.stiffness * self.skin.areas[points.which]
-        force = -(stiff * depth)[:, None] * near.normal
-        spring = stiff[:, None, None] * _square(near.normal)
-        spring = spring - (stiff * depth)[:, None, None] * near.bend
-        split, frame = self._split(shape, points)
-        arm = cross_matrix(points.x)
-        blocks = np.zeros((len(split.fine.places), 6, 6))
-        turned = spring @ arm
-        np.add.at(blocks[:, :3, :3], frame, spring)
-        np.add.at(blocks[:, :3, 3:], frame, -turned)
-        np.add.at(blocks[:, 3:, :3], frame, -np.swapaxes(turned, 1, 2))
-        np.add.at(blocks[:, 3:, 3:], frame, np.swapaxes(arm, 1, 2) @ turned)
-        loads = self._loads(split, frame, points, force)
-        return split.matrix(split.fine.stiffened(blocks) + split.fine.curved(loads))
+        points, depth = self._deep(shape, amount)
+        return self.stiffened(points, self._share(amount) * self._stiffness * depth, amount)
 
     def growth(self, shape: Shape, amount: float) -> Floats:
         """Derivative of the residual by the amount, (n, m)."""
-        if self._travel is None:
-            return self.residual(shape, 1.0)
-        shift, _ = self._moved(amount)
-        points, depth = self._depths(shape, shift)
-        if not len(depth):
-            return np.zeros(shape.layout.shape)
-        near = self.obstacle.near(points.x - shift)
-        stiff = self.stiffness * self.skin.areas[points.which]
-        along = near.normal @ self._travel
-        change = (stiff * depth)[:, None] * (near.bend @ self._travel)
-        change -= (stiff * along)[:, None] * near.normal
-        split, frame = self._split(shape, points)
-        return split.gathered(split.fine.pulled(self._loads(split, frame, points, change)))
+        return self.grown(*self._deep(shape, amount), amount)
 
-    def _split(self, shape: Shape, points: _Points) -> tuple[Split, Ints]:
-        """The rod split where points touch, and the frame of each point."""
-        skin = self.skin
-        stations, back = np.unique(skin.station[points.which], return_inverse=True)
-        split = Split(shape, skin.pieces[stations], skin.parts[stations])
-        return split, split.frames[back]
-
-    def _loads(self, split: Split, frame: Ints, points: _Points, force: Floats) -> Floats:
-        """Forces at points as loads on the frames, (·, 3, 4)."""
-        arms = np.zeros((len(frame), 4))
-        arms[:, :2], arms[:, 3] = self.skin.places[points.which], 1.0
-        out = np.zeros_like(split.fine.frames)
-        np.add.at(out, frame, force[:, :, None] * arms[:, None, :])
-        return out
+    def iterate(self, before: Shape, amount: float) -> Pressed:
+        """See `rod.term.Iterated`."""
+        points, depth = self._deep(before, amount)
+        pressure = np.zeros(len(self._skin.station))
+        pressure[points.which] = self._share(amount) * self._stiffness * depth
+        return Pressed(self, pressure)
 
     # --- what it has done --------------------------------------------------------------------------
 
     def gap(self, shape: Shape, amount: float) -> float:
         """Least distance of a point from the obstacle, mm; negative inside."""
-        shift, _ = self._moved(amount)
-        points = self._placed(shape, np.arange(len(self.skin.pieces)))
-        return float(self.obstacle.gap(points.x - shift).min())
+        points = placed(self._skin, shape, np.arange(len(self._skin.pieces)))
+        return float(self._obstacle.gap(points.x - self._shift(amount)).min())
 
     def touched(self, shape: Shape, amount: float) -> Touched:
         """Forces on the rod, and where it touches."""
-        shift, share = self._moved(amount)
-        points, depth = self._depths(shape, shift)
-        push = share * self.stiffness * self.skin.areas[points.which] * depth
-        force = push[:, None] * self.obstacle.near(points.x - shift).normal
-        stations = np.unique(self.skin.station[points.which])
+        points, depth = self._deep(shape, amount)
+        push = self._share(amount) * self._stiffness * points.areas * depth
+        force = push[:, None] * self._obstacle.near(points.x - self._shift(amount)).normal
         return Touched(
             force.sum(axis=0),
             np.cross(points.x, force).sum(axis=0),
-            float(self.skin.areas[points.which].sum()),
-            float(self.skin.lengths[stations].sum()),
+            float(points.areas.sum()),
+            float(self._skin.lengths[points.stations].sum()),
             self.gap(shape, amount),
         )
 
+    # --- by points and their depths ----------------------------------------------------------------
 
-def _square(vectors: Floats) -> Floats:
-    out: Floats = vectors[:, :, None] * vectors[:, None, :]
-    return out
+    def _shift(self, amount: float) -> Floats:
+        """By how much the obstacle has moved, (3,), mm."""
+        return np.zeros(3) if self._travel is None else amount * self._travel
+
+    def _share(self, amount: float) -> float:
+        """Of the stiffness that acts."""
+        return amount if self._travel is None else 1.0
+
+    def close(self, shape: Shape, amount: float) -> tuple[Points, Floats]:
+        """Points of pieces that are near enough to touch, and their depths in mm."""
+        skin, shift = self._skin, self._shift(amount)
+        stations = np.arange(len(skin.pieces))
+        if not self._keeps:
+            # a point is no further from the nearer end of its piece than half an arc and its arm
+            away = self._obstacle.gap(shape.places - shift)
+            arm = self._reach + shape.arcs / 2
+            close = np.minimum(away[:-1], away[1:]) <= arm * (1 + ROUND_OFF)
+            stations = np.flatnonzero(close[skin.pieces])
+        points = placed(skin, shape, stations)
+        if not len(stations):
+            return points, np.zeros(0)
+        nearer = ROUND_OFF * float(shape.layout.lengths.sum())
+        return points, nearer - self._obstacle.gap(points.x - shift)
+
+    def held(self, points: Points, depth: Floats, pressure: Floats) -> tuple[Points, Floats]:
+        """Points that are inside or pressed, and their depths.
+
+        Args:
+            points: near ones.
+            depth: of them, mm.
+            pressure: of them, MPa.
+        """
+        if self._keeps:
+            return points, depth
+        touches = (depth > 0) | (pressure > 0)
+        return points.only(touches), depth[touches]
+
+    def _deep(self, shape: Shape, amount: float) -> tuple[Points, Floats]:
+        """Points that touch, and their depths."""
+        points, depth = self.close(shape, amount)
+        return self.held(points, depth, np.zeros(len(depth)))
+
+    def pressed(self, points: Points, depth: Floats, amount: float) -> Floats:
+        """Residual by depths of points, (n, m)."""
+        push = self._share(amount) * self._stiffness * points.areas * depth
+        normal = self._obstacle.near(points.x - self._shift(amount)).normal
+        return points.pulled(-push[:, None] * normal)
+
+    def stiffened(self, points: Points, pressure: Floats, amount: float) -> Floats:
+        """Its derivative by the strains at pressures of the points, (n m, n m)."""
+        near = self._obstacle.near(points.x - self._shift(amount))
+        stiff = self._share(amount) * self._stiffness * points.areas
+        push = points.areas * pressure
+        spring = stiff[:, None, None] * near.normal[:, :, None] * near.normal[:, None, :]
+        spring -= push[:, None, None] * near.bend
+        return points.stiffened(-push[:, None] * near.normal, spring)
+
+    def grown(self, points: Points, depth: Floats, amount: float) -> Floats:
+        """Its derivative by the amount, (n, m)."""
+        if self._travel is None:
+            return self.pressed(points, depth, 1.0)
+        near = self._obstacle.near(points.x - self._shift(amount))
+        stiff = self._stiffness * points.areas
+        change = (stiff * depth)[:, None] * (near.bend @ self._travel)
+        change -= (stiff * (near.normal @ self._travel))[:, None] * near.normal
+        return points.pulled(change)
+
+    def pressures(
+        self, points: Points, depth: Floats, amount: float, change: Floats, grows: float
+    ) -> Floats:
+        """Pressures of points after a step, by the first order of their depths, (q,), MPa.
+
+        Args:
+            points: as of `held`.
+            depth: of them, mm.
+            amount: before the step.
+            change: of the strains, (n, m).
+            grows: change of the amount.
+        """
+        normal = self._obstacle.near(points.x - self._shift(amount)).normal
+        way = points.moved(change)
+        if self._travel is not None:
+            way = way - grows * self._travel
+        deeper = depth - np.sum(normal * way, axis=1)
+        pressure: Floats = self._share(amount) * self._stiffness * deeper
+        return pressure
+
+
+class Pressed:
+    """A `Touch` within Newton's method: pressures of points are unknowns beside the strains.
+
+    With p = k d where something is pressed and p = 0 elsewhere, a step gives p = k (d − ∇g·δε) of
+    the points that are held to touch: those that are pressed already, or are inside (the active set
+    of Hintermüller, Ito and Kunisch 2002, doi 10.1137/S1052623401383558, for c → 0). What turns
+    leaves the straight line of a step by the square of an angle times a lever, many times a depth:
+    by depths alone a step would lose what touches, and the next one find nothing there.
+
+    Args:
+        touch: the term.
+        pressure: p of each point of its skin, MPa.
+
+    Attributes:
+        conservative: as the term.
+    """
+
+    conservative = True
+
+    def __init__(self, touch: Touch, pressure: Floats) -> None:
+        self._touch, self._pressure = touch, pressure
+
+    def _held(self, shape: Shape, amount: float) -> tuple[Points, Floats]:
+        points, depth = self._touch.close(shape, amount)
+        return self._touch.held(points, depth, self._pressure[points.which])
+
+    def potential(self, shape: Shape, amount: float) -> float:
+        """Of the term."""
+        return self._touch.potential(shape, amount)
+
+    def residual(self, shape: Shape, amount: float) -> Floats:
+        """With the depths, or heights, of the points that are held to touch, (n, m)."""
+        return self._touch.pressed(*self._held(shape, amount), amount)
+
+    def tangent(self, shape: Shape, amount: float) -> Floats:
+        """With the pressures that are known, (n m, n m)."""
+        points, _ = self._held(shape, amount)
+        return self._touch.stiffened(points, self._pressure[points.which], amount)
+
+    def growth(self, shape: Shape, amount: float) -> Floats:
+        """See `rod.term.Term`."""
+        return self._touch.grown(*self._held(shape, amount), amount)
+
+    def stepped(self, shape: Shape, amount: float, change: Floats, grows: float) -> bool:
+        """See `rod.term.Iterate`."""
+        points, depth = self._held(shape, amount)
+        pressure = self._touch.pressures(points, depth, amount, change, grows)
+        before = self._pressure > 0
+        self._pressure = np.zeros_like(self._pressure)
+        self._pressure[points.which] = np.maximum(pressure, 0.0)
+        return bool(np.array_equal(before, self._pressure > 0))
