@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -28,7 +27,9 @@ _FAR = 2.0
 met."""
 _AWAY = 1.0
 """Greatest way from what a march foresees to the state that it finds."""
-_SMALLEST = 2.0**-10
+_SMALLEST = 2.0**-12
+_TOUCH = 1e-3
+"""Part of the way between two targets to which a touch is found."""
 _SYMMETRIC = 1e-10
 
 
@@ -221,10 +222,10 @@ class _Search:
     """
 
     def __init__(self, rod: Rod, shape: Shape, level: Level) -> None:
-        amounts = itertools.chain(level.amounts, itertools.repeat(0.0))
+        (amounts,) = _amounts(rod, level)
         self._iterates: dict[int, Iterate] = {
-            number: term.iterate(shape, amount)
-            for number, (term, amount) in enumerate(zip(rod.terms, amounts, strict=False))
+            number: term.iterate(shape, amounts[number])
+            for number, term in enumerate(rod.terms)
             if isinstance(term, Iterated)
         }
         if not self._iterates:
@@ -235,10 +236,7 @@ class _Search:
 
     def stepped(self, shape: Shape, level: Level, change: Floats, after: Level) -> bool:
         """Tells them of a step; whether none of them changed its mind."""
-        amounts, others = (
-            [*each.amounts, *[0.0] * (len(self.rod.terms) - len(each.amounts))]
-            for each in (level, after)
-        )
+        amounts, others = _amounts(self.rod, level, after)
         settled = [
             term.stepped(shape, amounts[number], change, others[number] - amounts[number])
             for number, term in self._iterates.items()
@@ -258,6 +256,22 @@ def unstable_modes(tangent: Floats) -> int:
     return 0
 
 
+@dataclasses.dataclass(frozen=True)
+class Step:
+    """A state of a march.
+
+    Attributes:
+        state: the equilibrium.
+        reached: it is at a target.
+        touches: places of the terms, among those of the rod, that the last state did not touch; it
+            is at most a thousandth of the way from target to target beyond the touch.
+    """
+
+    state: State
+    reached: bool
+    touches: tuple[int, ...]
+
+
 def march(
     rod: Rod,
     start: State | Floats,
@@ -265,7 +279,26 @@ def march(
     targets: Sequence[float],
     held: Held | None = None,
 ) -> list[State]:
+    """States along a path at targets in turn; see `steps`.
+
+    Raises:
+        NoEquilibriumError: the smallest step does not converge.
+    """
+    walked = steps(rod, start, path, targets, held)
+    return [step.state for step in walked if step.reached]
+
+
+def steps(
+    rod: Rod,
+    start: State | Floats,
+    path: Path,
+    targets: Sequence[float],
+    held: Held | None = None,
+) -> Iterator[Step]:
     """States along a path, each from the last two by extrapolation; steps are halved where needed.
+
+    A step on which something is touched for the first time ends there, and the next one starts
+    without what was foreseen before: a touch is a kink of the path.
 
     Args:
         rod: the rod.
@@ -274,8 +307,8 @@ def march(
         targets: shares, or with `held` its values, in turn.
         held: what is given in place of the share.
 
-    Returns:
-        The states at the targets.
+    Yields:
+        The states at the targets, at touches and on the way.
 
     Raises:
         NoEquilibriumError: the smallest step does not converge.
@@ -283,29 +316,65 @@ def march(
     strains, share = (start.strains, start.share) if isinstance(start, State) else (start, 0.0)
     now = share if held is None else held.value(rod, strains, path.at(share))
     known = [(now, strains, share)]
-    last = start if isinstance(start, State) else None
-    states = []
+    last = State(rod.shape(strains), path.at(share), share, 0, 0)
     for target in targets:
-        begin, part = known[-1][0], 1.0
-        done = 0.0
+        begin, part, done, beyond = known[-1][0], 1.0, 0.0, math.inf
         while done < 1.0:
-            part = min(part, 1.0 - done)
-            goal = target if done + part == 1.0 else begin + (done + part) * (target - begin)
+            ahead = min(part, 1.0 - done)
+            guess, at = _ahead(known, begin + (done + ahead) * (target - begin))
+            foreseen = rod.shape(guess), path.at(at)
+            meets = min((share for _, share in closing(rod, last, *foreseen)), default=1.0)
+            # to just before a touch, and from there to just beyond it; where that is missed, halfway
+            near = meets * ahead
+            near += -_TOUCH / 4 if near > _TOUCH * 3 / 4 else _TOUCH / 2
+            ahead = min(ahead, near if meets < 1.0 else 1.0, max((beyond - done) / 2, _TOUCH))
+            goal = target if done + ahead >= 1.0 else begin + (done + ahead) * (target - begin)
             guess, at = _ahead(known, goal)
             try:
                 state = solve(rod, guess, path, goal, held, at, last)
                 if way(rod, state.strains - guess) > _AWAY:
                     raise NoEquilibriumError(f"the state at {goal:.6g} is far from the last one")
             except NoEquilibriumError:
-                part /= 2
+                part = ahead / 2
                 if part < _SMALLEST:
                     raise
                 continue
-            known, last = [*known[-1:], (goal, state.strains, state.share)], state
-            done += part
-            part *= 2
-        states.append(state)
-    return states
+            touches = tuple(place for place, _ in closing(rod, last, state.shape, state.level))
+            if touches and ahead > _TOUCH:
+                beyond = done + ahead
+                continue
+            known = [*known[-1:], (goal, state.strains, state.share)][1 if touches else 0 :]
+            last, done, part, beyond = state, done + ahead, max(part, 2 * ahead), math.inf
+            yield Step(state, done >= 1.0, touches)
+
+
+def closing(rod: Rod, last: State, shape: Shape, level: Level) -> list[tuple[int, float]]:
+    """What the last state does not touch, but another one does.
+
+    Args:
+        rod: the rod.
+        last: the one that does not.
+        shape: of the other one.
+        level: there.
+
+    Returns:
+        Places among the rod's terms, and the parts of the way at which gaps close if they fall
+        evenly.
+    """
+    found = []
+    for place, (term, before, after) in enumerate(zip(rod.terms, *_amounts(rod, last.level, level))):
+        if not isinstance(term, Iterated):
+            continue
+        gap = term.gap(shape, after)
+        if gap < 0 <= (room := term.gap(last.shape, before)) < math.inf:
+            found.append((place, room / (room - gap)))
+    return found
+
+
+def _amounts(rod: Rod, *levels: Level) -> list[list[float]]:
+    """Of all terms at some levels."""
+    count = len(rod.terms)
+    return [[*level.amounts, *[0.0] * (count - len(level.amounts))] for level in levels]
 
 
 def _ahead(known: list[tuple[float, Floats, float]], goal: float) -> tuple[Floats, float]:

@@ -60,3 +60,9 @@ class Iterated(Term, Protocol):
             before: a state near by.
             amount: of it there.
         """
+
+    def gap(self, shape: Shape, amount: float) -> float:
+        """Below zero where it touches; else no more than what is left to a touch, mm.
+
+        Infinite where nothing is, or where it always touches.
+        """

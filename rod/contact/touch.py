@@ -113,9 +113,16 @@ class Touch:
         pressure[points.which] = self._share(amount) * self._stiffness * depth
         return Pressed(self, pressure)
 
+    def gap(self, shape: Shape, amount: float) -> float:
+        """See `rod.term.Iterated`."""
+        if self._keeps or not self._share(amount):
+            return math.inf
+        _, depth = self.close(shape, amount)
+        return -float(depth.max()) if len(depth) else float(self._room(shape, amount).min())
+
     # --- what it has done --------------------------------------------------------------------------
 
-    def gap(self, shape: Shape, amount: float) -> float:
+    def clearance(self, shape: Shape, amount: float) -> float:
         """Least distance of a point from the obstacle, mm; negative inside."""
         points = placed(self._skin, shape, np.arange(len(self._skin.pieces)))
         return float(self._obstacle.gap(points.x - self._shift(amount)).min())
@@ -130,7 +137,7 @@ class Touch:
             np.cross(points.x, force).sum(axis=0),
             float(points.areas.sum()),
             float(self._skin.lengths[points.stations].sum()),
-            self.gap(shape, amount),
+            self.clearance(shape, amount),
         )
 
     # --- by points and their depths ----------------------------------------------------------------
@@ -143,16 +150,19 @@ class Touch:
         """Of the stiffness that acts."""
         return amount if self._travel is None else 1.0
 
+    def _room(self, shape: Shape, amount: float) -> Floats:
+        """Lower bounds of the distances of all points of each piece, (n,), mm."""
+        # a point is no further from the nearer end of its piece than half an arc and its arm
+        away = self._obstacle.gap(shape.places - self._shift(amount))
+        reach = (self._reach + shape.arcs / 2) * (1 + ROUND_OFF)
+        return np.minimum(away[:-1], away[1:]) - reach
+
     def close(self, shape: Shape, amount: float) -> tuple[Points, Floats]:
         """Points of pieces that are near enough to touch, and their depths in mm."""
         skin, shift = self._skin, self._shift(amount)
         stations = np.arange(len(skin.pieces))
         if not self._keeps:
-            # a point is no further from the nearer end of its piece than half an arc and its arm
-            away = self._obstacle.gap(shape.places - shift)
-            arm = self._reach + shape.arcs / 2
-            close = np.minimum(away[:-1], away[1:]) <= arm * (1 + ROUND_OFF)
-            stations = np.flatnonzero(close[skin.pieces])
+            stations = np.flatnonzero((self._room(shape, amount) <= 0)[skin.pieces])
         points = placed(skin, shape, stations)
         if not len(stations):
             return points, np.zeros(0)
