@@ -70,15 +70,17 @@ def _outward(side: Side, way: float) -> Side:
     if side.center is not None:
         bx, by = side.center
         radius = math.dist(side.start, side.center)
-        ends = (
+        start, end = (
             (bx + (x - bx) * (1 + way / radius), by + (y - by) * (1 + way / radius))
             for x, y in (side.start, side.end)
         )
     else:
         dx, dy = (b - a for a, b in zip(side.start, side.end, strict=True))
         length = math.hypot(dx, dy)
-        ends = ((x - way * dy / length, y + way * dx / length) for x, y in (side.start, side.end))
-    return Side(side.name, *ends, side.center)
+        start, end = (
+            (x - way * dy / length, y + way * dx / length) for x, y in (side.start, side.end)
+        )
+    return Side(side.name, start, end, side.center)
 
 
 def _along(side: Side, spacing: float) -> list[Point]:

@@ -324,7 +324,7 @@ def steps(
             guess, at = _ahead(known, begin + (done + ahead) * (target - begin))
             foreseen = rod.shape(guess), path.at(at)
             meets = min((share for _, share in closing(rod, last, *foreseen)), default=1.0)
-            # to just before a touch, and from there to just beyond it; where that is missed, halfway
+            # to just before a touch, then to just beyond it; where that is missed, halfway
             near = meets * ahead
             near += -_TOUCH / 4 if near > _TOUCH * 3 / 4 else _TOUCH / 2
             ahead = min(ahead, near if meets < 1.0 else 1.0, max((beyond - done) / 2, _TOUCH))
@@ -362,7 +362,9 @@ def closing(rod: Rod, last: State, shape: Shape, level: Level) -> list[tuple[int
         evenly.
     """
     found = []
-    for place, (term, before, after) in enumerate(zip(rod.terms, *_amounts(rod, last.level, level))):
+    for place, (term, before, after) in enumerate(
+        zip(rod.terms, *_amounts(rod, last.level, level))
+    ):
         if not isinstance(term, Iterated):
             continue
         gap = term.gap(shape, after)

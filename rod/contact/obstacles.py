@@ -16,6 +16,7 @@ import numpy as np
 from rod.functions import Floats
 
 _EYE = np.eye(3)
+Vector = Sequence[float] | Floats
 _LEAST = 1e-9
 """Part of a radius: nearer to an axis a direction away from it is taken as it comes."""
 
@@ -45,7 +46,7 @@ class Obstacle(Protocol):
         """The same with its derivatives."""
 
 
-def _unit(vector: Sequence[float], what: str) -> Floats:
+def _unit(vector: Vector, what: str) -> Floats:
     v = np.asarray(vector, dtype=float)
     size = float(np.linalg.norm(v))
     if v.shape != (3,) or not (math.isfinite(size) and size > 0):
@@ -70,8 +71,8 @@ class Plane:
         ValueError: no normal.
     """
 
-    point: Sequence[float]
-    normal: Sequence[float]
+    point: Vector
+    normal: Vector
 
     def __post_init__(self) -> None:
         _unit(self.normal, "normal of a plane")
@@ -99,7 +100,7 @@ class Sphere:
         ValueError: a radius that is not positive.
     """
 
-    center: Sequence[float]
+    center: Vector
     radius: float
 
     def __post_init__(self) -> None:
@@ -132,8 +133,8 @@ class Cylinder:
         ValueError: no axis, a radius or a length that is not positive.
     """
 
-    center: Sequence[float]
-    axis: Sequence[float]
+    center: Vector
+    axis: Vector
     radius: float
     length: float = math.inf
 

@@ -1,8 +1,4 @@
-"""Points of a rod's surface in space: forces on them, springs, and how they move.
-
-A screw is the product of its parts: pieces that are split with the same strains are the same rod.
-What a finer `Shape` knows of forces on its frames is exact for any place along a piece.
-"""
+"""Points of a rod's surface in space: forces on them, springs, and how they move."""
 
 from __future__ import annotations
 
@@ -11,8 +7,8 @@ import functools
 import numpy as np
 
 from rod.contact.skin import Skin
-from rod.functions import Floats, Ints, cross_matrix
-from rod.layout import Layout
+from rod.contact.split import Split
+from rod.functions import Bools, Floats, Ints, cross_matrix
 from rod.shape import Shape
 
 
@@ -36,7 +32,7 @@ class Points:
         self.which, self.x = which, x
         self.areas: Floats = skin.areas[which]
 
-    def only(self, mask: Floats) -> Points:
+    def only(self, mask: Bools) -> Points:
         """Some of them."""
         return Points(self._skin, self._shape, self.which[mask], self.x[mask])
 
@@ -46,9 +42,9 @@ class Points:
         return np.unique(self._skin.station[self.which])
 
     @functools.cached_property
-    def _split(self) -> _Split:
+    def _split(self) -> Split:
         """The rod split where they are."""
-        return _Split(self._shape, self._skin.pieces[self.stations], self._skin.parts[self.stations])
+        return Split(self._shape, self._skin.pieces[self.stations], self._skin.parts[self.stations])
 
     @functools.cached_property
     def _frame(self) -> Ints:
@@ -119,55 +115,3 @@ def placed(skin: Skin, shape: Shape, stations: Ints) -> Points:
     frames = shape.between(skin.pieces[stations], skin.parts[stations])[row[which]]
     across = np.einsum("pij,pj->pi", frames[:, :, :2], skin.places[which])
     return Points(skin, shape, which, across + frames[..., 3])
-
-
-class _Split:
-    """The finer shape, and the way back to the strains of the whole pieces.
-
-    Args:
-        shape: the rod.
-        pieces: of the stations, (s,).
-        parts: of these pieces before the stations, above 0 up to 1, (s,).
-
-    Attributes:
-        fine: shape whose frames the stations are; `shape` itself where no piece is split.
-        frames: frame of each station, (s,).
-    """
-
-    def __init__(self, shape: Shape, pieces: Ints, parts: Floats) -> None:
-        n = len(shape.layout.lengths)
-        at = pieces + parts
-        ends = np.union1d(at, np.arange(1.0, n + 1))
-        self.frames: Ints = np.searchsorted(ends, at) + 1
-        self._shape = shape.layout.shape
-        self._owner = np.ceil(ends).astype(np.intp) - 1
-        self._starts = np.searchsorted(self._owner, np.arange(n))
-        self._whole = len(ends) == n
-        if self._whole:
-            self.fine = shape
-            return
-        layout = shape.layout
-        lengths = np.diff(ends, prepend=0.0) * layout.lengths[self._owner]
-        finer = Layout(lengths, layout.strains, layout.rotation, layout.place)
-        self.fine = Shape(finer, self.spread(shape.strains))
-
-    def spread(self, strains: Floats) -> Floats:
-        """Of the finer pieces by those of whole ones."""
-        return strains if self._whole else strains[self._owner]
-
-    def gathered(self, by_strains: Floats) -> Floats:
-        """Derivatives by strains of the whole pieces, (n, m), from those of the finer ones."""
-        if self._whole:
-            return by_strains
-        out: Floats = np.add.reduceat(by_strains, self._starts, axis=0)
-        return out
-
-    def matrix(self, second: Floats) -> Floats:
-        """The same of second derivatives, (n m, n m)."""
-        if self._whole:
-            return second
-        n, m = self._shape
-        count = len(self._owner)
-        rows = np.add.reduceat(second.reshape(count, m, count, m), self._starts, axis=0)
-        out: Floats = np.add.reduceat(rows, self._starts, axis=2)
-        return out.reshape(n * m, n * m)

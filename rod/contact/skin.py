@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 from collections.abc import Sequence
 
@@ -35,7 +36,7 @@ class Outline:
             raise ValueError("outline: x and y of points and a width of each expected")
 
 
-def ring(corners: Sequence[Sequence[float]], spacing: float) -> Outline:
+def ring(corners: Sequence[Sequence[float]] | Floats, spacing: float) -> Outline:
     """A closed outline: corners, and points between them.
 
     Args:
@@ -46,7 +47,7 @@ def ring(corners: Sequence[Sequence[float]], spacing: float) -> Outline:
     return _line(np.concatenate([ends, ends[:1]]), spacing, closed=True)
 
 
-def strip(corners: Sequence[Sequence[float]], spacing: float) -> Outline:
+def strip(corners: Sequence[Sequence[float]] | Floats, spacing: float) -> Outline:
     """A line of an outline, from its first to its last corner; see `ring`."""
     return _line(np.asarray(corners, dtype=float), spacing, closed=False)
 
@@ -55,7 +56,7 @@ def _line(ends: Floats, spacing: float, closed: bool) -> Outline:
     if ends.ndim != 2 or ends.shape[1] != 2 or len(ends) < 2 or not spacing > 0:
         raise ValueError("outline: corners and a positive spacing expected")
     places = []
-    for first, last in zip(ends[:-1], ends[1:], strict=True):
+    for first, last in itertools.pairwise(ends):
         count = max(1, math.ceil(float(np.linalg.norm(last - first)) / spacing - _SAME))
         places.append(first + np.arange(count)[:, None] / count * (last - first))
     points = np.concatenate([*places, ends[-1:]])

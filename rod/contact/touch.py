@@ -1,23 +1,23 @@
 """Contact of a rod's surface with a rigid obstacle, without friction.
 
-Π = Σ ½ k a d², d the depth of a point of the surface in the obstacle and a the area at rest for
-which it stands: the penalty of a body (`fem.effects.contact`) on sections that keep their outline.
-Once continuously differentiable, so that touch and lift-off bend the forces and do not break them;
-nothing acts at a distance, and a rod that is far away pays for one distance a frame.
+The penalty of a body (`fem.effects.contact`) on sections that keep their outline. A rod that is far
+away pays for one distance a frame.
 """
 
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
-from collections.abc import Sequence
+from typing import Self
 
 import numpy as np
 
-from rod.contact.obstacles import Obstacle
+from rod.contact.obstacles import Gap, Obstacle, Vector
+from rod.contact.penalty import Contacts, Penalty
 from rod.contact.points import Points, placed
 from rod.contact.skin import Skin
-from rod.functions import Floats
+from rod.functions import Bools, Floats, Ints
 from rod.shape import Shape
 
 ROUND_OFF = 1e-12
@@ -44,8 +44,8 @@ class Touched:
     gap: float
 
 
-class Touch:
-    """An obstacle and a rod's surface; a `rod.term.Iterated`.
+class Touch(Penalty):
+    """An obstacle and a rod's surface.
 
     The amount is the share of the stiffness; with a `travel` it is a distance in mm by which the
     obstacle has moved along it, and the stiffness is whole.
@@ -57,27 +57,20 @@ class Touch:
         travel: direction in which the obstacle is moved, of any length above zero.
         keeps: the points stick to the surface: they are pulled as well as pushed.
 
-    Attributes:
-        conservative: it is the derivative of its potential.
-
     Raises:
         ValueError: a stiffness that is not positive, a travel without direction.
     """
-
-    conservative = True
 
     def __init__(
         self,
         skin: Skin,
         obstacle: Obstacle,
         stiffness: float,
-        travel: Sequence[float] | None = None,
+        travel: Vector | None = None,
         keeps: bool = False,
     ) -> None:
-        if not stiffness > 0:
-            raise ValueError(f"contact stiffness {stiffness} MPa/mm, expected a positive value")
-        self._skin, self._obstacle, self._stiffness = skin, obstacle, stiffness
-        self._keeps, self._reach = keeps, skin.reach
+        super().__init__(len(skin.station), stiffness, keeps)
+        self._skin, self._obstacle, self._reach = skin, obstacle, skin.reach
         self._travel: Floats | None = None
         if travel is not None:
             way = np.asarray(travel, dtype=float)
@@ -86,41 +79,52 @@ class Touch:
                 raise ValueError(f"travel of an obstacle: a direction expected, not {travel}")
             self._travel = way / size
 
-    # --- the term ----------------------------------------------------------------------------------
+    def share(self, amount: float) -> float:
+        """See `Penalty`."""
+        return amount if self._travel is None else 1.0
 
-    def potential(self, shape: Shape, amount: float) -> float:
-        """Π, N mm."""
-        points, depth = self._deep(shape, amount)
-        return self._share(amount) * self._stiffness / 2 * float(points.areas @ depth**2)
+    def _shift(self, amount: float) -> Floats:
+        """By how much the obstacle has moved, (3,), mm."""
+        return np.zeros(3) if self._travel is None else amount * self._travel
 
-    def residual(self, shape: Shape, amount: float) -> Floats:
-        """∂Π/∂ε, (n, m)."""
-        return self.pressed(*self._deep(shape, amount), amount)
+    def _rooms(self, shape: Shape, amount: float) -> Floats:
+        """Lower bounds of the distances of all points of each piece, (n,), mm."""
+        # a point is no further from the nearer end of its piece than half an arc and its arm
+        away = self._obstacle.gap(shape.places - self._shift(amount))
+        reach = (self._reach + shape.arcs / 2) * (1 + ROUND_OFF)
+        out: Floats = np.minimum(away[:-1], away[1:]) - reach
+        return out
 
-    def tangent(self, shape: Shape, amount: float) -> Floats:
-        """∂²Π/∂ε², (n m, n m)."""
-        points, depth = self._deep(shape, amount)
-        return self.stiffened(points, self._share(amount) * self._stiffness * depth, amount)
+    def room(self, shape: Shape, amount: float) -> float:
+        """See `Penalty`."""
+        return float(self._rooms(shape, amount).min())
 
-    def growth(self, shape: Shape, amount: float) -> Floats:
-        """Derivative of the residual by the amount, (n, m)."""
-        return self.grown(*self._deep(shape, amount), amount)
+    def near(self, shape: Shape, amount: float) -> Meeting:
+        """See `Penalty`."""
+        skin = self._skin
+        stations = np.arange(len(skin.pieces))
+        if not self.keeps:
+            stations = np.flatnonzero((self._rooms(shape, amount) <= 0)[skin.pieces])
+        points, shift = placed(skin, shape, stations), self._shift(amount)
+        nearer = ROUND_OFF * float(shape.layout.lengths.sum())
+        depth = nearer - self._obstacle.gap(points.x - shift) if len(points.x) else np.zeros(0)
+        return Meeting(points, self._obstacle, shift, depth)
 
-    def iterate(self, before: Shape, amount: float) -> Pressed:
-        """See `rod.term.Iterated`."""
-        points, depth = self._deep(before, amount)
-        pressure = np.zeros(len(self._skin.station))
-        pressure[points.which] = self._share(amount) * self._stiffness * depth
-        return Pressed(self, pressure)
+    def grown(self, contacts: Contacts, amount: float) -> Floats:
+        """See `Penalty`."""
+        if self._travel is None or not isinstance(contacts, Meeting):
+            return super().grown(contacts, amount)
+        return contacts.shifted(self.stiffness, self._travel)
 
-    def gap(self, shape: Shape, amount: float) -> float:
-        """See `rod.term.Iterated`."""
-        if self._keeps or not self._share(amount):
-            return math.inf
-        _, depth = self.close(shape, amount)
-        return -float(depth.max()) if len(depth) else float(self._room(shape, amount).min())
+    def deeper(self, contacts: Contacts, amount: float, change: Floats, grows: float) -> Floats:
+        """See `Penalty`."""
+        more = contacts.deeper(change)
+        if self._travel is None or not isinstance(contacts, Meeting):
+            return more
+        out: Floats = more + grows * (contacts.gap.normal @ self._travel)
+        return out
 
-    # --- what it has done --------------------------------------------------------------------------
+    # --- what it has done -------------------------------------------------------------------------
 
     def clearance(self, shape: Shape, amount: float) -> float:
         """Least distance of a point from the obstacle, mm; negative inside."""
@@ -129,9 +133,12 @@ class Touch:
 
     def touched(self, shape: Shape, amount: float) -> Touched:
         """Forces on the rod, and where it touches."""
-        points, depth = self._deep(shape, amount)
-        push = self._share(amount) * self._stiffness * points.areas * depth
-        force = push[:, None] * self._obstacle.near(points.x - self._shift(amount)).normal
+        contacts = self.near(shape, amount)
+        if not self.keeps:
+            contacts = contacts.only(contacts.depth > 0)
+        push = self.share(amount) * self.stiffness * contacts.areas * contacts.depth
+        force = push[:, None] * contacts.gap.normal
+        points = contacts.points
         return Touched(
             force.sum(axis=0),
             np.cross(points.x, force).sum(axis=0),
@@ -140,147 +147,64 @@ class Touch:
             self.clearance(shape, amount),
         )
 
-    # --- by points and their depths ----------------------------------------------------------------
 
-    def _shift(self, amount: float) -> Floats:
-        """By how much the obstacle has moved, (3,), mm."""
-        return np.zeros(3) if self._travel is None else amount * self._travel
-
-    def _share(self, amount: float) -> float:
-        """Of the stiffness that acts."""
-        return amount if self._travel is None else 1.0
-
-    def _room(self, shape: Shape, amount: float) -> Floats:
-        """Lower bounds of the distances of all points of each piece, (n,), mm."""
-        # a point is no further from the nearer end of its piece than half an arc and its arm
-        away = self._obstacle.gap(shape.places - self._shift(amount))
-        reach = (self._reach + shape.arcs / 2) * (1 + ROUND_OFF)
-        return np.minimum(away[:-1], away[1:]) - reach
-
-    def close(self, shape: Shape, amount: float) -> tuple[Points, Floats]:
-        """Points of pieces that are near enough to touch, and their depths in mm."""
-        skin, shift = self._skin, self._shift(amount)
-        stations = np.arange(len(skin.pieces))
-        if not self._keeps:
-            stations = np.flatnonzero((self._room(shape, amount) <= 0)[skin.pieces])
-        points = placed(skin, shape, stations)
-        if not len(stations):
-            return points, np.zeros(0)
-        nearer = ROUND_OFF * float(shape.layout.lengths.sum())
-        return points, nearer - self._obstacle.gap(points.x - shift)
-
-    def held(self, points: Points, depth: Floats, pressure: Floats) -> tuple[Points, Floats]:
-        """Points that are inside or pressed, and their depths.
-
-        Args:
-            points: near ones.
-            depth: of them, mm.
-            pressure: of them, MPa.
-        """
-        if self._keeps:
-            return points, depth
-        touches = (depth > 0) | (pressure > 0)
-        return points.only(touches), depth[touches]
-
-    def _deep(self, shape: Shape, amount: float) -> tuple[Points, Floats]:
-        """Points that touch, and their depths."""
-        points, depth = self.close(shape, amount)
-        return self.held(points, depth, np.zeros(len(depth)))
-
-    def pressed(self, points: Points, depth: Floats, amount: float) -> Floats:
-        """Residual by depths of points, (n, m)."""
-        push = self._share(amount) * self._stiffness * points.areas * depth
-        normal = self._obstacle.near(points.x - self._shift(amount)).normal
-        return points.pulled(-push[:, None] * normal)
-
-    def stiffened(self, points: Points, pressure: Floats, amount: float) -> Floats:
-        """Its derivative by the strains at pressures of the points, (n m, n m)."""
-        near = self._obstacle.near(points.x - self._shift(amount))
-        stiff = self._share(amount) * self._stiffness * points.areas
-        push = points.areas * pressure
-        spring = stiff[:, None, None] * near.normal[:, :, None] * near.normal[:, None, :]
-        spring -= push[:, None, None] * near.bend
-        return points.stiffened(-push[:, None] * near.normal, spring)
-
-    def grown(self, points: Points, depth: Floats, amount: float) -> Floats:
-        """Its derivative by the amount, (n, m)."""
-        if self._travel is None:
-            return self.pressed(points, depth, 1.0)
-        near = self._obstacle.near(points.x - self._shift(amount))
-        stiff = self._stiffness * points.areas
-        change = (stiff * depth)[:, None] * (near.bend @ self._travel)
-        change -= (stiff * (near.normal @ self._travel))[:, None] * near.normal
-        return points.pulled(change)
-
-    def pressures(
-        self, points: Points, depth: Floats, amount: float, change: Floats, grows: float
-    ) -> Floats:
-        """Pressures of points after a step, by the first order of their depths, (q,), MPa.
-
-        Args:
-            points: as of `held`.
-            depth: of them, mm.
-            amount: before the step.
-            change: of the strains, (n, m).
-            grows: change of the amount.
-        """
-        normal = self._obstacle.near(points.x - self._shift(amount)).normal
-        way = points.moved(change)
-        if self._travel is not None:
-            way = way - grows * self._travel
-        deeper = depth - np.sum(normal * way, axis=1)
-        pressure: Floats = self._share(amount) * self._stiffness * deeper
-        return pressure
-
-
-class Pressed:
-    """A `Touch` within Newton's method: pressures of points are unknowns beside the strains.
-
-    With p = k d where something is pressed and p = 0 elsewhere, a step gives p = k (d − ∇g·δε) of
-    the points that are held to touch: those that are pressed already, or are inside (the active set
-    of Hintermüller, Ito and Kunisch 2002, doi 10.1137/S1052623401383558, for c → 0). What turns
-    leaves the straight line of a step by the square of an angle times a lever, many times a depth:
-    by depths alone a step would lose what touches, and the next one find nothing there.
+class Meeting:
+    """Points near an obstacle; `rod.contact.penalty.Contacts`.
 
     Args:
-        touch: the term.
-        pressure: p of each point of its skin, MPa.
+        points: of the rod.
+        obstacle: what they are near to.
+        shift: by which it has moved, (3,), mm.
+        depth: of the points, (q,), mm.
 
     Attributes:
-        conservative: as the term.
+        points: as given.
+        depth: as given.
     """
 
-    conservative = True
+    def __init__(self, points: Points, obstacle: Obstacle, shift: Floats, depth: Floats) -> None:
+        self.points, self.depth = points, depth
+        self._obstacle, self._shift = obstacle, shift
 
-    def __init__(self, touch: Touch, pressure: Floats) -> None:
-        self._touch, self._pressure = touch, pressure
+    @property
+    def which(self) -> Ints:
+        """See `Contacts`."""
+        return self.points.which
 
-    def _held(self, shape: Shape, amount: float) -> tuple[Points, Floats]:
-        points, depth = self._touch.close(shape, amount)
-        return self._touch.held(points, depth, self._pressure[points.which])
+    @property
+    def areas(self) -> Floats:
+        """See `Contacts`."""
+        return self.points.areas
 
-    def potential(self, shape: Shape, amount: float) -> float:
-        """Of the term."""
-        return self._touch.potential(shape, amount)
+    @functools.cached_property
+    def gap(self) -> Gap:
+        """Distances with their derivatives."""
+        return self._obstacle.near(self.points.x - self._shift)
 
-    def residual(self, shape: Shape, amount: float) -> Floats:
-        """With the depths, or heights, of the points that are held to touch, (n, m)."""
-        return self._touch.pressed(*self._held(shape, amount), amount)
+    def only(self, mask: Bools) -> Self:
+        """See `Contacts`."""
+        points = self.points.only(mask)
+        return type(self)(points, self._obstacle, self._shift, self.depth[mask])
 
-    def tangent(self, shape: Shape, amount: float) -> Floats:
-        """With the pressures that are known, (n m, n m)."""
-        points, _ = self._held(shape, amount)
-        return self._touch.stiffened(points, self._pressure[points.which], amount)
+    def pushed(self, push: Floats) -> Floats:
+        """See `Contacts`."""
+        return self.points.pulled(-push[:, None] * self.gap.normal)
 
-    def growth(self, shape: Shape, amount: float) -> Floats:
-        """See `rod.term.Term`."""
-        return self._touch.grown(*self._held(shape, amount), amount)
+    def stiffened(self, stiff: Floats, push: Floats) -> Floats:
+        """See `Contacts`."""
+        _, normal, bend = self.gap
+        spring = stiff[:, None, None] * normal[:, :, None] * normal[:, None, :]
+        spring -= push[:, None, None] * bend
+        return self.points.stiffened(-push[:, None] * normal, spring)
 
-    def stepped(self, shape: Shape, amount: float, change: Floats, grows: float) -> bool:
-        """See `rod.term.Iterate`."""
-        points, depth = self._held(shape, amount)
-        pressure = self._touch.pressures(points, depth, amount, change, grows)
-        before = self._pressure > 0
-        self._pressure = np.zeros_like(self._pressure)
-        self._pressure[points.which] = np.maximum(pressure, 0.0)
-        return bool(np.array_equal(before, self._pressure > 0))
+    def deeper(self, change: Floats) -> Floats:
+        """See `Contacts`."""
+        out: Floats = -np.sum(self.gap.normal * self.points.moved(change), axis=1)
+        return out
+
+    def shifted(self, stiffness: float, travel: Floats) -> Floats:
+        """Derivative of Σ k a d ∂d/∂ε by a way of the obstacle along a unit vector, (n, m)."""
+        stiff = stiffness * self.areas
+        change = (stiff * self.depth)[:, None] * (self.gap.bend @ travel)
+        change -= (stiff * (self.gap.normal @ travel))[:, None] * self.gap.normal
+        return self.points.pulled(change)

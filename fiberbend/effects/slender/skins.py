@@ -48,10 +48,8 @@ def _seen(site: RodSite, outline: Outline) -> Outline:
     if not site.layout.plane:
         return outline
     size = float(np.abs(outline.places).max())
-    heights, row = np.unique(
-        np.round(outline.places[:, 1] / (_LEVEL * size)), return_inverse=True
-    )
-    widths = np.bincount(row, outline.widths)
+    heights, row = np.unique(np.round(outline.places[:, 1] / (_LEVEL * size)), return_inverse=True)
+    widths: Floats = np.bincount(row, outline.widths).astype(float)
     places = np.zeros((len(heights), 2))
     places[row, 1] = outline.places[:, 1]
     return Outline(places, widths)

@@ -31,7 +31,10 @@ def errors(term: Term, layout: Layout, strains: Floats, amount: float) -> tuple[
     scale = np.outer(np.tile(sizes, len(strains)), np.tile(sizes, len(strains)))
     ahead, behind = (term.residual(shape, amount + way * STEP) for way in (1, -1))
     growth = (ahead - behind) / (2 * STEP)
-    pairs = ((residual * sizes, slope * sizes), (tangent * scale, second * scale))
-    pairs = (*pairs, (term.growth(shape, amount) * sizes, growth * sizes))
-    pairs = (*pairs, (tangent * scale, tangent.T * scale))
+    pairs = [
+        (residual * sizes, slope * sizes),
+        (tangent * scale, second * scale),
+        (term.growth(shape, amount) * sizes, growth * sizes),
+        (tangent * scale, tangent.T * scale),
+    ]
     return tuple(float(np.abs(a - b).max() / np.abs(a).max()) for a, b in pairs)

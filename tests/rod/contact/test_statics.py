@@ -155,7 +155,9 @@ def test_what_touches_nothing_changes_no_bit() -> None:
     outline = ring(CORNERS, 4.0)
     far = Touch(side(layout, outline, 3.0), Plane((0.0, -200.0, 0.0), (0.0, 1.0, 0.0)), 20.0)
     path = Path(Level(amounts=(0.0, 1.0)), Level(amounts=(1.0, 1.0)))
-    without = march(Rod(layout, BAR.law(SPACE), terms=[load]), layout.at_rest(), path_of(1), [0.5, 1])
+    without = march(
+        Rod(layout, BAR.law(SPACE), terms=[load]), layout.at_rest(), path_of(1), [0.5, 1]
+    )
     beside = march(Rod(layout, BAR.law(SPACE), terms=[load, far]), layout.at_rest(), path, [0.5, 1])
     for one, other in zip(without, beside, strict=True):
         np.testing.assert_array_equal(one.strains, other.strains)
