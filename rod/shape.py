@@ -89,6 +89,17 @@ class Shape:
         out[..., 3] += self.places[pieces]
         return out
 
+    def along(self, reach: Floats) -> Floats:
+        """Axes and places [R | r] of sections anywhere, (k, 3, 4).
+
+        Args:
+            reach: of each from the root along the rod at rest, (k,), mm.
+        """
+        lengths = self.layout.lengths
+        ends = np.cumsum(lengths)
+        piece = np.minimum(np.searchsorted(ends, reach), len(ends) - 1)
+        return self.between(piece, 1 - (ends[piece] - reach) / lengths[piece])
+
     # --- first derivatives -----------------------------------------------------------------------
 
     @functools.cached_property
