@@ -28,8 +28,8 @@ met."""
 _AWAY = 1.0
 """Greatest way from what a march foresees to the state that it finds."""
 _SMALLEST = 2.0**-12
-_TOUCH = 1e-3
-"""Part of the way between two targets to which a touch is found."""
+TOUCH = 1e-3
+"""Part of a step, or of the way between two targets, to which a touch is found."""
 _SYMMETRIC = 1e-10
 
 
@@ -324,18 +324,14 @@ def steps(
     strains, share = (start.strains, start.share) if isinstance(start, State) else (start, 0.0)
     now = share if held is None else held.value(rod, strains, path.at(share))
     known = [(now, strains, share)]
-    last = State(rod.shape(strains), path.at(share), share, 0, 0)
+    last = State.at(rod, rod.shape(strains), path.at(share), share, 0)
     for target in targets:
         begin, part, done, beyond = known[-1][0], 1.0, 0.0, math.inf
         while done < 1.0:
             ahead = min(part, 1.0 - done)
             guess, at = _ahead(known, begin + (done + ahead) * (target - begin))
             foreseen = rod.shape(guess), path.at(at)
-            meets = min((share for _, share in closing(rod, last, *foreseen)), default=1.0)
-            # to just before a touch, then to just beyond it; where that is missed, halfway
-            near = meets * ahead
-            near += -_TOUCH / 4 if near > _TOUCH * 3 / 4 else _TOUCH / 2
-            ahead = min(ahead, near if meets < 1.0 else 1.0, max((beyond - done) / 2, _TOUCH))
+            ahead = min(ahead, until_touch(closing(rod, last, *foreseen), ahead, beyond - done))
             goal = target if done + ahead >= 1.0 else begin + (done + ahead) * (target - begin)
             guess, at = _ahead(known, goal)
             try:
@@ -348,12 +344,29 @@ def steps(
                     raise
                 continue
             touches = tuple(place for place, _ in closing(rod, last, state.shape, state.level))
-            if touches and ahead > _TOUCH:
+            if touches and ahead > TOUCH:
                 beyond = done + ahead
                 continue
             known = [*known[-1:], (goal, state.strains, state.share)][1 if touches else 0 :]
             last, done, part, beyond = state, done + ahead, max(part, 2 * ahead), math.inf
             yield Step(state, done >= 1.0, touches)
+
+
+def until_touch(closing: list[tuple[int, float]], ahead: float, beyond: float) -> float:
+    """How long a step may be, in parts of one to which `TOUCH` belongs.
+
+    To just before a touch, then to just beyond it; where that has been missed, halfway to it.
+
+    Args:
+        closing: what is foreseen to be touched; see `closing`.
+        ahead: length of the step without a touch.
+        beyond: that of one known to touch, infinite if none is.
+    """
+    halfway = max(beyond / 2, TOUCH)
+    if not closing:
+        return min(ahead, halfway)
+    near = min(share for _, share in closing) * ahead
+    return min(near + (-TOUCH / 4 if near > TOUCH * 3 / 4 else TOUCH / 2), halfway)
 
 
 def closing(rod: Rod, last: State, shape: Shape, level: Level) -> list[tuple[int, float]]:
@@ -370,9 +383,8 @@ def closing(rod: Rod, last: State, shape: Shape, level: Level) -> list[tuple[int
         evenly.
     """
     found = []
-    for place, (term, before, after) in enumerate(
-        zip(rod.terms, *_amounts(rod, last.level, level))
-    ):
+    amounts = zip(rod.terms, *_amounts(rod, last.level, level), strict=True)
+    for place, (term, before, after) in enumerate(amounts):
         if not isinstance(term, Iterated):
             continue
         gap = term.gap(shape, after)

@@ -13,6 +13,7 @@ from fiberbend.effects.records import RodRamp, RodSite
 from fiberbend.models.rod import MODEL
 from fiberbend.slender.laws import SectionLaw, cap_law, masses, section_law
 from fiberbend.slender.moments import section_of
+from rod.contact.touch import Touch
 from rod.functions import Floats
 from rod.inertia import spread
 from rod.law import Zones
@@ -36,6 +37,7 @@ class Slender:
         loads: the load whose value is the amount of each term; without a name it acts whole.
         ramps: loads in the order of the case.
         section: the law of the section between the caps.
+        obstacles: what it may touch, by names.
     """
 
     rod: Rod
@@ -43,6 +45,7 @@ class Slender:
     loads: tuple[str, ...]
     ramps: tuple[RodRamp, ...]
     section: SectionLaw
+    obstacles: tuple[tuple[str, Touch], ...] = ()
 
     @property
     def chamber(self) -> slice:
@@ -87,6 +90,7 @@ def slender(case: Case) -> Slender:
         inertia=spread(layout, parts),
         tip=(0.0, actuator.face_height - section.height, 0.0),
         weight=convert.site(case).weight,
+        body=convert.site(case),
     )
     made = section_law(case)
     law = Zones((made.law, cap_law(case, section, PLANE)), _places(len(lengths)))
@@ -99,6 +103,7 @@ def slender(case: Case) -> Slender:
         loads=tuple(name for name, _ in terms),
         ramps=tuple(ramp for each in found for ramp in each.ramps),
         section=made,
+        obstacles=tuple(pair for each in found for pair in each.obstacles),
     )
 
 
