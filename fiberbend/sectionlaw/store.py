@@ -7,7 +7,9 @@ import hashlib
 import json
 import os
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
 from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
@@ -15,6 +17,7 @@ from fiberbend.sectionlaw.made import Made, unpacked
 from fiberbend.trial.calibrations import flat
 from machine import folders
 
+T = TypeVar("T")
 FOLDER = "tables"
 """Within the cache."""
 _CODE = (
@@ -81,33 +84,50 @@ class Store:
 
     def find(self, digest: str) -> Made | None:
         """The table of a digest, or None where there is none that is whole."""
+
+        def read(content: bytes) -> Made:
+            made = unpacked(content)
+            if made.digest != digest:
+                raise ValueError("it is of another section")
+            return made
+
+        return self.read(f"{digest}.npz", read)
+
+    def keep(self, made: Made) -> None:
+        """Write a table, whole or not at all; where it cannot be kept, that is a remark."""
+        self.write(f"{made.digest}.npz", made.packed())
+
+    def read(self, name: str, unpack: Callable[[bytes], T]) -> T | None:
+        """What a file holds, or None where there is none that is whole.
+
+        Args:
+            name: of the file.
+            unpack: raises ValueError of a content that is damaged.
+        """
         if self._path is None:
             return None
-        file = self._path / f"{digest}.npz"
+        file = self._path / name
         try:
-            found = unpacked(file.read_bytes())
-            if found.digest != digest:
-                raise ValueError("it is of another section")
+            return unpack(file.read_bytes())
         except FileNotFoundError:
             return None
         except (OSError, ValueError) as error:
             self.remarks.append(f"{file} is damaged and made anew: {error}")
             return None
-        return found
 
-    def keep(self, made: Made) -> None:
-        """Write a table, whole or not at all; where it cannot be kept, that is a remark."""
+    def write(self, name: str, content: bytes) -> None:
+        """Write a file, whole or not at all; where it cannot be kept, that is a remark."""
         if self._path is None:
             return
         try:
             folders.make_private(self._path)
-            handle, draft = tempfile.mkstemp(prefix=f".{made.digest}.", dir=self._path)
+            handle, draft = tempfile.mkstemp(prefix=f".{name}.", dir=self._path)
             try:
                 with os.fdopen(handle, "wb") as file:
-                    file.write(made.packed())
-                os.replace(draft, self._path / f"{made.digest}.npz")
+                    file.write(content)
+                os.replace(draft, self._path / name)
             except BaseException:
                 Path(draft).unlink(missing_ok=True)
                 raise
         except (OSError, folders.MachineError) as error:
-            self.remarks.append(f"{self._path}: the table is not kept: {error}")
+            self.remarks.append(f"{self._path}: {name} is not kept: {error}")

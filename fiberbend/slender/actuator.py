@@ -11,12 +11,11 @@ from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.records import RodRamp, RodSite
 from fiberbend.models.rod import MODEL
-from fiberbend.slender.laws import SectionLaw, cap_law, masses, section_law
+from fiberbend.slender.laws import SectionLaw, along, cap_law, masses, section_law
 from fiberbend.slender.moments import section_of
 from rod.contact.touch import Touch
 from rod.functions import Floats
 from rod.inertia import spread
-from rod.law import Zones
 from rod.layout import Layout
 from rod.rod import Level, Rod
 from rod.shape import Shape
@@ -93,7 +92,8 @@ def slender(case: Case) -> Slender:
         body=convert.site(case),
     )
     made = section_law(case)
-    law = Zones((made.law, cap_law(case, section, PLANE)), _places(len(lengths)))
+    chamber = slice(CAP_PIECES, CAP_PIECES + PIECES)
+    law = along(case, made, cap_law(case, section, PLANE), layout, chamber)
     found = [effect.on_rod(site) for effect in case.effects]
     terms = [term for each in found for term in each.terms]
     inertia = sum((e.inertia for e in found if e.inertia is not None), site.inertia)
@@ -105,9 +105,3 @@ def slender(case: Case) -> Slender:
         section=made,
         obstacles=tuple(pair for each in found for pair in each.obstacles),
     )
-
-
-def _places(pieces: int) -> list[int]:
-    """Which law each piece has: 0 between the caps, 1 in them."""
-    inside = range(CAP_PIECES, CAP_PIECES + PIECES)
-    return [int(number not in inside) for number in range(pieces)]

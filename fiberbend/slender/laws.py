@@ -12,16 +12,11 @@ from fiberbend.slender.moments import Section, weighed
 from materials.material import Material
 from rod.functions import Floats
 from rod.inertia import SectionMass
-from rod.law import Law, Linear
-from rod.layout import AT_REST, STRAINS
+from rod.law import Law, Linear, Zones
+from rod.layout import AT_REST, STRAINS, Layout
 
 ERROR = 1e-3
 """Of the table of a section, as `fiberbend.sectionlaw.table.table_of` has it."""
-
-
-WIDE = 3.0
-"""Times the usual margins of its range: the weight of the baseline bends its root two and a half
-times as far as it bends the whole."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -62,17 +57,41 @@ def section_law(case: Case) -> SectionLaw:
     from fiberbend.slender.beside import section_case
 
     store = Store()
-    made = table_of(section_case(case), ERROR, 0.0, store, WIDE)
+    made = table_of(section_case(case), ERROR, None, store)
     known = made.checked
     return SectionLaw(
         law=made.law,
-        free=np.array([(pressure, *state) for pressure, state in made.free]),
+        free=np.array(
+            [(pressure, state.stretch, state.curvature) for pressure, state in made.free]
+        ),
         model=made.model,
         states=made.solved,
         seconds=made.seconds,
         error=max(known.force, known.moment, known.area),
         remarks=(*made.remarks, *store.remarks),
     )
+
+
+def along(case: Case, made: SectionLaw, cap: Law, layout: Layout, chamber: slice) -> Law:
+    """The law of each piece: of chamber and caps, with the turns of their ends under pressure.
+
+    Args:
+        case: of model rod.
+        made: the law of its section.
+        cap: the law of its caps.
+        layout: pieces of the rod.
+        chamber: those between the caps.
+
+    Raises:
+        fiberbend.schema.problems.CaseError: the ends of a short body are not found.
+    """
+    from fiberbend.sectionlaw.ends import ends_of
+    from fiberbend.slender.beside import section_case
+
+    ends = ends_of(section_case(case), float(made.free[:, 0].max()))
+    inside = np.zeros(len(layout.lengths), dtype=int)
+    inside[chamber] = 1
+    return ends.offset(Zones((cap, made.law), inside.tolist()), layout, chamber)
 
 
 def cap_law(case: Case, section: Section, strains: tuple[str, ...]) -> Law:
