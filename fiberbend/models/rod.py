@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import Symmetry
-from fiberbend.columns import MIDDLE, SOLVED
+from fiberbend.columns import MIDDLE, OBSTACLES, SOLVED
 from fiberbend.effects.effect import CHAMBER, SIDE, THREAD, TURNS, TWIST, WOUND
 from fiberbend.effects.records import LINE
 from fiberbend.models.ends import AT_ENDS
@@ -22,7 +22,7 @@ class Rod(SlenderModel):
 
     name = "rod"
     offers = frozenset({CHAMBER, WOUND, THREAD, TURNS, TWIST, SIDE, LINE})
-    fills = ModelKind.fills | {MIDDLE, SOLVED}
+    fills = ModelKind.fills | {MIDDLE, SOLVED, OBSTACLES}
     ends = True
     agreement = 0.5
     start_s = 4.0

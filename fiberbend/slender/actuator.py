@@ -13,6 +13,7 @@ from fiberbend.effects.records import RodRamp, RodSite
 from fiberbend.models.rod import MODEL
 from fiberbend.slender.laws import SectionLaw, along, cap_law, masses, section_law
 from fiberbend.slender.moments import section_of
+from rod.contact.touch import Touch
 from rod.functions import Floats
 from rod.inertia import spread
 from rod.layout import Layout
@@ -35,6 +36,7 @@ class Slender:
         loads: the load whose value is the amount of each term; without a name it acts whole.
         ramps: loads in the order of the case.
         section: the law of the section between the caps.
+        obstacles: what it may touch, by names.
     """
 
     rod: Rod
@@ -42,6 +44,7 @@ class Slender:
     loads: tuple[str, ...]
     ramps: tuple[RodRamp, ...]
     section: SectionLaw
+    obstacles: tuple[tuple[str, Touch], ...] = ()
 
     @property
     def chamber(self) -> slice:
@@ -86,6 +89,7 @@ def slender(case: Case) -> Slender:
         inertia=spread(layout, parts),
         tip=(0.0, actuator.face_height - section.height, 0.0),
         weight=convert.site(case).weight,
+        body=convert.site(case),
     )
     made = section_law(case)
     chamber = slice(CAP_PIECES, CAP_PIECES + PIECES)
@@ -99,4 +103,5 @@ def slender(case: Case) -> Slender:
         loads=tuple(name for name, _ in terms),
         ramps=tuple(ramp for each in found for ramp in each.ramps),
         section=made,
+        obstacles=tuple(pair for each in found for pair in each.obstacles),
     )
