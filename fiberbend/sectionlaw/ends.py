@@ -15,6 +15,7 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 
@@ -24,8 +25,9 @@ from fiberbend.case.case import Case, Output, Solver
 from fiberbend.case.section_beside import as_section
 from fiberbend.effects.pressure import inflate
 from fiberbend.effects.tip.load import turned
+from fiberbend.process.kept import Kept
 from fiberbend.schema.problems import CaseError, Problem
-from fiberbend.sectionlaw.store import Store, digest_of
+from fiberbend.sectionlaw.store import digest_of
 from fiberbend.trial.solve import solve
 from fiberbend.trial.wanted import Point, Wanted
 from fiberbend.uniform.small import Small
@@ -117,7 +119,12 @@ def unpacked(content: bytes) -> Ends:
     return ends
 
 
-def ends_of(case: Case, greatest: float, store: Store | None = None) -> Ends:
+def kept(path: Path | None = None) -> Kept:
+    """Ends that were made before, in the user's own cache or in another folder."""
+    return Kept("ends", "ends of chambers", ".json", path)
+
+
+def ends_of(case: Case, greatest: float, store: Kept | None = None) -> Ends:
     """The ends of an actuator by a short body of it, from the store or anew.
 
     Args:
@@ -130,12 +137,13 @@ def ends_of(case: Case, greatest: float, store: Store | None = None) -> Ends:
             greatest pressure.
     """
     section, body = _short(case, greatest)
-    store = Store() if store is None else store
-    name = f"{digest_of(section, greatest, None)}.ends.json"
-    known = store.read(name, unpacked)
-    if known is None:
-        known = _solved(case, section, body, greatest)
-        store.write(name, known.packed())
+    store = kept() if store is None else store
+    digest = digest_of(section, PARTS, greatest, None)
+    with store.alone(digest):
+        known = store.read(digest, unpacked)
+        if known is None:
+            known = _solved(case, section, body, greatest)
+            store.write(digest, known.packed())
     return known
 
 
