@@ -13,9 +13,9 @@ from fiberbend.effects.records import Requests, RodRamp
 from fiberbend.slender.actuator import Slender
 from rod.functions import Floats
 from rod.statics import (
+    TOUCH,
     Angle,
     Held,
-    TOUCH,
     NoEquilibriumError,
     Path,
     State,
