@@ -17,7 +17,7 @@ from rod.layout import AT_REST, STRAINS, Layout
 from rod.quartic import Quartic
 
 ERROR = 1e-3
-"""Of the table of a section, as `fiberbend.sectionlaw.table.table_of` has it."""
+"""Of the table of a section, as `fiberbend.sectionlaw.table.law_of` has it."""
 
 
 _ROUND, _RADIUS = 32, 0.1
@@ -48,27 +48,26 @@ class SectionLaw:
     remarks: tuple[str, ...]
 
 
-def section_law(case: Case) -> SectionLaw:
+def section_law(case: Case, strains: tuple[str, ...]) -> SectionLaw:
     """The law of the section of a rod, from the tables that are kept or anew.
 
     Args:
         case: of model rod.
+        strains: of the rod.
 
     Raises:
         fiberbend.schema.problems.CaseError: the section has no law that reaches as far as the case.
     """
     from fiberbend.sectionlaw.store import Store
-    from fiberbend.sectionlaw.table import table_of
+    from fiberbend.sectionlaw.table import law_of
     from fiberbend.slender.beside import section_case
 
     store = Store()
-    made = table_of(section_case(case), ERROR, None, store)
+    made = law_of(section_case(case), strains, ERROR, store=store)
     known = made.checked
     return SectionLaw(
         law=made.law,
-        free=np.array(
-            [(pressure, state.stretch, state.curvature) for pressure, state in made.free]
-        ),
+        free=np.array([(p, state.stretch, state.curvature) for p, state in made.free]),
         model=made.model,
         states=made.solved,
         seconds=made.seconds,
