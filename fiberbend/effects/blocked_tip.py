@@ -110,7 +110,6 @@ def tip_force_summary(site: Site, strips: Strips, row: Mapping[str, Any]) -> dic
             "F_L_f_Nmm": row[col.TIP_FORCE] * lever,
             "kappa_P_Nmm": site.actuator.chamber_moment * row[col.PRESSURE] * 1e-3,
             "tip_section_rotation_deg": row[col.ANGLE],
-            col.BALANCE_FORCE: row[col.BALANCE_FORCE],
-            col.BALANCE_MOMENT: row[col.BALANCE_MOMENT],
+            **{name: row[name] for name in (col.BALANCE_FORCE, col.BALANCE_MOMENT) if name in row},
         }
     }
