@@ -90,7 +90,7 @@ class ContactEffect(Effect):
 
     def wants(self) -> dict[str, str]:
         """Sections that yield where they touch."""
-        return {SPACE: "sections keep their shape where they touch: walls and sheath do not yield"}
+        return {SPACE: "sections keep their shape; under roof and post the sheath alone yields"}
 
     def mirror_breaker(self) -> str:
         """A plane whose normal has an x component."""
@@ -245,18 +245,20 @@ class ContactEffect(Effect):
         )
 
     def on_rod(self, site: RodSite) -> OnRod:
-        """One penalty for each obstacle, as on a body."""
+        """One penalty for each obstacle, as on a body; under roof and post the sheath yields too."""
+        from fiberbend.effects.slender.sheath import under_strip
         from fiberbend.effects.slender.skins import skin
         from rod.contact.touch import Touch
 
         assert site.body is not None, "an obstacle is as stiff as what touches it"
-        stiffness = self.yields(site.body)
-        met = tuple(
-            (name, Touch(skin(site, item.surfaces, self.strips()), rigid, stiffness))
-            for name, item in self.obstacles.items()
-            for rigid in (item.met(site.actuator),)
-        )
-        return OnRod(tuple(("", touch) for _, touch in met), obstacles=met)
+        met = []
+        for name, item in self.obstacles.items():
+            stiffness, part, strip = self.yields(site.body), 1.0, item.strip()
+            if strip is not None:
+                stiffness, part = under_strip(site.body, *strip, stiffness)
+            points = skin(site, item.surfaces, self.strips())
+            met.append((name, Touch(points, item.met(site.actuator), stiffness, part=part)))
+        return OnRod(tuple(("", touch) for _, touch in met), obstacles=tuple(met))
 
     def doubts(self, site: Site, rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
         """Obstacles so soft that the body sinks into them."""

@@ -40,6 +40,13 @@ class ObstacleSpec(Spec):
     def met(self, actuator: Actuator) -> Rigid:
         """The obstacle in space, as a rod meets it."""
 
+    def strip(self) -> tuple[float, int] | None:
+        """Width in mm of the strip under it, and to how many of its sides rubber escapes.
+
+        None: what touches it is no strip.
+        """
+        return None
+
     @abstractmethod
     def shape(self, actuator: Actuator) -> Shape:
         """What a picture shows of it."""
@@ -68,6 +75,10 @@ class RoofSpec(ObstacleSpec):
         """The same plane."""
         return over_crown(actuator, self.gap)
 
+    def strip(self) -> tuple[float, int]:
+        """Along the crown."""
+        return self.width, 2
+
     def shape(self, actuator: Actuator) -> Shape:
         """A bar along the chamber."""
         return roof_shape(actuator, self.width, self.gap)
@@ -95,6 +106,10 @@ class PostSpec(ObstacleSpec):
     def met(self, actuator: Actuator) -> Rigid:
         """The same plane."""
         return under_cap(actuator, self.gap)
+
+    def strip(self) -> tuple[float, int]:
+        """Beyond its inner side the sheath goes on."""
+        return self.length, 1
 
     def shape(self, actuator: Actuator) -> Shape:
         """A block under the end of the cap."""

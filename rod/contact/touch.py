@@ -56,6 +56,7 @@ class Touch(Penalty):
         stiffness: k, MPa/mm: pressure per depth.
         travel: direction in which the obstacle is moved, of any length above zero.
         keeps: the points stick to the surface: they are pulled as well as pushed.
+        part: of a depth that is in the obstacle, where the surface of the rod yields too.
 
     Raises:
         ValueError: a stiffness that is not positive, a travel without direction.
@@ -68,8 +69,10 @@ class Touch(Penalty):
         stiffness: float,
         travel: Vector | None = None,
         keeps: bool = False,
+        part: float = 1.0,
     ) -> None:
         super().__init__(len(skin.station), stiffness, keeps)
+        self._part = part
         self._skin, self._obstacle, self._reach = skin, obstacle, skin.reach
         self._travel: Floats | None = None
         if travel is not None:
@@ -127,9 +130,10 @@ class Touch(Penalty):
     # --- what it has done -------------------------------------------------------------------------
 
     def clearance(self, shape: Shape, amount: float) -> float:
-        """Least distance of a point from the obstacle, mm; negative inside."""
+        """Least distance of a point from the obstacle, mm; negative: how deep it is inside."""
         points = placed(self._skin, shape, np.arange(len(self._skin.pieces)))
-        return float(self._obstacle.gap(points.x - self._shift(amount)).min())
+        gap = float(self._obstacle.gap(points.x - self._shift(amount)).min())
+        return gap if gap > 0 else self._part * gap
 
     def touched(self, shape: Shape, amount: float) -> Touched:
         """Forces on the rod, and where it touches."""

@@ -26,13 +26,15 @@ def skin(site: RodSite, surfaces: tuple[str, ...], strips: Strips | None) -> Ski
 
     Args:
         site: the actuator as a rod.
-        surfaces: 'outer', 'tip', 'roof', 'post', as a body calls them.
+        surfaces: 'outer', 'tip', 'roof', 'post', as a body calls them; 'crown' and 'sole' are roof
+            and post as lines with the strips' widths, whose points keep one height.
         strips: of roof and post.
 
     Raises:
         KeyError: a surface without points.
     """
     makers = {"outer": _outer, "tip": _tip, "roof": _roof, "post": _post}
+    makers |= {"crown": _crown, "sole": _sole}
     first, *others = (makers[name](site, strips) for name in surfaces)
     return first.joined(*others)
 
@@ -79,16 +81,44 @@ def _roof(site: RodSite, strips: Strips | None) -> Skin:
     return side(site.layout, outline, ALONG, (actuator.cap, actuator.cap + actuator.length))
 
 
+def _crown(site: RodSite, strips: Strips | None) -> Skin:
+    """The highest line, as wide as the roof."""
+    assert strips is not None, "a roof is a strip"
+    actuator = site.actuator
+    outline = _line(site, actuator.outer_top, strips.roof_half_width)
+    return side(site.layout, outline, ALONG, (actuator.cap, actuator.cap + actuator.length))
+
+
+def _line(site: RodSite, height: float, half: float) -> Outline:
+    places = np.array([[0.0, height]])
+    return Outline(_centred(site, places), np.array([2 * half]))
+
+
 def _post(site: RodSite, strips: Strips | None) -> Skin:
     """The strip at the end of the tip cap's underside; of a round body as wide as the roof."""
     assert strips is not None, "a post is a strip"
+    outline = _seen(site, _strip(site.actuator, _sole_half(site.actuator, strips), top=False))
+    return _at_end(site, outline, strips)
+
+
+def _sole(site: RodSite, strips: Strips | None) -> Skin:
+    """The lowest line of the post's strip, as wide as that."""
+    assert strips is not None, "a post is a strip"
     actuator = site.actuator
+    outline = _line(site, actuator.outer_bottom, _sole_half(actuator, strips))
+    return _at_end(site, outline, strips)
+
+
+def _at_end(site: RodSite, outline: Outline, strips: Strips) -> Skin:
+    end = site.actuator.total_length
+    return side(site.layout, outline, ALONG / 2, (end - strips.post_length, end))
+
+
+def _sole_half(actuator: Actuator, strips: Strips) -> float:
+    """Half the width of the post's strip."""
     corners = _corners(actuator, _FINE)
     flat = corners[np.abs(corners[:, 1] - actuator.outer_bottom) < _LEVEL * actuator.total_length]
-    half = max(strips.roof_half_width * (len(flat) < 2), float(np.abs(flat[:, 0]).max()))
-    outline = _seen(site, _strip(actuator, half, top=False))
-    end = actuator.total_length
-    return side(site.layout, outline, ALONG / 2, (end - strips.post_length, end))
+    return max(strips.roof_half_width * (len(flat) < 2), float(np.abs(flat[:, 0]).max()))
 
 
 def _strip(actuator: Actuator, half: float, top: bool) -> Outline:
