@@ -12,6 +12,7 @@ from pathlib import Path
 
 from bench.rod import numerics, page, record
 from bench.rod.scenes import BY_NAME, COARSE, MESHES, SCENES
+from fiberbend.schema.problems import CaseError
 
 
 def _solve(given: argparse.Namespace) -> None:
@@ -21,7 +22,11 @@ def _solve(given: argparse.Namespace) -> None:
         if file.exists() and not given.again:
             continue
         out = None if given.out is None else given.out / f"{name}.{given.model}.{given.mesh}"
-        found = record.solve(scene, given.model, given.mesh, out, given.twice)
+        try:
+            found = record.solve(scene, given.model, given.mesh, out, given.twice)
+        except CaseError as refused:
+            print(name, "refused:", refused, flush=True)
+            continue
         record.keep(found, file)
         print(name, found.status, found.reason, f"{found.cpu_s:.1f} s", flush=True)
 
