@@ -117,7 +117,7 @@ def _told(values: Floats, off: Floats) -> Difference:
 
 
 def touch(record: Record, obstacle: str) -> float:
-    """Pressure at which the gap to an obstacle is closed for the first time, kPa; NaN: never."""
+    """Pressure at which the gap to an obstacle closes first, kPa; NaN: never, or at rest."""
     name = f"contact_{obstacle}_gap_mm"
     if name not in record.columns:
         return math.nan
@@ -131,7 +131,8 @@ def touch(record: Record, obstacle: str) -> float:
     # the gap before, carried on: behind the touch it is no gap
     before = np.flatnonzero(known[: closed[0]])[-3:]
     if len(before) < 2:
-        return float(pressure[int(closed[0])])
+        # it touches from rest on
+        return math.nan
     curve = np.polyfit(gap[before], np.array(pressure)[before], len(before) - 1)
     return float(np.polyval(curve, 0.0))
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from bench.rod import compare
 from bench.rod.compare import Difference
 from bench.rod.record import Record, path_of, read
-from bench.rod.scenes import COARSE, FINE, SCENES, Scene
+from bench.rod.scenes import COARSE, FINE, SCENES, SECTION, Scene
 from bench.tables import table
 
 PAGE = Path(__file__).resolve().parent.parent.parent / "docs" / "evidence" / "rod.md"
@@ -40,8 +40,9 @@ force along x to the side, of the tube its twist.
 """
 UNIFORM = """## Uniform part
 
-The angle of the middle half at every state beside that of the body, in parts of itself, from a
-sixth of the pressure on; 0.1 % is asked for.
+The angle of the middle half beside that of `model: section` by itself at the same pressure, in
+parts of itself, greatest of all states; 0.1 % is asked for. The section has two elements through
+each part as the law of the rod does, the body one.
 """
 TOUCH = """## Obstacles
 
@@ -59,9 +60,10 @@ Newton's method. 'First' is the call that makes the tables.
 def page(scenes: tuple[Scene, ...] = SCENES) -> str:
     """The page."""
     found = [each for each in map(_Found, scenes) if each.complete]
-    parts = [HEAD, LOADS, "\n".join(table(_LOAD_HEAD, [_load_row(each) for each in found]))]
+    loaded = [_load_row(each) for each in found if not each.scene.obstacle]
+    parts = [HEAD, LOADS, "\n".join(table(_LOAD_HEAD, loaded))]
     uniform = [row for each in found for row in _uniform_rows(each)]
-    parts += [UNIFORM, "\n".join(table(["scene", "beside coarse", "kept"], uniform))]
+    parts += [UNIFORM, "\n".join(table(["scene", "rod", "kept", "body"], uniform))]
     touching = [_touch_row(each) for each in found if each.scene.obstacle]
     parts += [TOUCH, "\n".join(table(_TOUCH_HEAD, touching))]
     parts += [COSTS, "\n".join(table(_COST_HEAD, [_cost_row(each) for each in found]))]
@@ -77,14 +79,16 @@ class _Found:
         rod: of the rod.
         coarse: of the body.
         fine: of the finer body; None where it is not recorded.
+        section: of its section by itself, likewise.
     """
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
         paths = [path_of(scene.name, *which) for which in ((ROD, COARSE), (BODY, COARSE))]
         self.complete = all(path.exists() for path in paths)
-        fine = path_of(scene.name, BODY, FINE)
+        fine, section = path_of(scene.name, BODY, FINE), path_of(scene.name, SECTION, COARSE)
         self.fine: Record | None = read(fine) if fine.exists() else None
+        self.section: Record | None = read(section) if section.exists() else None
         if self.complete:
             self.rod, self.coarse = (read(path) for path in paths)
 
@@ -137,23 +141,23 @@ def _word(kept: bool) -> str:
 
 
 def _uniform_rows(each: _Found) -> Iterator[list[str]]:
-    """Of scenes without other loads."""
-    name = "uniform_angle_deg"
-    if name not in each.rod.columns or each.scene.obstacle:
+    """Of scenes of which the section is recorded."""
+    if each.section is None:
         return
-    if any(column.startswith("load_") for column in each.coarse.columns):
-        return
-    greatest = max(each.coarse.column(compare.PRESSURE))
-    along = compare.progress(each.coarse, greatest)
-    own = each.coarse.column(name)
-    other = compare.at_loads(each.rod, name, along, greatest)
+    rod, body = (_off_section(each.section, record) for record in (each.rod, each.coarse))
+    yield [each.scene.title, f"{rod:.3%}", _word(rod <= UNIFORM_BAND), f"{body:.3%}"]
+
+
+def _off_section(section: Record, record: Record) -> float:
+    """Greatest difference of the angle of the middle half, in parts of itself, where both are."""
+    own = dict(zip(section.column(compare.PRESSURE), section.column("angle_deg"), strict=True))
+    middle = zip(record.column(compare.PRESSURE), record.column("uniform_angle_deg"), strict=True)
     parts = [
-        abs(b / a - 1)
-        for a, b, share in zip(own, other, along, strict=True)
-        if share > 1 / 6 and math.isfinite(b)
+        abs(angle / own[pressure] - 1)
+        for pressure, angle in middle
+        if pressure in own and own[pressure] > _TURNS
     ]
-    if parts and max(map(abs, own)) > _TURNS:
-        yield [each.scene.title, f"{max(parts):.3%}", _word(max(parts) <= UNIFORM_BAND)]
+    return max(parts)
 
 
 _TOUCH_HEAD = [

@@ -11,7 +11,7 @@ import pytest
 
 from bench.rod import compare, page, record
 from bench.rod.record import Record
-from bench.rod.scenes import COARSE, MESHES, SCENES, Scene
+from bench.rod.scenes import COARSE, MESHES, SCENES, SECTION, Scene
 from fiberbend.reader.reader import parse_case
 
 
@@ -20,7 +20,7 @@ def test_the_page_is_that_of_its_records() -> None:
 
 
 @pytest.mark.parametrize("mesh", MESHES)
-@pytest.mark.parametrize("model", ["rod", "body"])
+@pytest.mark.parametrize("model", ["rod", "body", SECTION])
 def test_records_are_of_the_scenes(model: str, mesh: str) -> None:
     for scene in SCENES:
         path = record.path_of(scene.name, model, mesh)
