@@ -195,7 +195,9 @@ COLUMNS = (
     Column("contact_{obstacle}_z_N", "N", "the same along z", OBSTACLES),
     Column("contact_{obstacle}_moment_x_Nmm", "N mm", "its moment about x", OBSTACLES),
     Column("contact_{obstacle}_area_mm2", "mm²", "area at rest of what touches", OBSTACLES),
-    Column("contact_{obstacle}_gap_mm", "mm", "least gap; negative: how deep the body is", OBSTACLES),
+    Column(
+        "contact_{obstacle}_gap_mm", "mm", "least gap; negative: how deep the body is", OBSTACLES
+    ),
     Column(BALANCE_FORCE, "", "what is left of all forces, over their scale", BODY),
     Column(BALANCE_MOMENT, "", "what is left of all moments, over theirs", BODY),
     Column(MOMENT, "N mm", "moment about the centroid, kept straight", UNIFORM),

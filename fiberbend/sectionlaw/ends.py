@@ -4,6 +4,10 @@ A cap holds the section beside it in its shape, and the pressure on its inner fa
 it by the wall. Cap and wall turn by that, without any force or moment of the actuator; the turn
 fades within a width of the section. No law of a section knows it. A short body of the same section
 does: what it turns beyond the uniform bend, of cap and of chamber each, is that of any length.
+
+The clamp holds the root cap's outer face in its shape too, and a cap is no longer than it is wide:
+it turns less by a moment than a beam of its section. The short body says that as well, by a small
+one.
 """
 
 from __future__ import annotations
@@ -11,15 +15,19 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 
 from fem.results.centre_line import CentreLine, face_axes, turn_of
+from fiberbend.case import convert
 from fiberbend.case.case import Case, Output, Solver
 from fiberbend.case.section_beside import as_section
 from fiberbend.effects.pressure import inflate
+from fiberbend.effects.tip.load import turned
+from fiberbend.process.kept import Kept
 from fiberbend.schema.problems import CaseError, Problem
-from fiberbend.sectionlaw.store import Store, digest_of
+from fiberbend.sectionlaw.store import digest_of
 from fiberbend.trial.solve import solve
 from fiberbend.trial.wanted import Point, Wanted
 from fiberbend.uniform.small import Small
@@ -37,6 +45,9 @@ _LENGTH, _ZONE, _AXIAL = 4.0, 1.5, 0.4
 """Of the short chamber, of an end and of the elements, in half widths of the winding's outline:
 the ends of a chamber of four are those of one of twelve within 2 %."""
 
+_SMALL = 2e-3
+"""A moment, in parts of a shear modulus and the cube of a half width: strains of a thousandth."""
+
 
 @dataclasses.dataclass(frozen=True)
 class Ends:
@@ -46,10 +57,13 @@ class Ends:
         zone: length of the chamber's parts at rest, mm.
         coefficients: by part, power of P in MPa from the first on, and what: length in mm, turns
             about the section's own x, y and about the line in rad, (4, d, 4).
+        flexibility: turn of root cap and root end beyond the uniform bend by a moment about x,
+            without pressure, rad/(N mm).
     """
 
     zone: float
     coefficients: Floats
+    flexibility: float
 
     def added(self, part: str, pressure: float) -> Floats:
         """Length in mm and three turns in rad of a part, (4,)."""
@@ -83,7 +97,7 @@ class Ends:
 
     def packed(self) -> bytes:
         """As a JSON file."""
-        content = {"zone": self.zone, "coefficients": self.coefficients.tolist()}
+        content = dataclasses.asdict(self) | {"coefficients": self.coefficients.tolist()}
         return json.dumps(content).encode()
 
 
@@ -96,15 +110,21 @@ def unpacked(content: bytes) -> Ends:
     try:
         known = json.loads(content)
         coefficients = np.array(known["coefficients"], dtype=float)
-        ends = Ends(float(known["zone"]), coefficients)
+        ends = Ends(float(known["zone"]), coefficients, float(known["flexibility"]))
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(f"no ends: {error}") from None
-    if coefficients.shape != (len(PARTS), STATES, 4) or not np.isfinite(coefficients).all():
+    numbers = np.append(coefficients, [ends.zone, ends.flexibility])
+    if coefficients.shape != (len(PARTS), STATES, 4) or not np.isfinite(numbers).all():
         raise ValueError(f"no ends: coefficients of the shape {coefficients.shape}")
     return ends
 
 
-def ends_of(case: Case, greatest: float, store: Store | None = None) -> Ends:
+def kept(path: Path | None = None) -> Kept:
+    """Ends that were made before, in the user's own cache or in another folder."""
+    return Kept("ends", "ends of chambers", ".json", path)
+
+
+def ends_of(case: Case, greatest: float, store: Kept | None = None) -> Ends:
     """The ends of an actuator by a short body of it, from the store or anew.
 
     Args:
@@ -117,12 +137,13 @@ def ends_of(case: Case, greatest: float, store: Store | None = None) -> Ends:
             greatest pressure.
     """
     section, body = _short(case, greatest)
-    store = Store() if store is None else store
-    name = f"{digest_of(section, greatest, None)}.ends.json"
-    known = store.read(name, unpacked)
-    if known is None:
-        known = _solved(case, section, body, greatest)
-        store.write(name, known.packed())
+    store = kept() if store is None else store
+    digest = digest_of(section, PARTS, greatest, None)
+    with store.alone(digest):
+        known = store.read(digest, unpacked)
+        if known is None:
+            known = _solved(case, section, body, greatest)
+            store.write(digest, known.packed())
     return known
 
 
@@ -138,12 +159,11 @@ def _solved(case: Case, section: Case, body: Case, greatest: float) -> Ends:
     powers = np.array(pressures)[:, None] ** (1.0 + np.arange(STATES))
     coefficients = np.linalg.solve(powers, found.reshape(STATES, -1))
     zone = min(_ZONE * _half_width(case), case.actuator.length / 2)
-    return Ends(zone, coefficients.reshape(STATES, len(PARTS), 4).transpose(1, 0, 2))
+    parts = coefficients.reshape(STATES, len(PARTS), 4).transpose(1, 0, 2)
+    return Ends(zone, parts, _flexibility(case, body))
 
 
 def _half_width(case: Case) -> float:
-    from fiberbend.case import convert
-
     return convert.dimensions(case.actuator).outline_half_width
 
 
@@ -183,3 +203,25 @@ def _turns(
         out[3, 1:] = turn_of(tip, face_axes(body, "tip"))
         out[1:3, 0] = (line.stretch() - point.stretch) * length / 2
         yield out
+
+
+def _flexibility(case: Case, short: Case) -> float:
+    """Turn of the root beyond the uniform bend by a small moment, rad/(N mm)."""
+    wall = convert.site(case).materials["wall"]
+    moment = _SMALL * wall.initial_shear_modulus * _half_width(case) ** 3
+    # a state is asked for by its pressure: next to none
+    pressure = _SMALL**2 * wall.initial_shear_modulus
+    load, *others = short.effects
+    assert load.inflation() is not None
+    output = short.output.model_copy(update={"at_pressures": (pressure,)})
+    effects = (turned(moment), inflate(to=pressure), *others)
+    bent = Small(short.model_copy(update={"effects": effects, "output": output}))
+    states, report = bent.march()
+    if not states:
+        text = f"the root of a short body was not found under a moment: {report.reason}"
+        raise CaseError([Problem("actuator.cap", text)])
+    bent.put(states[0])
+    line, length = CentreLine(bent.scene.body), short.actuator.length
+    (to_middle,) = line.turns_to(np.array([length / 2]))[:, 0]
+    turn = turn_of(np.eye(3), line.end_axes()[0])[0] + to_middle - line.middle()[0] / 2
+    return float(turn) / moment

@@ -91,7 +91,7 @@ def slender(case: Case) -> Slender:
         weight=convert.site(case).weight,
         body=convert.site(case),
     )
-    made = section_law(case)
+    made = section_law(case, PLANE)
     chamber = slice(CAP_PIECES, CAP_PIECES + PIECES)
     law = along(case, made, cap_law(case, section, PLANE), layout, chamber)
     found = [effect.on_rod(site) for effect in case.effects]

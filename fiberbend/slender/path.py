@@ -13,9 +13,9 @@ from fiberbend.effects.records import Requests, RodRamp
 from fiberbend.slender.actuator import Slender
 from rod.functions import Floats
 from rod.statics import (
+    TOUCH,
     Angle,
     Held,
-    TOUCH,
     NoEquilibriumError,
     Path,
     State,
@@ -208,7 +208,7 @@ class _Drive:
                 return self._fail(str(error))
             most = limits.turn / max(way(self._rod, ahead), 1e-12 / total)
             size = min(most, self._size, self._largest)
-            if size < _LEAST * total and self._held is None:
+            if most < _LEAST * total and self._held is None:
                 return self._limit_before(point)
             left = abs(goal - self._s)
             size = left if left <= (1 + _NEAR) * size else size
@@ -349,9 +349,7 @@ class _Drive:
         q = (1 - part) * old.values.get(self._ramp.load, 0.0)
         q += part * new.values[self._ramp.load]
         try:
-            state = solve(
-                self._rod, strains, self._path, goal, self._course._bend, q, old.state
-            )
+            state = solve(self._rod, strains, self._path, goal, self._course._bend, q, old.state)
         except NoEquilibriumError:
             return None
         values = {**self._base, self._ramp.load: state.share}

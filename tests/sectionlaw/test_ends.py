@@ -9,10 +9,12 @@ import pytest
 
 from fem.results.centre_line import CentreLine, face_axes, turn_of
 from fiberbend.case.case import Case
+from fiberbend.process.kept import Kept
 from fiberbend.schema.problems import CaseError
 from fiberbend.sectionlaw import ends
-from fiberbend.sectionlaw.ends import PARTS, Ends, ends_of, unpacked
-from fiberbend.sectionlaw.store import Store
+from fiberbend.sectionlaw.ends import PARTS, Ends, ends_of, kept, unpacked
+from fiberbend.slender.laws import cap_law
+from fiberbend.slender.moments import section_of
 from fiberbend.trial.solve import solve
 from fiberbend.trial.wanted import Wanted
 from fiberbend.uniform.small import Small
@@ -30,12 +32,12 @@ TUBE["effects"][1]["winding"]["as"] = "smeared"
 
 
 @pytest.fixture(scope="module")
-def store(tmp_path_factory: pytest.TempPathFactory) -> Store:
-    return Store(tmp_path_factory.mktemp("cache") / "tables")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Kept:
+    return kept(tmp_path_factory.mktemp("cache") / "ends")
 
 
 @pytest.fixture(scope="module")
-def free(store: Store) -> Ends:
+def free(store: Kept) -> Ends:
     return ends_of(checked(FREE), GREATEST, store)
 
 
@@ -71,7 +73,14 @@ def test_ends_turn_in_the_plane_of_bending_alone(free: Ends) -> None:
         assert not free.added(part, 0.0).any()
 
 
-def test_a_tube_turns_about_its_line_and_its_mirror_image_the_other_way(store: Store) -> None:
+def test_the_clamp_makes_the_root_stiffer_than_a_beam(free: Ends) -> None:
+    case = checked(FREE)
+    beam = cap_law(case, section_of(case), ("stretch", "curvature"))
+    turn = 15.0 * np.linalg.inv(beam.stiffness)[1, 1]
+    assert free.flexibility == pytest.approx(turn / 1.15, rel=0.02)
+
+
+def test_a_tube_turns_about_its_line_and_its_mirror_image_the_other_way(store: Kept) -> None:
     left = ends_of(checked(TUBE), 0.02, store)
     (family,) = TUBE["effects"][1]["winding"]["families"]
     mirrored = under(TUBE, to="20 kPa")
@@ -85,7 +94,7 @@ def test_a_tube_turns_about_its_line_and_its_mirror_image_the_other_way(store: S
     assert abs(left.added("root end", 0.02)[3]) > 1e-3
 
 
-def test_ends_are_kept_and_read(free: Ends, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ends_are_kept_and_read(free: Ends, store: Kept, monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(*_given: object) -> Ends:
         raise AssertionError("they are in the store")
 
@@ -102,9 +111,9 @@ def test_what_is_damaged_is_made_anew(free: Ends, tmp_path: Path) -> None:
     for damaged in (content[:-20], b"{}", b"[]", content.replace(b"0.", b"NaN", 1)):
         with pytest.raises(ValueError, match="no ends"):
             unpacked(damaged)
-    store = Store(tmp_path)
-    store.write("a.ends.json", b"{")
-    assert store.read("a.ends.json", unpacked) is None
+    store = kept(tmp_path)
+    store.write("a", b"{")
+    assert store.read("a", unpacked) is None
     assert "damaged" in store.remarks[-1]
 
 
