@@ -174,6 +174,7 @@ def tabulate(
     most: int = 2000,
     begin: Sequence[Floats] | None = None,
     sizes: Sizes | None = None,
+    degree: int = HIGH_DEGREE,
 ) -> Table:
     """A table whose forces are known to an error, by halving intervals where they are not.
 
@@ -189,6 +190,7 @@ def tabulate(
         most: greatest number of points.
         begin: lines at first, from 0 to 1 over each range.
         sizes: of the derivatives; their ranges over the table unless given.
+        degree: of the splines where second derivatives are known.
 
     Returns:
         The table.
@@ -227,7 +229,7 @@ def tabulate(
         checks = _asked(sample, scattered, checks)
         degrees = [DEGREE] * (len(lines) - 1) + [PRESSURE_DEGREE]
         if second:
-            degrees = [HIGH_DEGREE] * len(lines)
+            degrees = [degree] * len(lines)
         axes = tuple(Axis(*pair) for pair in zip(lines, degrees, strict=True))
         table = Table(axes, fitted(axes, samples), samples, np.empty(0))
         # with second derivatives a fit is close to its points without being exact between them

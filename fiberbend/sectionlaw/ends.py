@@ -27,6 +27,7 @@ from fiberbend.effects.pressure import inflate
 from fiberbend.effects.tip.load import turned
 from fiberbend.process.kept import Kept
 from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.sectionlaw.range import loads_of
 from fiberbend.sectionlaw.store import digest_of
 from fiberbend.trial.solve import solve
 from fiberbend.trial.wanted import Point, Wanted
@@ -138,7 +139,7 @@ def ends_of(case: Case, greatest: float, store: Kept | None = None) -> Ends:
     """
     section, body = _short(case, greatest)
     store = kept() if store is None else store
-    digest = digest_of(section, PARTS, greatest, None)
+    digest = digest_of(section, PARTS, greatest, None, loads_of(section))
     with store.alone(digest):
         known = store.read(digest, unpacked)
         if known is None:

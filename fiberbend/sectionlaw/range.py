@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,6 +22,18 @@ FORCE, MOMENT = 0.2, 50.0
 _GRAVITY = 9810.0
 _RUBBER = 1.1e-9
 """Density of what has none in the case, t/mm³."""
+
+
+class Loads(NamedTuple):
+    """What a rod bears beside its pressure.
+
+    Attributes:
+        force: of weight and tip load, N.
+        moment: of weight and of either tip load at the root of the straight actuator, N mm.
+    """
+
+    force: float
+    moment: float
 
 
 @dataclasses.dataclass(frozen=True)
@@ -42,8 +55,12 @@ class Reach:
     remarks: tuple[str, ...] = ()
 
 
-def reach_of(case: Case) -> Reach:
+def reach_of(case: Case, loads: Loads) -> Reach:
     """Free states of a case up to its own pressure or angle, and its loads.
+
+    Args:
+        case: a checked case of model section or cell.
+        loads: of the actuator whose section it is.
 
     Raises:
         CaseError: it has neither, or does not come there.
@@ -62,24 +79,22 @@ def reach_of(case: Case) -> Reach:
     length = case.actuator.length
     if min(point.pressure for point in answer.free) <= 0:
         raise CaseError([Problem("effects", "a table is of pressures above zero")])
-    weight, moment = _loads(case)
     return Reach(
         tuple(
             (p.pressure, Free(p.stretch, p.angle / length, p.side_angle / length, p.twist / length))
             for p in answer.free
         ),
         float(np.ptp(meshed(case).mesh(case).nodes[:, 1])),
-        weight + FORCE,
-        moment,
+        *loads,
         answer.remarks,
     )
 
 
-def _loads(case: Case) -> tuple[float, float]:
-    """Weight of the whole, N, and moment of it and of a tip load at the root, N mm."""
+def loads_of(case: Case) -> Loads:
+    """Of a whole actuator: its weight to the side, and a force or a moment at its tip."""
     actuator, materials = convert.dimensions(case.actuator), convert.site(case).materials
     densities = {name: each.mass_density or _RUBBER for name, each in materials.items()}
     volumes = actuator.region_volumes()
     weight = _GRAVITY * sum(volume * densities[name] for name, volume in volumes.items())
     length = actuator.total_length
-    return weight, weight * length / 2 + max(MOMENT, FORCE * length)
+    return Loads(weight + FORCE, weight * length / 2 + max(MOMENT, FORCE * length))

@@ -9,6 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fiberbend.sectionlaw.law import SectionLaw
+from fiberbend.sectionlaw.range import Reach
 from fiberbend.sectionlaw.space import Round, Space
 from fiberbend.sectionlaw.states.box import Box, NoStateError, words
 from fiberbend.sectionlaw.states.held import Held, HeldState
@@ -23,8 +24,12 @@ ERROR = 0.02
 large as that allows."""
 _MARGIN = 1.25
 """Times the strains that loads make."""
-_STEPS = 6
+_SHEARED = 0.2
+"""Greatest strain of the outside by them."""
+_STEPS = 8
 """Times that the limits are made smaller."""
+_FAR = 4.0
+"""Error over what is allowed that stands for that of a state that is not there."""
 _LINES = ((0.0, 1.0), (0.0, 0.5, 1.0), (0.0, 0.2, 1.0))
 _DEGREES = (1, 3, 3)
 """Splines of H by e, by each other strain, and by the pressure."""
@@ -87,7 +92,7 @@ def side_of(
     strains: tuple[str, ...],
     section: SectionLaw,
     box: Box,
-    moment: float,
+    reach: Reach,
     alike: bool,
     tell: Callable[[str], None] | None = None,
 ) -> Side:
@@ -98,7 +103,7 @@ def side_of(
         strains: names of all.
         section: the law of the table.
         box: of the table.
-        moment: of the loads, N mm.
+        reach: with its loads and its height.
         alike: the section is alike in all directions.
         tell: takes lines of progress.
 
@@ -136,7 +141,7 @@ def side_of(
     side = Side(
         small=small,
         alike=alike,
-        limits=tuple((_MARGIN * moment / stiff).tolist()),
+        limits=tuple(np.minimum(_MARGIN * reach.moment / stiff, _SHEARED / reach.height).tolist()),
         pairs=tuple(pairs),
         lines=tuple(tuple(axis.lines.tolist()) for axis in axes),
         degrees=tuple(axis.degree for axis in axes),
@@ -200,7 +205,11 @@ def _limited(
                 at[1], at[number] = at[1] * np.cos(turn), at[1] * np.sin(turn)
             found = held.along(state, at)
             if found is None:
-                raise NoStateError(words(at))
+                if not limits:
+                    raise NoStateError(words(at))
+                # as far out as that there is no state
+                error = _FAR * ERROR
+                break
             error = max(error, _off(law, found, limits | dict.fromkeys(around, widest)))
         side = dataclasses.replace(
             side,
@@ -211,6 +220,8 @@ def _limited(
         if error <= ERROR or not limits:
             break
         limits = {number: 0.9 * (ERROR / error) ** 0.5 * limit for number, limit in limits.items()}
+    if error > ERROR:
+        raise NoStateError(f"strains of {max(side.limits):.3g} 1/mm to the side")
     return side
 
 

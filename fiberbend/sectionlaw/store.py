@@ -25,7 +25,13 @@ _KINDS = (".py", ".c", ".yaml", ".json")
 _DIGITS = 16
 
 
-def digest_of(case: Case, strains: tuple[str, ...], error: float, least: float | None) -> str:
+def digest_of(
+    case: Case,
+    strains: tuple[str, ...],
+    error: float,
+    least: float | None,
+    loads: tuple[float, float],
+) -> str:
     """A hash of section, rubber, winding, range, error and code; titles and output do not enter."""
     parts = {"actuator": case.actuator, "materials": case.materials}
     parts |= {f"effect {number}": effect for number, effect in enumerate(case.effects)}
@@ -38,6 +44,7 @@ def digest_of(case: Case, strains: tuple[str, ...], error: float, least: float |
         "strains": strains,
         "error": repr(error),
         "least": repr(least),
+        "loads": [repr(load) for load in loads],
         "code": _code(),
     }
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()[:_DIGITS]

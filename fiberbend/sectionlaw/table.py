@@ -11,13 +11,14 @@ from fiberbend.calibration.calibrate import waits
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import Symmetry, stays_straight
+from fiberbend.case.zones import zone_cases
 from fiberbend.columns import UNIFORM
 from fiberbend.models.choice import choose_model
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.sectionlaw.errors import checked, sizes
 from fiberbend.sectionlaw.law import PLANE, SectionLaw
 from fiberbend.sectionlaw.made import Checked, Made
-from fiberbend.sectionlaw.range import Reach, reach_of
+from fiberbend.sectionlaw.range import Loads, Reach, loads_of, reach_of
 from fiberbend.sectionlaw.side import side_of
 from fiberbend.sectionlaw.states.box import Box, NoStateError, box_of
 from fiberbend.sectionlaw.states.held import Held
@@ -26,7 +27,7 @@ from fiberbend.sectionlaw.store import Store, digest_of
 from fiberbend.trial.calibrations import Calibrations
 from rod.functions import Floats
 from rod.spline import Samples
-from rod.table import NotReachedError, tabulate
+from rod.table import HIGH_DEGREE, NotReachedError, tabulate
 
 ERROR = 1e-3
 """Of forces by the strains that they make, and of the angle of a free state, see `Checked`."""
@@ -35,10 +36,14 @@ _PARTS = (1.0, 0.75, 0.5, 0.25, 0.1)
 _TIGHTER = 0.3
 _LEAST = 1e-3
 """Of the error that is asked for: no free state is off by more for want of states."""
-_PULL = np.linspace(0.0, 1.0, 3)
-_TURNS = np.linspace(0.0, 1.0, 7)
 _PRESSURES: Floats = np.array([0.0, 0.08, 0.22, 0.44, 0.7, 1.0])
 """Lines of a table at first. Threads go taut and the floor arches in the first kilopascals."""
+_PLANE_LINES = (np.linspace(0.0, 1.0, 3), np.linspace(0.0, 1.0, 7), _PRESSURES)
+_TWISTED_LINES = (np.linspace(0.0, 1.0, 2), np.linspace(0.0, 1.0, 5), _PRESSURES[[0, 1, 2, 4, 5]])
+"""Of the pull, of curvature and twist, and of the pressure."""
+_TWISTED_DEGREE, _MOST = 4, 900
+"""A table of three strains has some thousand coefficients: splines of a lower degree, and no more
+states than a minute and a gigabyte take."""
 
 
 def table_of(
@@ -59,6 +64,7 @@ def law_of(
     least: float | None = None,
     store: Store | None = None,
     tell: Callable[[str], None] | None = None,
+    loads: Loads | None = None,
 ) -> Made:
     """The law of a section, from the store or anew.
 
@@ -72,13 +78,15 @@ def law_of(
         least: pressure from which the table is, MPa; zero unless given.
         store: of tables; that of the user unless given.
         tell: takes lines of progress while it is made.
+        loads: of the actuator that it is a zone of; its own unless given.
 
     Raises:
         CaseError: the law cannot have what the case has, or the table does not reach the error.
     """
     refuse(case, strains)
+    loads = loads_of(case) if loads is None else loads
     store = Store() if store is None else store
-    digest = digest_of(case, strains, error, least)
+    digest = digest_of(case, strains, error, least, loads)
     found = store.find(digest)
     if found is not None:
         return found
@@ -86,9 +94,36 @@ def law_of(
         # another process may have been quicker
         made = store.find(digest)
         if made is None:
-            made = _made(case, strains, error, least, digest, tell)
+            made = _made(case, strains, error, least, digest, loads, tell)
             store.keep(made)
     return made
+
+
+def laws_of(
+    case: Case,
+    strains: tuple[str, ...],
+    error: float = ERROR,
+    store: Store | None = None,
+    tell: Callable[[str], None] | None = None,
+) -> list[Made]:
+    """A law for each zone, from root to tip; of a case without zones that of its section.
+
+    Args:
+        case: a checked case of model section or cell, under a pressure.
+        strains: names of those of the rod; see `law_of`.
+        error: asked for, in parts.
+        store: of tables; that of the user unless given.
+        tell: takes lines of progress while they are made.
+
+    Raises:
+        CaseError: see `law_of`; an angle, of which nobody knows what zones have of it.
+    """
+    load = case.inflation
+    if case.zones is not None and (load is None or load.to is None):
+        text = "zones have a pressure in common and no angle, expected to"
+        raise CaseError([Problem("effects.pressure", text)])
+    loads = loads_of(case)
+    return [law_of(zone, strains, error, None, store, tell, loads) for zone in zone_cases(case)]
 
 
 def refuse(case: Case, strains: tuple[str, ...] = PLANE) -> None:
@@ -133,10 +168,11 @@ def _made(
     error: float,
     least: float | None,
     digest: str,
+    loads: Loads,
     tell: Callable[[str], None] | None = None,
 ) -> Made:
     began = time.process_time()
-    reach = reach_of(case)
+    reach = reach_of(case, loads)
     ready = Calibrations().ready(case).case if waits(case) else case
     greatest = max(pressure for pressure, _ in reach.free)
     if least is not None and not 0 <= least < greatest:
@@ -156,7 +192,7 @@ def _made(
             law, known = _fitted(large, walk, box, reach, error)
             side = None
             if more:
-                side = side_of(all_held, strains, law, box, reach.moment, alike, tell)
+                side = side_of(all_held, strains, law, box, reach, alike, tell)
         except NoStateError as stop:
             last = str(stop)
             continue
@@ -187,10 +223,20 @@ def _fitted(
 ) -> tuple[SectionLaw, Checked]:
     """A law whose forces and free angles are as exact as asked for."""
     asked = error
-    begin = [_PULL, *[_TURNS] * (len(strains) - 1), _PRESSURES]
+    plane = len(strains) == len(PLANE)
+    pull, turns, pressures = _PLANE_LINES if plane else _TWISTED_LINES
+    begin = [pull, *[turns] * (len(strains) - 1), pressures]
     measure = sizes(box.chart)
     while True:
-        table = tabulate(walk.sample, box.ranges, asked, begin=begin, sizes=measure)
+        table = tabulate(
+            walk.sample,
+            box.ranges,
+            asked,
+            most=2000 if plane else _MOST,
+            begin=begin,
+            sizes=measure,
+            degree=HIGH_DEGREE if plane else _TWISTED_DEGREE,
+        )
         law = SectionLaw(table, box.chart, strains)
         known = checked(law, _samples(walk), reach)
         worst = max(known.force, known.moment, known.area, known.angle)

@@ -19,6 +19,7 @@ from fiberbend.sectionlaw.chart import Chart
 from fiberbend.sectionlaw.law import PLANE, Free
 from fiberbend.sectionlaw.made import Made, unpacked
 from fiberbend.sectionlaw.polynomial import fit
+from fiberbend.sectionlaw.range import Loads
 from fiberbend.sectionlaw.states.held import Held, HeldState
 from fiberbend.sectionlaw.store import Store, digest_of
 from fiberbend.sectionlaw.table import refuse, table_of
@@ -34,6 +35,7 @@ from tests.trial.cases import Data, checked, shipped, under, wound
 
 BENT: Data = under(shipped("section"), angle="120 deg")
 ERROR = 1e-3
+LOADS = Loads(0.6, 90.0)
 SPACE = ("stretch", "curvature", "side_curvature", "twist")
 TUBE: Data = wound(
     under(shipped("extending", model="section"), to="40 kPa"),
@@ -257,18 +259,18 @@ def test_the_cache_gives_the_same(made: Made, store: Store) -> None:
 
 
 def test_what_enters_has_another_digest() -> None:
-    digest = digest_of(checked(BENT), PLANE, ERROR, None)
-    assert digest == digest_of(checked(BENT | {"title": "another"}), PLANE, ERROR, None)
+    digest = digest_of(checked(BENT), PLANE, ERROR, None, LOADS)
+    assert digest == digest_of(checked(BENT | {"title": "another"}), PLANE, ERROR, None, LOADS)
     thick = {**BENT, "actuator": BENT["actuator"] | {"wall": "3 mm"}}
     soft = {**BENT, "materials": BENT["materials"] | {"wall": "ecoflex-0030"}}
     others = [thick, soft, under(BENT, angle="90 deg")]
     others.append(
         wound(BENT, pattern="double-helix", pitch="4 mm", fiber="kevlar", **{"as": "smeared"})
     )
-    found = {digest_of(checked(other), PLANE, ERROR, None) for other in others}
+    found = {digest_of(checked(other), PLANE, ERROR, None, LOADS) for other in others}
     found |= {
-        digest_of(checked(BENT), PLANE, 1e-2, None),
-        digest_of(checked(BENT), PLANE, ERROR, 0.01),
+        digest_of(checked(BENT), PLANE, 1e-2, None, LOADS),
+        digest_of(checked(BENT), PLANE, ERROR, 0.01, LOADS),
     }
     assert len(found | {digest}) == 7
 
