@@ -57,6 +57,8 @@ MIDDLE = "middle"
 """Columns of a model that separates the bend of the middle from that of the ends."""
 SOLVED = "solved"
 """Columns of a model that finds its states in equilibrium: of finite elements, or as a rod."""
+OBSTACLES = "obstacles"
+"""Columns of a model with ends that obstacles may touch."""
 ELEMENTS = "elements"
 """Columns of a model of finite elements."""
 UNIFORM = "uniform"
@@ -182,18 +184,20 @@ COLUMNS = (
         SOLVED,
     ),
     Column(MODES, "", "unstable modes with every load kept at its value", SOLVED),
-    Column(ROOF_FORCE, "N", "force of the roof on the body", BODY),
+    Column(ROOF_FORCE, "N", "force of the roof on the body", OBSTACLES),
     Column("clamp_force_x_N", "N", "force of the clamp on the body along x", BODY),
     Column("clamp_force_y_N", "N", "the same along y", BODY),
     Column("clamp_force_z_N", "N", "the same along z", BODY),
     Column("clamp_moment_x_Nmm", "N mm", "its moment about x, through x = y = z = 0", BODY),
     Column("clamp_moment_y_Nmm", "N mm", "its moment about y, likewise", BODY),
     Column("clamp_moment_z_Nmm", "N mm", "its moment about z, likewise", BODY),
-    Column("contact_{obstacle}_y_N", "N", "force of an obstacle on the body along y", BODY),
-    Column("contact_{obstacle}_z_N", "N", "the same along z", BODY),
-    Column("contact_{obstacle}_moment_x_Nmm", "N mm", "its moment about x", BODY),
-    Column("contact_{obstacle}_area_mm2", "mm²", "area at rest of what touches", BODY),
-    Column("contact_{obstacle}_gap_mm", "mm", "least gap; negative: how deep the body is", BODY),
+    Column("contact_{obstacle}_y_N", "N", "force of an obstacle on the body along y", OBSTACLES),
+    Column("contact_{obstacle}_z_N", "N", "the same along z", OBSTACLES),
+    Column("contact_{obstacle}_moment_x_Nmm", "N mm", "its moment about x", OBSTACLES),
+    Column("contact_{obstacle}_area_mm2", "mm²", "area at rest of what touches", OBSTACLES),
+    Column(
+        "contact_{obstacle}_gap_mm", "mm", "least gap; negative: how deep the body is", OBSTACLES
+    ),
     Column(BALANCE_FORCE, "", "what is left of all forces, over their scale", BODY),
     Column(BALANCE_MOMENT, "", "what is left of all moments, over theirs", BODY),
     Column(MOMENT, "N mm", "moment about the centroid, kept straight", UNIFORM),

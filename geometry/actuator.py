@@ -61,6 +61,48 @@ class Profile:
     widest_roof: float
 
 
+_SAME = 1e-9
+"""Part of the half width by which one point may be rounded to two."""
+
+
+def _outward(side: Side, way: float) -> Side:
+    """A side of a section, further out; sides run clockwise."""
+    if side.center is not None:
+        bx, by = side.center
+        radius = math.dist(side.start, side.center)
+        start, end = (
+            (bx + (x - bx) * (1 + way / radius), by + (y - by) * (1 + way / radius))
+            for x, y in (side.start, side.end)
+        )
+    else:
+        dx, dy = (b - a for a, b in zip(side.start, side.end, strict=True))
+        length = math.hypot(dx, dy)
+        start, end = (
+            (x - way * dy / length, y + way * dx / length) for x, y in (side.start, side.end)
+        )
+    return Side(side.name, start, end, side.center)
+
+
+def _along(side: Side, spacing: float) -> list[Point]:
+    """Both ends of a side, and between them points of an arc."""
+    if side.center is None:
+        return [side.start, side.end]
+    (x, y), radius = side.center, math.dist(side.start, side.center)
+    first, last = (math.atan2(b - y, a - x) for a, b in (side.start, side.end))
+    turn = (last - first + math.pi) % (2 * math.pi) - math.pi
+    count = max(1, math.ceil(abs(turn) * radius / spacing))
+    angles = [first + turn * part / count for part in range(1, count)]
+    between = [(x + radius * math.cos(a), y + radius * math.sin(a)) for a in angles]
+    return [side.start, *between, side.end]
+
+
+def _meeting(a: Point, b: Point, c: Point, d: Point) -> Point:
+    """Where the lines through a and b, and through c and d, cross."""
+    ux, uy, vx, vy = b[0] - a[0], b[1] - a[1], d[0] - c[0], d[1] - c[1]
+    part = ((c[0] - a[0]) * vy - (c[1] - a[1]) * vx) / (ux * vy - uy * vx)
+    return a[0] + part * ux, a[1] + part * uy
+
+
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Actuator(abc.ABC):
     """A soft bending actuator; all lengths in mm.
@@ -103,6 +145,23 @@ class Actuator(abc.ABC):
     @abc.abstractmethod
     def outline(self) -> tuple[Side, ...]:
         """The line on which the winding lies: its half x ≥ 0, from the top to the bottom."""
+
+    def outer_outline(self, spacing: float) -> tuple[Point, ...]:
+        """The line around the whole section: corners, and points on arcs, clockwise from the top.
+
+        It is the winding's outline, further out by the sheath; straight sides meet in corners.
+
+        Args:
+            spacing: greatest distance of neighbours on an arc, mm.
+        """
+        half: list[Point] = []
+        sides = [_outward(side, self.sheath or 0.0) for side in self.outline()]
+        for side in sides:
+            points = _along(side, spacing)
+            if half and math.dist(half[-1], points[0]) > _SAME * self.outer_half_width:
+                half[-1] = points[0] = _meeting(half[-2], half[-1], points[0], points[1])
+            half += points[1:] if half else points
+        return (*half, *((-x, y) for x, y in reversed(half) if x > _SAME * self.outer_half_width))
 
     @functools.cached_property
     def profile(self) -> Profile:

@@ -19,7 +19,7 @@ import functools
 
 import numpy as np
 
-from rod.functions import Floats, Pair, axial, cross, cross_matrix, stumpff, trace
+from rod.functions import Floats, Ints, Pair, axial, cross, cross_matrix, stumpff, trace
 from rod.layout import Layout
 
 _EYE = np.eye(3)
@@ -62,22 +62,43 @@ class Shape:
         """r of the frames, (n + 1, 3), mm."""
         return self.frames[..., 3]
 
+    @property
+    def arcs(self) -> Floats:
+        """Lengths of the pieces' lines, (n,), mm."""
+        out: Floats = self._reach[:, 0, 0] * np.linalg.norm(self._v, axis=1)
+        return out
+
+    def between(self, pieces: Ints, parts: Floats) -> Floats:
+        """Frames within pieces, (s, 3, 4).
+
+        Args:
+            pieces: which, (s,).
+            parts: of the piece before each frame, 0 to 1, (s,).
+        """
+        reach = parts[:, None] * self._reach[pieces, 0]
+        phi = reach * self._spin[pieces]
+        c = stumpff(np.sum(phi * phi, axis=-1))
+        step = np.concatenate(
+            [
+                Pair(phi, c, 1).matrix(),
+                reach[..., None] * (Pair(phi, c, 2).matrix() @ self._v[pieces][..., None]),
+            ],
+            axis=-1,
+        )
+        out: Floats = self._base[pieces] @ step
+        out[..., 3] += self.places[pieces]
+        return out
+
     def along(self, reach: Floats) -> Floats:
         """Axes and places [R | r] of sections anywhere, (k, 3, 4).
 
         Args:
             reach: of each from the root along the rod at rest, (k,), mm.
         """
-        ends = np.cumsum(self.layout.lengths)
+        lengths = self.layout.lengths
+        ends = np.cumsum(lengths)
         piece = np.minimum(np.searchsorted(ends, reach), len(ends) - 1)
-        within = (reach - (ends - self.layout.lengths)[piece])[:, None]
-        phi = within * self._spin[piece]
-        c = stumpff(np.sum(phi * phi, axis=-1))
-        step = within[..., None] * (Pair(phi, c, 2).matrix() @ self._v[piece][..., None])
-        base = self.frames[piece]
-        turned = base[..., :3] @ Pair(phi, c, 1).matrix()
-        places = base[..., 3:] + base[..., :3] @ step
-        return np.concatenate([turned, places], axis=-1)
+        return self.between(piece, 1 - (ends[piece] - reach) / lengths[piece])
 
     # --- first derivatives -----------------------------------------------------------------------
 
@@ -208,6 +229,27 @@ class Shape:
         columns = list(self.layout.columns)
         place = np.arange(n)
         out.reshape(n, m, n, m)[place, :, place] = blocks[:, columns][:, :, columns]
+        return out
+
+    def stiffened(self, blocks: Floats) -> Floats:
+        """Σ s_i · B s_j of springs on the frames, s the screw (u0, ω) of what moves a frame.
+
+        With ∂x = u0 + ω × x of a point x, a stiffness D there is the block AᵀD A, A = (I, −[x×]).
+
+        Args:
+            blocks: B of each frame about the origin, symmetric, (n + 1, 6, 6).
+
+        Returns:
+            Symmetric matrix (n m, n m).
+        """
+        n, m = self.layout.shape
+        screws = np.concatenate(self._screws, axis=1)
+        pushed = _after(blocks) @ screws
+        left, right = (np.swapaxes(part, 0, 1).reshape(6, n * m) for part in (screws, pushed))
+        out = _upper(left.T @ right, n, m)
+        out = out + out.T
+        place = np.arange(n)
+        out.reshape(n, m, n, m)[place, :, place] = np.swapaxes(screws, 1, 2) @ pushed
         return out
 
     # --- inertia ---------------------------------------------------------------------------------

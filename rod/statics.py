@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -14,6 +14,7 @@ from scipy.linalg.lapack import dgesv
 from rod.functions import Floats
 from rod.rod import Level, Rod
 from rod.shape import Shape
+from rod.term import Iterate, Iterated
 
 _CLOSE = 1e-9
 """Greatest last correction of a stretch, and of an angle over the whole length in rad; as it falls
@@ -26,7 +27,9 @@ _FAR = 2.0
 met."""
 _AWAY = 1.0
 """Greatest way from what a march foresees to the state that it finds."""
-_SMALLEST = 2.0**-10
+_SMALLEST = 2.0**-12
+TOUCH = 1e-3
+"""Part of a step, or of the way between two targets, to which a touch is found."""
 _SYMMETRIC = 1e-10
 
 
@@ -155,6 +158,7 @@ def solve(
     target: float,
     held: Held | None = None,
     share: float | None = None,
+    before: State | None = None,
 ) -> State:
     """The equilibrium at a share of a path, or at a given angle on it, by Newton's method.
 
@@ -165,6 +169,8 @@ def solve(
         target: the share; with `held` its value.
         held: what is given in place of the share.
         share: to start from where it is unknown; 0 if none is given.
+        before: an equilibrium near by, whose contacts the search begins with; None: those of the
+            strains to start from.
 
     Returns:
         The state.
@@ -175,12 +181,14 @@ def solve(
     sizes, change = size(rod), path.end.less(path.start)
     at = target if held is None else (0.0 if share is None else share)
     last = math.inf
+    near = (rod.shape(strains), path.at(at)) if before is None else (before.shape, before.level)
+    search = _Search(rod, *near)
     for iteration in range(1, _MOST + 1):
         shape, level = rod.shape(strains), path.at(at)
-        tangent = rod.tangent(shape, level)
-        columns = [-rod.residual(shape, level).ravel()]
+        tangent = search.rod.tangent(shape, level)
+        columns = [-search.rod.residual(shape, level).ravel()]
         if held is not None:
-            columns.append(-rod.growth(shape, level, change).ravel())
+            columns.append(-search.rod.growth(shape, level, change).ravel())
         solved, singular = dgesv(tangent, np.stack(columns, axis=1))[2:]
         if singular:
             raise NoEquilibriumError(f"iteration {iteration}: the tangent is singular")
@@ -192,11 +200,12 @@ def solve(
             with np.errstate(divide="ignore"):
                 more = np.divide(missing, float(row @ solved[:, 1]) + by_share)
             step, at = step + more * solved[:, 1], at + float(more)
+        settled = search.stepped(shape, level, step.reshape(strains.shape), path.at(at))
         strains = strains + step.reshape(strains.shape)
         if not way(rod, step.reshape(strains.shape)) < _FAR:
             raise NoEquilibriumError(f"iteration {iteration}: the correction is too great")
         moved = float(np.max(np.abs(step.reshape(strains.shape) / sizes)))
-        if moved < _CLOSE or (moved < _LOOSE and moved > last / 2):
+        if settled and (moved < _CLOSE or (moved < _LOOSE and moved > last / 2)):
             break
         last = moved
     else:
@@ -206,6 +215,41 @@ def solve(
     if outside:
         raise NoEquilibriumError(outside)
     return State.at(rod, shape, level, at, iteration)
+
+
+class _Search:
+    """A rod whose terms remember what happens within one search.
+
+    Args:
+        rod: the rod.
+        shape: from which they begin.
+        level: there.
+
+    Attributes:
+        rod: with the iterates of its terms.
+    """
+
+    def __init__(self, rod: Rod, shape: Shape, level: Level) -> None:
+        (amounts,) = _amounts(rod, level)
+        self._iterates: dict[int, Iterate] = {
+            number: term.iterate(shape, amounts[number])
+            for number, term in enumerate(rod.terms)
+            if isinstance(term, Iterated)
+        }
+        if not self._iterates:
+            self.rod = rod
+            return
+        terms = [self._iterates.get(number, term) for number, term in enumerate(rod.terms)]
+        self.rod = Rod(rod.layout, rod.law, None, terms)
+
+    def stepped(self, shape: Shape, level: Level, change: Floats, after: Level) -> bool:
+        """Tells them of a step; whether none of them changed its mind."""
+        amounts, others = _amounts(self.rod, level, after)
+        settled = [
+            term.stepped(shape, amounts[number], change, others[number] - amounts[number])
+            for number, term in self._iterates.items()
+        ]
+        return all(settled)
 
 
 def unstable_modes(tangent: Floats) -> int:
@@ -220,6 +264,22 @@ def unstable_modes(tangent: Floats) -> int:
     return 0
 
 
+@dataclasses.dataclass(frozen=True)
+class Step:
+    """A state of a march.
+
+    Attributes:
+        state: the equilibrium.
+        reached: it is at a target.
+        touches: places of the terms, among those of the rod, that the last state did not touch; it
+            is at most a thousandth of the way from target to target beyond the touch.
+    """
+
+    state: State
+    reached: bool
+    touches: tuple[int, ...]
+
+
 def march(
     rod: Rod,
     start: State | Floats,
@@ -227,7 +287,26 @@ def march(
     targets: Sequence[float],
     held: Held | None = None,
 ) -> list[State]:
+    """States along a path at targets in turn; see `steps`.
+
+    Raises:
+        NoEquilibriumError: the smallest step does not converge.
+    """
+    walked = steps(rod, start, path, targets, held)
+    return [step.state for step in walked if step.reached]
+
+
+def steps(
+    rod: Rod,
+    start: State | Floats,
+    path: Path,
+    targets: Sequence[float],
+    held: Held | None = None,
+) -> Iterator[Step]:
     """States along a path, each from the last two by extrapolation; steps are halved where needed.
+
+    A step on which something is touched for the first time ends there, and the next one starts
+    without what was foreseen before: a touch is a kink of the path.
 
     Args:
         rod: the rod.
@@ -236,8 +315,8 @@ def march(
         targets: shares, or with `held` its values, in turn.
         held: what is given in place of the share.
 
-    Returns:
-        The states at the targets.
+    Yields:
+        The states at the targets, at touches and on the way.
 
     Raises:
         NoEquilibriumError: the smallest step does not converge.
@@ -245,28 +324,79 @@ def march(
     strains, share = (start.strains, start.share) if isinstance(start, State) else (start, 0.0)
     now = share if held is None else held.value(rod, strains, path.at(share))
     known = [(now, strains, share)]
-    states = []
+    last = State.at(rod, rod.shape(strains), path.at(share), share, 0)
     for target in targets:
-        begin, part = known[-1][0], 1.0
-        done = 0.0
+        begin, part, done, beyond = known[-1][0], 1.0, 0.0, math.inf
         while done < 1.0:
-            part = min(part, 1.0 - done)
-            goal = target if done + part == 1.0 else begin + (done + part) * (target - begin)
+            ahead = min(part, 1.0 - done)
+            guess, at = _ahead(known, begin + (done + ahead) * (target - begin))
+            foreseen = rod.shape(guess), path.at(at)
+            ahead = min(ahead, until_touch(closing(rod, last, *foreseen), ahead, beyond - done))
+            goal = target if done + ahead >= 1.0 else begin + (done + ahead) * (target - begin)
             guess, at = _ahead(known, goal)
             try:
-                state = solve(rod, guess, path, goal, held, at)
+                state = solve(rod, guess, path, goal, held, at, last)
                 if way(rod, state.strains - guess) > _AWAY:
                     raise NoEquilibriumError(f"the state at {goal:.6g} is far from the last one")
             except NoEquilibriumError:
-                part /= 2
+                part = ahead / 2
                 if part < _SMALLEST:
                     raise
                 continue
-            known = [*known[-1:], (goal, state.strains, state.share)]
-            done += part
-            part *= 2
-        states.append(state)
-    return states
+            touches = tuple(place for place, _ in closing(rod, last, state.shape, state.level))
+            if touches and ahead > TOUCH:
+                beyond = done + ahead
+                continue
+            known = [*known[-1:], (goal, state.strains, state.share)][1 if touches else 0 :]
+            last, done, part, beyond = state, done + ahead, max(part, 2 * ahead), math.inf
+            yield Step(state, done >= 1.0, touches)
+
+
+def until_touch(closing: list[tuple[int, float]], ahead: float, beyond: float) -> float:
+    """How long a step may be, in parts of one to which `TOUCH` belongs.
+
+    To just before a touch, then to just beyond it; where that has been missed, halfway to it.
+
+    Args:
+        closing: what is foreseen to be touched; see `closing`.
+        ahead: length of the step without a touch.
+        beyond: that of one known to touch, infinite if none is.
+    """
+    halfway = max(beyond / 2, TOUCH)
+    if not closing:
+        return min(ahead, halfway)
+    near = min(share for _, share in closing) * ahead
+    return min(near + (-TOUCH / 4 if near > TOUCH * 3 / 4 else TOUCH / 2), halfway)
+
+
+def closing(rod: Rod, last: State, shape: Shape, level: Level) -> list[tuple[int, float]]:
+    """What the last state does not touch, but another one does.
+
+    Args:
+        rod: the rod.
+        last: the one that does not.
+        shape: of the other one.
+        level: there.
+
+    Returns:
+        Places among the rod's terms, and the parts of the way at which gaps close if they fall
+        evenly.
+    """
+    found = []
+    amounts = zip(rod.terms, *_amounts(rod, last.level, level), strict=True)
+    for place, (term, before, after) in enumerate(amounts):
+        if not isinstance(term, Iterated):
+            continue
+        gap = term.gap(shape, after)
+        if gap < 0 <= (room := term.gap(last.shape, before)) < math.inf:
+            found.append((place, room / (room - gap)))
+    return found
+
+
+def _amounts(rod: Rod, *levels: Level) -> list[list[float]]:
+    """Of all terms at some levels."""
+    count = len(rod.terms)
+    return [[*level.amounts, *[0.0] * (count - len(level.amounts))] for level in levels]
 
 
 def _ahead(known: list[tuple[float, Floats, float]], goal: float) -> tuple[Floats, float]:

@@ -60,7 +60,7 @@ class CentreLine:
         spline = _RodFit(data, root, tip)
         self._inverse, self._value, self._rate = spline.inverse, spline.value, spline.rate
         self._along, self._within, self._share = spline.along, spline.within, spline.share
-        ends = [_plane_fit(nodes, body.domain.surface_weights(name), data.half) for name in ENDS]
+        ends = [plane_fit(nodes, body.domain.surface_weights(name), data.half) for name in ENDS]
         rows = vstack([csr_matrix(ends[0]), spline.moments, csr_matrix(ends[1])]).tocsc()
         used = body.owned_nodes[np.diff(rows.indptr)[body.owned_nodes] > 0]
         self._dofs, self._nodes = body.node_dofs[used], nodes[used]
@@ -90,6 +90,11 @@ class CentreLine:
             np.vstack([sums[1], self._value @ a_y, sums[-1]]),
             self._rate @ centre,
         )
+
+    def end_axes(self) -> Floats:
+        """Axes of the plane sections z = 0 and z = L as columns, (2, 3, 3); collective."""
+        ends: Floats = _axes(*self._parts())[[0, -1]]
+        return ends
 
     def _steps(self) -> Floats:
         """Rotation vectors from station to station on (d1, d2, t), rad, (k − 1, 3)."""
@@ -242,7 +247,7 @@ class _RodFit:
         self.inverse: Floats = np.linalg.pinv(gram, rcond=1e-12, hermitian=True)
 
 
-def _plane_fit(nodes: Floats, weights: Floats, half: bool) -> Floats:
+def plane_fit(nodes: Floats, weights: Floats, half: bool) -> Floats:
     """Least squares x ≈ c + (X − X̄) a_x + (Y − Ȳ) a_y in a plane section.
 
     Args:
@@ -262,6 +267,30 @@ def _plane_fit(nodes: Floats, weights: Floats, half: bool) -> Floats:
         gram[0, 1] = gram[1, 0] = 0.0
     rows: Floats = np.linalg.solve(gram, levers.T)
     return rows
+
+
+def face_axes(body: Kinematics, surface: str) -> Floats:
+    """Axes of a plane face by least squares, as columns, (3, 3); collective.
+
+    Args:
+        body: kinematics.
+        surface: the face, which is across z at rest.
+    """
+    domain = body.domain
+    rows = plane_fit(domain.data.nodes, domain.surface_weights(surface), domain.data.half)
+    owned = body.owned_nodes
+    x = domain.data.nodes[owned] + body.w.x.array[body.node_dofs[owned]]
+    a_x, a_y = total(domain.comm, rows[:, owned] @ x)[:, None]
+    if domain.data.half:
+        a_x, a_y = a_x * _ODD, np.zeros_like(a_y) + a_y * _EVEN
+    axes: Floats = section_axes(a_x, a_y, np.cross(a_x, a_y))[0]
+    return axes
+
+
+def turn_of(before: Floats, after: Floats) -> Floats:
+    """Rotation vector between axes on the first ones, (3,), rad, less than half a turn."""
+    turn: Floats = _rotations(np.stack([before, after]))[0]
+    return turn
 
 
 def _axes(a_x: Any, a_y: Any, inside: Any) -> Any:

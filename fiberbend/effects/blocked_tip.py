@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from fiberbend import columns as col
 from fiberbend.effects.effect import ENDS, STRIPS, Built, Effect, Requests, Site
-from fiberbend.effects.obstacles import post_shape, roof_shape
+from fiberbend.effects.obstacles import over_crown, post_shape, roof_shape, under_cap
+from fiberbend.effects.records import OnRod, RodSite
 from fiberbend.schema.quantities import Length
 
 if TYPE_CHECKING:
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
     from geometry.actuator import Actuator
     from geometry.mesh.data import MeshData
     from geometry.sections.size import Strips
+
+_STIFFNESS = 100.0
+"""Strips on a rod are so many times as stiff as the wall."""
 
 
 class BlockedTipEffect(Effect):
@@ -32,10 +36,36 @@ class BlockedTipEffect(Effect):
         text = "roof and post need the ends of a body (effect straight: the blocked uniform bend)"
         return {ENDS: text}
 
+    def on_rod(self, site: RodSite) -> OnRod:
+        """Both strips keep their height, as far as the sheath under them lets them."""
+        from fiberbend.effects.slender.sheath import under_strip
+        from fiberbend.effects.slender.skins import skin
+        from rod.contact.touch import Touch
+
+        assert site.body is not None, "strips are as stiff as what is under them"
+        places = {
+            "roof": ("crown", over_crown(site.actuator), (self.roof_width, 2)),
+            "post": ("sole", under_cap(site.actuator), (self.post_length, 1)),
+        }
+        held = []
+        for name, (surface, plane, strip) in places.items():
+            stiffness, part = under_strip(site.body, *strip, self._rigid(site.body))
+            points = skin(site, (surface,), self.strips())
+            held.append((name, Touch(points, plane, stiffness, keeps=True, part=part)))
+        return OnRod(tuple(("", touch) for _, touch in held), obstacles=tuple(held))
+
+    @staticmethod
+    def _rigid(site: Site) -> float:
+        """Stiffness of strips that keep their height, MPa/mm: as of obstacles between which a body
+        is kept straight.
+        """
+        return _STIFFNESS * 3 * site.materials["wall"].initial_shear_modulus / site.actuator.wall
+
     def wants(self) -> dict[str, str]:
         """Roof and post as surfaces."""
         return {
-            STRIPS: "in closed forms the tip is fixed rigidly, without roof, post and sheath",
+            STRIPS: "roof and post are no surfaces of it: closed forms fix the tip rigidly, of a rod "
+            "the sheath yields",
         }
 
     def mirror_breaker(self) -> str:
@@ -110,7 +140,6 @@ def tip_force_summary(site: Site, strips: Strips, row: Mapping[str, Any]) -> dic
             "F_L_f_Nmm": row[col.TIP_FORCE] * lever,
             "kappa_P_Nmm": site.actuator.chamber_moment * row[col.PRESSURE] * 1e-3,
             "tip_section_rotation_deg": row[col.ANGLE],
-            col.BALANCE_FORCE: row[col.BALANCE_FORCE],
-            col.BALANCE_MOMENT: row[col.BALANCE_MOMENT],
+            **{name: row[name] for name in (col.BALANCE_FORCE, col.BALANCE_MOMENT) if name in row},
         }
     }

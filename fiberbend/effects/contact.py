@@ -12,6 +12,7 @@ from fiberbend.effects.blocked_tip import tip_force_summary
 from fiberbend.effects.clearance import from_bar, over_plane
 from fiberbend.effects.effect import SPACE, Built, Draft, Effect, Requests, Site
 from fiberbend.effects.obstacles import CylinderSpec, ObstacleSpec, PlaneSpec, PostSpec, RoofSpec
+from fiberbend.effects.records import LINE, OnRod, RodSite
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import PenaltyStiffness
 from fiberbend.schema.units import show
@@ -84,8 +85,12 @@ class ContactEffect(Effect):
         return {name: item for name, item in all_of_them.items() if item is not None}
 
     def needs(self) -> dict[str, str]:
-        """A body in space."""
-        return {SPACE: "obstacles need a body in space (effect straight: the blocked uniform bend)"}
+        """A line in space."""
+        return {LINE: "obstacles need a line in space (effect straight: the blocked uniform bend)"}
+
+    def wants(self) -> dict[str, str]:
+        """Sections that yield where they touch."""
+        return {SPACE: "sections keep their shape; under roof and post the sheath alone yields"}
 
     def mirror_breaker(self) -> str:
         """A plane whose normal has an x component."""
@@ -238,6 +243,22 @@ class ContactEffect(Effect):
                 for name, item in self.obstacles.items()
             )
         )
+
+    def on_rod(self, site: RodSite) -> OnRod:
+        """One penalty for each obstacle, as on a body; under roof and post the sheath yields too."""
+        from fiberbend.effects.slender.sheath import under_strip
+        from fiberbend.effects.slender.skins import skin
+        from rod.contact.touch import Touch
+
+        assert site.body is not None, "an obstacle is as stiff as what touches it"
+        met = []
+        for name, item in self.obstacles.items():
+            stiffness, part, strip = self.yields(site.body), 1.0, item.strip()
+            if strip is not None:
+                stiffness, part = under_strip(site.body, *strip, stiffness)
+            points = skin(site, item.surfaces, self.strips())
+            met.append((name, Touch(points, item.met(site.actuator), stiffness, part=part)))
+        return OnRod(tuple(("", touch) for _, touch in met), obstacles=tuple(met))
 
     def doubts(self, site: Site, rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
         """Obstacles so soft that the body sinks into them."""

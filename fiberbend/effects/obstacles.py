@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from fem.effects.contact import Obstacle
     from fiberbend.states.obstacles import Shape
     from geometry.actuator import Actuator
+    from rod.contact.obstacles import Obstacle as Rigid
 
 _ROOF_HEIGHT, _POST_HEIGHT = 2.0, 8.0
 """Heights in mm in which pictures show what has a lower or an upper face only."""
@@ -34,6 +35,17 @@ class ObstacleSpec(Spec):
     @abstractmethod
     def placed(self, actuator: Actuator) -> Obstacle:
         """The obstacle in space, beside an actuator at rest."""
+
+    @abstractmethod
+    def met(self, actuator: Actuator) -> Rigid:
+        """The obstacle in space, as a rod meets it."""
+
+    def strip(self) -> tuple[float, int] | None:
+        """Width in mm of the strip under it, and to how many of its sides rubber escapes.
+
+        None: what touches it is no strip.
+        """
+        return None
 
     @abstractmethod
     def shape(self, actuator: Actuator) -> Shape:
@@ -59,6 +71,14 @@ class RoofSpec(ObstacleSpec):
 
         return Plane((0.0, actuator.outer_top + self.gap, 0.0), (0.0, -1.0, 0.0))
 
+    def met(self, actuator: Actuator) -> Rigid:
+        """The same plane."""
+        return over_crown(actuator, self.gap)
+
+    def strip(self) -> tuple[float, int]:
+        """Along the crown."""
+        return self.width, 2
+
     def shape(self, actuator: Actuator) -> Shape:
         """A bar along the chamber."""
         return roof_shape(actuator, self.width, self.gap)
@@ -83,6 +103,14 @@ class PostSpec(ObstacleSpec):
 
         return Plane((0.0, actuator.outer_bottom - self.gap, 0.0), (0.0, 1.0, 0.0))
 
+    def met(self, actuator: Actuator) -> Rigid:
+        """The same plane."""
+        return under_cap(actuator, self.gap)
+
+    def strip(self) -> tuple[float, int]:
+        """Beyond its inner side the sheath goes on."""
+        return self.length, 1
+
     def shape(self, actuator: Actuator) -> Shape:
         """A block under the end of the cap."""
         return post_shape(actuator, self.length, self.gap)
@@ -100,6 +128,12 @@ class PlaneSpec(ObstacleSpec):
     def placed(self, actuator: Actuator) -> Obstacle:
         """The plane."""
         from fem.effects.contact import Plane
+
+        return Plane(self.point, self.normal)
+
+    def met(self, actuator: Actuator) -> Rigid:
+        """The same plane."""
+        from rod.contact.obstacles import Plane
 
         return Plane(self.point, self.normal)
 
@@ -124,11 +158,31 @@ class CylinderSpec(ObstacleSpec):
 
         return Cylinder(self.center, self.radius)
 
+    def met(self, actuator: Actuator) -> Rigid:
+        """The same bar."""
+        from rod.contact.obstacles import Cylinder
+
+        return Cylinder((0.0, *self.center), (1.0, 0.0, 0.0), self.radius)
+
     def shape(self, actuator: Actuator) -> Shape:
         """A bar."""
         from fiberbend.states.obstacles import Bar
 
         return Bar(self.center, self.radius)
+
+
+def over_crown(actuator: Actuator, gap: float = 0.0) -> Rigid:
+    """The plane of a roof, as a rod meets it; mm."""
+    from rod.contact.obstacles import Plane
+
+    return Plane((0.0, actuator.outer_top + gap, 0.0), (0.0, -1.0, 0.0))
+
+
+def under_cap(actuator: Actuator, gap: float = 0.0) -> Rigid:
+    """The plane of a post, as a rod meets it; mm."""
+    from rod.contact.obstacles import Plane
+
+    return Plane((0.0, actuator.outer_bottom - gap, 0.0), (0.0, 1.0, 0.0))
 
 
 def roof_shape(actuator: Actuator, width: float, gap: float = 0.0) -> Shape:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from geometry.sections.size import Strips
     from geometry.winding.segments import EmbeddedFibers
     from materials.material import Material
+    from rod.contact.touch import Touch
     from rod.layout import Layout
     from rod.term import Term as RodTerm
 
@@ -165,6 +166,7 @@ class RodSite:
         inertia: of the sections on the frames, (n + 1, 4, 4); see `rod.inertia`.
         tip: the outer face's centroid in the axes of the last frame, mm.
         weight: acceleration by which it is heavy, x, y and z, mm/s²; None: without weight.
+        body: the actuator as effects of a body see it, with its materials; None: not known.
     """
 
     actuator: ShapedActuator
@@ -172,6 +174,7 @@ class RodSite:
     inertia: Floats
     tip: tuple[float, float, float]
     weight: tuple[float, float, float] | None = None
+    body: Site | None = None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -202,11 +205,13 @@ class OnRod:
             the beginning.
         ramps: loads, in order.
         inertia: masses that it adds to the frames, (n + 1, 4, 4); None: none.
+        obstacles: those of the terms that are contacts, by the obstacle's name.
     """
 
     terms: tuple[tuple[str, RodTerm], ...] = ()
     ramps: tuple[RodRamp, ...] = ()
     inertia: Floats | None = None
+    obstacles: tuple[tuple[str, Touch], ...] = ()
 
 
 def mirror_breakers(effects: Iterable[Effect]) -> Iterator[str]:

@@ -13,7 +13,7 @@ from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.section_beside import section_guides
 from fiberbend.case.zones import borders, differing, effects_of, own_regions, zone_cases
-from fiberbend.columns import BODY, MIDDLE
+from fiberbend.columns import BODY, MIDDLE, OBSTACLES
 from fiberbend.columns import ZONES as ZONE_COLUMNS
 from fiberbend.effects.effect import (
     CHAMBER,
@@ -67,7 +67,7 @@ class Body(MeshedModel):
     offers = frozenset(
         {CHAMBER, WOUND, SPACE, LINE, ENDS, STRIPS, VOLUME, TWIST, SIDE, THREAD, TURNS, ZONES}
     )
-    fills = MeshedModel.fills | {MIDDLE, BODY, ZONE_COLUMNS}
+    fills = MeshedModel.fills | {MIDDLE, BODY, OBSTACLES, ZONE_COLUMNS}
     shared = True
     resumes = True
     takes_mesh_as_given = True

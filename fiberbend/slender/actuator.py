@@ -11,11 +11,11 @@ from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.records import RodRamp, RodSite
 from fiberbend.models.rod import MODEL
-from fiberbend.slender.laws import SectionLaw, cap_law, masses, section_law
+from fiberbend.slender.laws import SectionLaw, along, cap_law, masses, section_law
 from fiberbend.slender.moments import section_of
+from rod.contact.touch import Touch
 from rod.functions import Floats
 from rod.inertia import spread
-from rod.law import Zones
 from rod.layout import Layout
 from rod.rod import Level, Rod
 from rod.shape import Shape
@@ -36,6 +36,7 @@ class Slender:
         loads: the load whose value is the amount of each term; without a name it acts whole.
         ramps: loads in the order of the case.
         section: the law of the section between the caps.
+        obstacles: what it may touch, by names.
     """
 
     rod: Rod
@@ -43,6 +44,7 @@ class Slender:
     loads: tuple[str, ...]
     ramps: tuple[RodRamp, ...]
     section: SectionLaw
+    obstacles: tuple[tuple[str, Touch], ...] = ()
 
     @property
     def chamber(self) -> slice:
@@ -87,9 +89,11 @@ def slender(case: Case) -> Slender:
         inertia=spread(layout, parts),
         tip=(0.0, actuator.face_height - section.height, 0.0),
         weight=convert.site(case).weight,
+        body=convert.site(case),
     )
     made = section_law(case, PLANE)
-    law = Zones((made.law, cap_law(case, section, PLANE)), _places(len(lengths)))
+    chamber = slice(CAP_PIECES, CAP_PIECES + PIECES)
+    law = along(case, made, cap_law(case, section, PLANE), layout, chamber)
     found = [effect.on_rod(site) for effect in case.effects]
     terms = [term for each in found for term in each.terms]
     inertia = sum((e.inertia for e in found if e.inertia is not None), site.inertia)
@@ -99,10 +103,5 @@ def slender(case: Case) -> Slender:
         loads=tuple(name for name, _ in terms),
         ramps=tuple(ramp for each in found for ramp in each.ramps),
         section=made,
+        obstacles=tuple(pair for each in found for pair in each.obstacles),
     )
-
-
-def _places(pieces: int) -> list[int]:
-    """Which law each piece has: 0 between the caps, 1 in them."""
-    inside = range(CAP_PIECES, CAP_PIECES + PIECES)
-    return [int(number not in inside) for number in range(pieces)]

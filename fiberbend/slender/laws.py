@@ -12,11 +12,16 @@ from fiberbend.slender.moments import Section, weighed
 from materials.material import Material
 from rod.functions import Floats
 from rod.inertia import SectionMass
-from rod.law import Law, Linear
-from rod.layout import AT_REST, STRAINS
+from rod.law import Law, Zones
+from rod.layout import AT_REST, STRAINS, Layout
+from rod.quartic import Quartic
 
 ERROR = 1e-3
 """Of the table of a section, as `fiberbend.sectionlaw.table.law_of` has it."""
+
+
+_ROUND, _RADIUS = 32, 0.1
+"""Points of a circle about a stretch of one, and its radius."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -71,30 +76,74 @@ def section_law(case: Case, strains: tuple[str, ...]) -> SectionLaw:
     )
 
 
-def cap_law(case: Case, section: Section, strains: tuple[str, ...]) -> Law:
-    """The law of a solid cap: each material along the axis by its modulus at rest.
+def along(case: Case, made: SectionLaw, cap: Quartic, layout: Layout, chamber: slice) -> Law:
+    """The law of each piece: of chamber and caps, with the turns of their ends under pressure.
+
+    Args:
+        case: of model rod.
+        made: the law of its section.
+        cap: the law of its caps as beams; the clamp makes that at the root stiffer.
+        layout: pieces of the rod.
+        chamber: those between the caps.
+
+    Raises:
+        fiberbend.schema.problems.CaseError: the ends of a short body are not found.
+    """
+    from fiberbend.sectionlaw.ends import ends_of
+    from fiberbend.slender.beside import section_case
+
+    ends = ends_of(section_case(case), float(made.free[:, 0].max()))
+    count, place = len(layout.lengths), layout.strains.index("curvature")
+    beam = float(layout.lengths[: chamber.start].sum()) * np.linalg.inv(cap.stiffness)[place, place]
+    root = cap.times(beam / ends.flexibility)
+    borders = (0, chamber.start, chamber.stop, count)
+    pieces = np.repeat(np.arange(3), np.diff(borders)).tolist()
+    return ends.offset(Zones((root, made.law, cap), pieces), layout, chamber)
+
+
+def cap_law(case: Case, section: Section, strains: tuple[str, ...]) -> Quartic:
+    """The law of a solid cap: each material along the axis as in a test of tension.
 
     A line at (x, y) from the line of centroids stretches by λ + k_x y − k_y x; the materials side
-    by side have next to the same Poisson's ratio and press on each other hardly. A cap is as thick
-    as it is long and strained by parts of a percent: nothing of it beyond the linear is seen.
+    by side have next to the same Poisson's ratio and press on each other hardly. Far from the floor
+    a cap is strained by a tenth, where rubber is softer if it is pulled and stiffer if it is
+    pressed: the energy is taken to the fourth order.
 
     Args:
         case: the case.
         section: its moments.
         strains: of the rod.
     """
-    moduli = {name: young(each) for name, each in convert.site(case).materials.items()}
-    sums = weighed(section.filled, moduli)
     levers = {"stretch": (0.0, 0.0, 1.0), "curvature": (0.0, 1.0, 0.0)}
     levers["side_curvature"] = (-1.0, 0.0, 0.0)
     by = np.array([levers[name] for name in strains])
-    return Linear(by @ sums @ by.T, AT_REST[[STRAINS.index(name) for name in strains]])
+    slopes = {name: pulled(each) for name, each in convert.site(case).materials.items()}
+    second, third, fourth = (
+        weighed(section.fourth, {name: each[order] for name, each in slopes.items()})
+        for order in range(3)
+    )
+    return Quartic(
+        np.einsum("ai,bj,ij->ab", by, by, second[2, 2]),
+        np.einsum("ai,bj,ck,ijk->abc", by, by, by, third[2]),
+        np.einsum("ai,bj,ck,dl,ijkl->abcd", by, by, by, by, fourth),
+        AT_REST[[STRAINS.index(name) for name in strains]],
+    )
 
 
-def young(material: Material) -> float:
-    """E at rest, MPa: 3 μ of what cannot be compressed, 9 K μ/(3 K + μ) of what can."""
+def pulled(material: Material) -> Floats:
+    """Second to fourth derivative of the energy by the stretch at rest in a test of tension, MPa.
+
+    The second is E, 3 μ of what cannot be compressed, 9 K μ/(3 K + μ) of what can; the others are
+    in the proportion of the incompressible law. By Cauchy's formula on a circle, to round-off.
+    """
+    around = np.exp(2j * np.pi * np.arange(_ROUND) / _ROUND)
+    stretch = 1 + _RADIUS * around
+    energy = material.energy(stretch, stretch**-0.5, stretch**-0.5)
+    orders = np.arange(2, 5)
+    series = np.array([np.mean(energy * around ** -float(order)).real for order in orders])
+    slopes: Floats = series / _RADIUS**orders * [2.0, 6.0, 24.0]
     shear, bulk = material.initial_shear_modulus, material.bulk
-    return 3 * shear if bulk is None else 9 * bulk * shear / (3 * bulk + shear)
+    return slopes if bulk is None else slopes * 3 * bulk / (3 * bulk + shear)
 
 
 def masses(case: Case, section: Section) -> tuple[SectionMass, SectionMass]:

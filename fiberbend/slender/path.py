@@ -13,13 +13,16 @@ from fiberbend.effects.records import Requests, RodRamp
 from fiberbend.slender.actuator import Slender
 from rod.functions import Floats
 from rod.statics import (
+    TOUCH,
     Angle,
     Held,
     NoEquilibriumError,
     Path,
     State,
     Volume,
+    closing,
     solve,
+    until_touch,
     way,
 )
 
@@ -196,6 +199,7 @@ class _Drive:
         """Go to a value of what is driven; whether it came there."""
         cutbacks, limits = 0, self._course._limits
         total = abs(self._ramp.target - self._begin) or 1.0
+        beyond = math.inf
         while self._s != goal:
             point = self._course.points[-1]
             try:
@@ -208,6 +212,7 @@ class _Drive:
                 return self._limit_before(point)
             left = abs(goal - self._s)
             size = left if left <= (1 + _NEAR) * size else size
+            whole, size = size, self._until_touch(point, ahead, share, size, goal, beyond)
             step = math.copysign(size, goal - self._s)
             s = goal if size == left else self._s + step
             try:
@@ -219,8 +224,15 @@ class _Drive:
                 if cutbacks > limits.cutbacks or self._size < 1e-9 * total:
                     return self._fail(str(error))
                 continue
-            self._before = self._s, ahead
-            cutbacks, self._size = 0, max(_GROW * size, self._size if size == left else 0.0)
+            touches = bool(closing(self._rod, point.state, new.state.shape, new.state.level))
+            if touches and size > TOUCH * whole:
+                beyond = size
+                continue
+            beyond = math.inf
+            # a touch is a kink: what the slope did before tells nothing of what it does beyond
+            self._before = None if touches else (self._s, ahead)
+            cut = size == left or size < whole
+            cutbacks, self._size = 0, max(_GROW * size, self._size if cut else 0.0)
             self._accept(point, new, s)
         return True
 
@@ -254,12 +266,40 @@ class _Drive:
             strains = strains + step**2 / 2 * (ahead - slope) / (self._s - last)
         return strains
 
+    def _until_touch(
+        self,
+        point: Point,
+        ahead: Floats,
+        share: tuple[float, float],
+        size: float,
+        goal: float,
+        beyond: float,
+    ) -> float:
+        """A step that ends where something is touched for the first time.
+
+        Args:
+            point: where it begins.
+            ahead: slope of the strains.
+            share: the load with its slope.
+            size: of the step without a touch.
+            goal: to which it leads.
+            beyond: size of a step that is known to end too far beyond a touch.
+        """
+        step = math.copysign(size, goal - self._s)
+        shape = self._rod.shape(self._foreseen(point, ahead, step))
+        foreseen = self._path.at(share[0] + share[1] * step)
+        meets = closing(self._rod, point.state, shape, foreseen)
+        if not meets and beyond == math.inf:
+            return size
+        return size * min(1.0, until_touch(meets, 1.0, beyond / size))
+
     def _words(self) -> str:
         return {"conjugate": "the volume", "control": "the angle"}.get(self._ramp.drive, "")
 
     def _solve(self, s: float, guess: Floats, share: tuple[float, float], step: float) -> Point:
         q, slope = share
-        state = solve(self._rod, guess, self._path, s, self._held, q + slope * step)
+        last = self._course.points[-1].state
+        state = solve(self._rod, guess, self._path, s, self._held, q + slope * step, last)
         if way(self._rod, state.strains - guess) > _AWAY:
             raise NoEquilibriumError("a state far from the last one was found")
         return self._course._point(state, {**self._base, self._ramp.load: state.share})
@@ -309,7 +349,7 @@ class _Drive:
         q = (1 - part) * old.values.get(self._ramp.load, 0.0)
         q += part * new.values[self._ramp.load]
         try:
-            state = solve(self._rod, strains, self._path, goal, self._course._bend, q)
+            state = solve(self._rod, strains, self._path, goal, self._course._bend, q, old.state)
         except NoEquilibriumError:
             return None
         values = {**self._base, self._ramp.load: state.share}

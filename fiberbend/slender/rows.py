@@ -18,6 +18,9 @@ from rod.shape import Shape
 _MIDDLE = 0.25
 """Part of the length on either side of the middle whose rate is that without ends."""
 
+_STRIPS = ((col.TIP_FORCE, "post", 1.0), (col.ROOF_FORCE, "roof", -1.0))
+"""Columns of the obstacles that press along y alone."""
+
 
 class Rows:
     """Makes the rows.
@@ -69,8 +72,26 @@ class Rows:
             row[value] = point.values.get(ramp.load, 0.0)
             if ramp.potential:
                 row[conjugate] = self._conjugate(ramp, shape)
+        row |= self._contacts(shape)
         if step and self._tells:
             row[col.MODES] = point.state.unstable
+        return row
+
+    def _contacts(self, shape: Shape) -> dict[str, float]:
+        """Force of every obstacle on the rod, what touches it, and how far or deep."""
+        row: dict[str, float] = {}
+        for name, touch in self._slender.obstacles:
+            found = touch.touched(shape, 1.0)
+            for column, obstacle, sign in _STRIPS:
+                if name == obstacle:
+                    row[column] = sign * float(found.force[1])
+            if touch.keeps:
+                continue
+            values = (found.force[1], found.force[2], found.moment[0], found.area, found.gap)
+            row |= {
+                col.contact(name, quantity): float(value)
+                for quantity, value in zip(col.CONTACT, values, strict=True)
+            }
         return row
 
     def loads(self, rows: Sequence[dict[str, Any]]) -> tuple[Floats, Floats]:

@@ -356,7 +356,8 @@ UNFIT_MODELS = [
         ["model=auto", HOOPS, BLOCKED],
         'model: "auto", expected effects that one model supports: '
         "analytic not effects.2.blocked-tip "
-        "(in closed forms the tip is fixed rigidly, without roof, post and sheath); section not "
+        "(roof and post are no surfaces of it: closed forms fix the tip rigidly, of a rod the "
+        "sheath yields); section not "
         "effects.1.hoops (",
     ),
 ]

@@ -15,7 +15,8 @@ from fiberbend.reader.reader import parse_case
 from fiberbend.slender import actuator
 from fiberbend.slender.laws import SectionLaw
 from rod.functions import Floats
-from rod.law import Law, Linear
+from rod.law import Law, Linear, Zones
+from rod.layout import Layout
 
 WOUND = {"pattern": "double-helix", "pitch": "3 mm", "fiber": "kevlar", "as": "smeared"}
 RUBBER = {"law": "neo-hooke", "mu": "0.3 MPa"}
@@ -101,12 +102,20 @@ class Softening(Linear):
         return out
 
 
+def without_ends(_case: Case, made: SectionLaw, cap: Law, layout: Layout, chamber: slice) -> Zones:
+    """Caps are beams, and no pressure turns the ends of the chamber."""
+    pieces = np.zeros(len(layout.lengths), dtype=int)
+    pieces[chamber] = 1
+    return Zones((cap, made.law), pieces.tolist())
+
+
 @pytest.fixture
 def by_law(monkeypatch: pytest.MonkeyPatch) -> Callable[[Law], None]:
-    """Puts a law in the place of the table of any section."""
+    """Puts a law in the place of the table of any section; no pressure turns its ends."""
 
     def put(law: Law) -> None:
         made = SectionLaw(law, np.empty((0, 3)), "section", 0, 0.0, 0.0, ())
         monkeypatch.setattr(actuator, "section_law", lambda _case, _strains: made)
+        monkeypatch.setattr(actuator, "along", without_ends)
 
     return put

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import math
 from collections.abc import Callable
 from typing import Any
@@ -18,9 +19,11 @@ from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case
 from fiberbend.running.runner import run_case
 from fiberbend.slender.actuator import PLANE
-from fiberbend.slender.laws import cap_law, masses
+from fiberbend.slender.laws import cap_law, masses, pulled
 from fiberbend.slender.moments import section_of
-from rod.law import Law, Linear
+from materials.material import Material
+from rod.law import Law
+from rod.quartic import Quartic
 from tests.slender.rods import (
     QUIET,
     ROUND,
@@ -79,17 +82,39 @@ def test_a_cap_of_one_material_is_a_beam_of_its_own_section() -> None:
     """A solid circle: EA and EI of a disk, E = 3 μ, about its centre, where the line is."""
     given = case(**ROUND)
     law = cap_law(given, section_of(given), PLANE)
-    assert isinstance(law, Linear)
+    assert isinstance(law, Quartic)
     radius, young = 7.0, 0.9
     exact = young * np.diag([math.pi * radius**2, math.pi * radius**4 / 4])
     np.testing.assert_allclose(law.stiffness, exact, rtol=1e-5, atol=1e-5 * exact.max())
+
+
+def test_a_cap_is_pulled_as_its_rubber_in_a_test() -> None:
+    """σ = μ (λ − 1/λ²) of a neo-Hookean rubber, to the third power of λ − 1."""
+    given = case(**ROUND)
+    law = cap_law(given, section_of(given), PLANE)
+    for stretch in (0.97, 1.03):
+        exact = 0.3 * math.pi * 7.0**2 * (stretch - stretch**-2)
+        force = law.gradient(np.array([[stretch, 0.0]]), 0.0)[0, 0]
+        assert force == pytest.approx(exact, rel=2e-4)
+    # bent, it is alike up and down, and shortens: rubber is stiffer where it is pressed
+    up, down = law.gradient(np.array([[1.0, 0.02], [1.0, -0.02]]), 0.0)
+    assert up == pytest.approx([down[0], -down[1]], rel=1e-9)
+    assert up[0] < 0
+
+
+def test_slopes_of_a_test_of_tension_are_those_of_the_law() -> None:
+    """U = μ/2 (λ² + 2/λ − 3): 3 μ, −6 μ and 24 μ; compressible by less at a bulk modulus."""
+    rubber = Material("neo-hooke", {"mu": 0.3})
+    assert pulled(rubber) == pytest.approx([0.9, -1.8, 7.2], rel=1e-9)
+    soft = dataclasses.replace(rubber, bulk=0.6)
+    assert pulled(soft) == pytest.approx(np.array([0.9, -1.8, 7.2]) * 1.8 / 2.1, rel=1e-9)
 
 
 def test_a_cap_is_stiffer_where_its_floor_is() -> None:
     """Pulled without a moment about the line, it bends up: its stiff floor stretches less."""
     given = baseline()
     law = cap_law(given, section_of(given), PLANE)
-    assert isinstance(law, Linear)
+    assert isinstance(law, Quartic)
     curvature = np.linalg.solve(law.stiffness, [1.0, 0.0])[1]
     assert curvature > 0
 

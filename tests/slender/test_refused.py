@@ -21,7 +21,6 @@ PRESSED = {"pressure": {"to": "20 kPa"}}
     [
         ([PRESSED, {"straight": {}}], {}, "effects.1.straight: model rod does not support it"),
         ([{"hold": {"bend": "10 deg"}}], {}, "effects.0.hold: model rod does not support it"),
-        ([PRESSED, {"blocked-tip": {}}], {}, "effects.1.blocked-tip: model rod does not"),
         ([{"pressure": {"volume": "9 ml"}}], {}, "effects.0.pressure.volume: model rod does not"),
         ([{"pressure": {"to": "-5 kPa"}}], {}, "of pressures above zero, and no vacuum"),
         ([{"gravity": {"direction": "-y"}}], {}, "expected effect pressure with one"),

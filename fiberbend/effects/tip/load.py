@@ -121,3 +121,8 @@ class TipLoadEffect(Effect):
         potential = all(term.conservative for term in terms)
         named = tuple(("tip-load", term) for term in terms)
         return OnRod(named, (RodRamp("tip-load", potential=potential),))
+
+
+def turned(moment: float) -> TipLoadEffect:
+    """A moment about x alone, N mm, that bends toward -y."""
+    return TipLoadEffect.model_construct(force=_NONE, moment=(moment, 0.0, 0.0), follows=False)

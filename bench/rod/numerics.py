@@ -283,6 +283,7 @@ def costs() -> str:
     return "\n".join(table(["48 pieces", "unknowns", "a state", "a step of 5 ms"], rows))
 
 
-if __name__ == "__main__":
+def report() -> None:
+    """Print all of it."""
     for part in (discretisations, shear_share, rules_of_mass, costs, tables):
         print(part(), end="\n\n")

@@ -1,0 +1,1 @@
+"""What effects make of an actuator that is a rod."""

@@ -1,0 +1,87 @@
+"""A law whose strains are apart from those of another by what a pressure makes of the pieces."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from rod.functions import Floats
+from rod.law import Law
+
+
+@dataclasses.dataclass(frozen=True)
+class Offset:
+    """Φ(ε − δ(P); P) with δ = Σ c_j P^(j + 1): the end of a chamber turns under pressure alone.
+
+    It is a `rod.law.Law`. What turns it does work: the area of its chamber has the part of the
+    forces along ∂δ/∂P.
+
+    Attributes:
+        law: of the forces.
+        coefficients: c by power of P in MPa, piece and free strain, (d, n, m); or (d, m), of any
+            piece.
+    """
+
+    law: Law
+    coefficients: Floats
+
+    def _moved(self, pressure: float) -> tuple[Floats, Floats, Floats]:
+        """δ and its first two derivatives by P, (n, m) or (m,) each."""
+        power = 1.0 + np.arange(len(self.coefficients))
+        value = pressure**power
+        slope = power * pressure ** (power - 1)
+        # of the first power none, also where P is zero
+        bent = power * (power - 1) * pressure ** np.maximum(power - 2, 0.0)
+        moved, first, second = (
+            np.tensordot(each, self.coefficients, 1) for each in (value, slope, bent)
+        )
+        return moved, first, second
+
+    def value(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return self.law.value(strains - self._moved(pressure)[0], pressure)
+
+    def gradient(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return self.law.gradient(strains - self._moved(pressure)[0], pressure)
+
+    def hessian(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return self.law.hessian(strains - self._moved(pressure)[0], pressure)
+
+    def chamber(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        moved, slope, _ = self._moved(pressure)
+        here = strains - moved
+        own = self.law.chamber(here, pressure)
+        out: Floats = own + np.sum(self.law.gradient(here, pressure) * slope, axis=1)
+        return out
+
+    def chamber_gradient(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        moved, slope, _ = self._moved(pressure)
+        here = strains - moved
+        own = self.law.chamber_gradient(here, pressure)
+        out: Floats = own + _times(self.law.hessian(here, pressure), slope)
+        return out
+
+    def chamber_slope(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        moved, slope, bent = self._moved(pressure)
+        here = strains - moved
+        cross = 2 * self.law.chamber_gradient(here, pressure)
+        cross = cross + _times(self.law.hessian(here, pressure), slope)
+        forces = self.law.gradient(here, pressure)
+        own = self.law.chamber_slope(here, pressure)
+        out: Floats = own + np.sum(forces * bent - cross * slope, axis=1)
+        return out
+
+    def outside(self, strains: Floats, pressure: float) -> str:
+        """See `rod.law.Law`: of the law of the forces."""
+        return self.law.outside(strains - self._moved(pressure)[0], pressure)
+
+
+def _times(matrices: Floats, vectors: Floats) -> Floats:
+    """Products of (n, m, m) with (n, m) or (m,), (n, m)."""
+    return np.einsum("nij,nj->ni", matrices, np.broadcast_to(vectors, matrices.shape[:2]))

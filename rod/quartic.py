@@ -1,0 +1,75 @@
+"""A law whose stiffness changes with its strains: of solid sections that are bent far."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from rod.functions import Floats
+
+
+@dataclasses.dataclass(frozen=True)
+class Quartic:
+    """Φ = ½ K e e + ⅙ L e e e + 1/24 Q e e e e with e = ε − ε₀, and no chamber.
+
+    It is a `rod.law.Law`. Of fibers along the axis with energies U(λ), K, L and Q are the sums of
+    areas, of the second to fourth derivative of U at rest, and of products of their levers.
+
+    Attributes:
+        stiffness: K, (m, m), N, N mm and N mm².
+        cubic: L, (m, m, m), alike in all its places.
+        quartic: Q, (m, m, m, m), alike in all its places.
+        rest: ε₀, (m,).
+    """
+
+    stiffness: Floats
+    cubic: Floats
+    quartic: Floats
+    rest: Floats
+
+    def times(self, factor: float) -> Quartic:
+        """The same law, as much stiffer."""
+        stiffness, cubic, quartic = factor * self.stiffness, factor * self.cubic, self.quartic
+        return Quartic(stiffness, cubic, factor * quartic, self.rest)
+
+    def _bent(self, strains: Floats) -> tuple[Floats, Floats, Floats]:
+        """e, and L e and Q e e, (n, m, m) each."""
+        e = strains - self.rest
+        cubic = np.einsum("ijk,nk->nij", self.cubic, e)
+        quartic = np.einsum("ijkl,nk,nl->nij", self.quartic, e, e)
+        return e, cubic, quartic
+
+    def value(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        e, cubic, quartic = self._bent(strains)
+        whole = self.stiffness / 2 + cubic / 6 + quartic / 24
+        out: Floats = np.einsum("ni,nij,nj->n", e, whole, e)
+        return out
+
+    def gradient(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        e, cubic, quartic = self._bent(strains)
+        out: Floats = np.einsum("nij,nj->ni", self.stiffness + cubic / 2 + quartic / 6, e)
+        return out
+
+    def hessian(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        _, cubic, quartic = self._bent(strains)
+        return self.stiffness + cubic + quartic / 2
+
+    def chamber(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`: it has none."""
+        return np.zeros(len(strains))
+
+    def chamber_gradient(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return np.zeros_like(strains)
+
+    def chamber_slope(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return np.zeros(len(strains))
+
+    def outside(self, strains: Floats, pressure: float) -> str:
+        """See `rod.law.Law`: nothing is."""
+        return ""
