@@ -80,7 +80,9 @@ def export(
             most = record["section"]["pressure_kPa"][-1]
             say(f"next:  python {shlex.quote(str(folder / name))} --pressure {most / 2:.4g}")
         else:
-            say(f"next:  runSofa {shlex.quote(str(folder / name))} (never run in {to} by the tests)")
+            say(
+                f"next:  runSofa {shlex.quote(str(folder / name))} (never run in {to} by the tests)"
+            )
     return 0
 
 

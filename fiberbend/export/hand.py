@@ -119,11 +119,6 @@ def _masses(case: Case) -> tuple[SectionMass | None, SectionMass | None, str]:
     return section_mass(case), cap_mass(case), ""
 
 
-def pressures(greatest: float, count: int) -> Floats:
-    """From none to the greatest, MPa."""
-    return np.linspace(0.0, greatest, count)
-
-
 def facts(record: dict[str, Any]) -> list[str]:
     """What a file says, in lines for the terminal."""
     section, axis = record["section"], record["axis"]

@@ -19,6 +19,7 @@ DAMPING_TIME = 0.02
 """Damping over stiffness of every joint, s: an assumption, nothing is known of it."""
 JOINTS = ("stretch", "curvature", "side", "twist")
 _AXES = {"stretch": "0 0 1", "curvature": "1 0 0", "side": "0 1 0", "twist": "0 0 1"}
+_ORDER = (("stretch", "curvature", "side", "twist"), ("stretch", "twist", "side", "curvature"))
 _MM = 1e-3
 
 
@@ -108,8 +109,7 @@ def _lines(record: dict[str, Any]) -> Iterator[str]:
     yield "  </tendon>"
     yield "  <actuator>"
     yield (
-        '    <general name="pressure" tendon="pressure" gainprm="1" '
-        f'ctrlrange="0 {most:.10g}"/>'
+        f'    <general name="pressure" tendon="pressure" gainprm="1" ctrlrange="0 {most:.10g}"/>'
     )
     yield "  </actuator>"
     yield "  <sensor>"
@@ -175,10 +175,15 @@ def _body(record: dict[str, Any], pieces: list[_Piece], line: Line) -> Iterator[
         joint = np.array([*piece.place, bottom + piece.length / 2])
         pad = "      " + "  " * number
         yield f'{pad}<body name="{piece.name}" pos="{_row(joint - at)}">'
-        for name, stiffness in zip(JOINTS, piece.stiffness / piece.length, strict=True):
+        joints = zip(JOINTS, piece.stiffness / piece.length, strict=True)
+        # turns do not commute: bend first in one piece and last in the next, errors cancel
+        for name, stiffness in sorted(joints, key=lambda one: _ORDER[number % 2].index(one[0])):
             kind = "slide" if name == "stretch" else "hinge"
+            # the line of the centroids stays across the sections, as in a rod without shear
+            about = -np.array([*piece.place, 0.0]) if name == "twist" else np.zeros(3)
             yield (
                 f'{pad}  <joint name="{name}_{piece.name}" type="{kind}" axis="{_AXES[name]}" '
+                f'pos="{_row(about)}" '
                 f'stiffness="{stiffness:.10g}" damping="{DAMPING_TIME * stiffness:.6g}" '
                 f'armature="{stiffness * (TIME_STEP / RESOLVED) ** 2:.6g}"/>'
             )
@@ -237,7 +242,7 @@ def _together(
 
 
 def _row(values: Floats) -> str:
-    return " ".join(f"{float(value):.10g}" for value in values)
+    return " ".join(f"{float(value) + 0.0:.10g}" for value in values)
 
 
 def _safe(title: str) -> str:

@@ -105,7 +105,9 @@ def main() -> None:
             data.qfrc_applied[:] = 0.0
             force = np.array(given.tip_force, dtype=float)
             place = data.site_xpos[tip]
-            mujoco.mj_applyFT(model, data, force, np.zeros(3), place, int(last[0]), data.qfrc_applied)
+            mujoco.mj_applyFT(
+                model, data, force, np.zeros(3), place, int(last[0]), data.qfrc_applied
+            )
         mujoco.mj_step(model, data)
     mujoco.mj_forward(model, data)
     bends = [n for n in range(model.njnt) if model.joint(n).name.startswith("curvature")]

@@ -47,7 +47,9 @@ class Rod:
         if (self.data["format"], self.data["version"]) != ("fiberbend-rod", 1):
             raise ValueError(f"{path}: version 1 of the format fiberbend-rod expected")
         if not self.data["mass"]["known"]:
-            raise ValueError(f"{path}: without masses nothing moves: {self.data['mass']['missing']}")
+            raise ValueError(
+                f"{path}: without masses nothing moves: {self.data['mass']['missing']}"
+            )
         geometry, axis = self.data["geometry"], self.data["axis"]
         ends, middle = geometry["cap_length_mm"] * MM, geometry["chamber_length_mm"] * MM
         own, beside = np.full(chamber, middle / chamber), np.full(cap, ends / cap)
@@ -74,7 +76,9 @@ class Rod:
         low, high = self.pressures[[0, -1]]
         if not low <= kpa <= high:
             raise ValueError(f"{kpa:g} kPa: rod.json reaches from {low:g} to {high:g} kPa")
-        place = min(int(np.searchsorted(self.pressures, kpa, side="right")), len(self.pressures) - 1)
+        place = min(
+            int(np.searchsorted(self.pressures, kpa, side="right")), len(self.pressures) - 1
+        )
         before = place - 1
         part = (kpa - self.pressures[before]) / (self.pressures[place] - self.pressures[before])
         tables = (self._stretch, self._curvatures, self._axial, self._bending)
@@ -201,9 +205,7 @@ class TipForce(ea.NoForces):
         system.external_torques[:, -1] += np.cross(self._arm, own)
 
 
-class Scene(
-    ea.BaseSystemCollection, ea.Constraints, ea.Forcing, ea.Damping, ea.CallBacks
-):
+class Scene(ea.BaseSystemCollection, ea.Constraints, ea.Forcing, ea.Damping, ea.CallBacks):
     """What PyElastica runs."""
 
 

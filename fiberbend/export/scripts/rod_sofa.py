@@ -129,7 +129,11 @@ def createScene(root: object) -> object:  # noqa: N802
     place = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
     frame = base.addObject("MechanicalObject", name="base", template="Rigid3d", position=[place])
     base.addObject(
-        "RestShapeSpringsForceField", template="Rigid3d", stiffness=1e6, angularStiffness=1e6, points=[0]
+        "RestShapeSpringsForceField",
+        template="Rigid3d",
+        stiffness=1e6,
+        angularStiffness=1e6,
+        points=[0],
     )
     at = np.linspace(0.0, rod.length, SECTIONS + 1).tolist()
     first = rod.rest(float(rod.pressures[0]))
