@@ -59,11 +59,11 @@ def export(
     settle_folders()
     launch.start_mpi()
     from fiberbend.export.hand import facts, handed
-    from fiberbend.export.record import record_of, text
+    from fiberbend.export import record as made
     from fiberbend.export.targets import DATA
 
-    record = record_of(handed(case))
-    contents = {DATA: text(record), **target.contents(record)}
+    record = made.record_of(handed(case))
+    contents = {DATA: made.text(record), **target.contents(record)}
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, content in contents.items():

@@ -52,8 +52,10 @@ def test_mujoco_rests_where_the_rod_does(load: str, tmp_path: Path) -> None:
     ("load", "lever"), [("free", rods.LEVER), ("weight along", rods.LEVER), ("weight aside", 0.0)]
 )
 def test_pyelastica_rests_where_the_rod_does(load: str, lever: float, tmp_path: Path) -> None:
-    """It shears a little, its caps do not turn under a force along them, and it twists about its
-    own line, which is that of the centroids where the lever is none."""
+    """It shears a little, and its caps do not turn under a force along them.
+
+    It twists about its own line, which is that of the centroids where the lever is none.
+    """
     rods.write(tmp_path, "pyelastica", rods.handed(rods.section(lever)))
     found = rods.run(tmp_path, "rod_pyelastica.py", *arguments(load), "--elements", "20")
     place, angle = expected(load, lever)
@@ -82,5 +84,5 @@ def test_mujocos_control_alone_is_off_by_what_the_file_says(tmp_path: Path) -> N
 @pytest.mark.parametrize("script", ["rod_mujoco.py", "rod_pyelastica.py"])
 def test_a_pressure_beyond_the_table_is_refused(script: str, tmp_path: Path) -> None:
     rods.write(tmp_path, script[4:-3])
-    with pytest.raises(AssertionError, match="rod.json reaches from 0 to 200 kPa"):
+    with pytest.raises(AssertionError, match=r"rod\.json reaches from 0 to 200 kPa"):
         rods.run(tmp_path, script, "--pressure", "250")

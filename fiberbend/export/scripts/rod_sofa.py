@@ -1,4 +1,4 @@
-"""An actuator as a scene for SOFA with SofaPython3 and the plugin Cosserat, from rod.json beside it.
+"""An actuator as a scene for SofaPython3 and the plugin Cosserat, from rod.json beside this file.
 
     runSofa rod_sofa.py
 
@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import Sofa.Core
@@ -103,11 +104,11 @@ class Pressure(Sofa.Core.Controller):
         kpa: pressure at the end.
     """
 
-    def __init__(self, rod: Rod, strains: object, root: object, kpa: float) -> None:
+    def __init__(self, rod: Rod, strains: Any, root: Any, kpa: float) -> None:
         super().__init__(name="pressure")
         self._rod, self._strains, self._root, self._kpa = rod, strains, root, kpa
 
-    def onAnimateBeginEvent(self, _event: object) -> None:  # noqa: N802
+    def onAnimateBeginEvent(self, _event: Any) -> None:
         """Before each step."""
         least = float(self._rod.pressures[0])
         part = min(1.0, float(self._root.time.value) / RAMP)
@@ -116,7 +117,7 @@ class Pressure(Sofa.Core.Controller):
             places[:] = rest
 
 
-def createScene(root: object) -> object:  # noqa: N802
+def createScene(root: Any) -> Any:
     """What runSofa calls."""
     rod = Rod(Path(__file__).with_name("rod.json"))
     root.gravity, root.dt = list(GRAVITY), 1e-3
