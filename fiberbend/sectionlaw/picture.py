@@ -47,7 +47,7 @@ def draw(made: Made, style: Style = STYLE) -> Figure:
                 label = f"{1e3 * pressure:.3g} kPa"
                 axes.plot(1e3 * curve[:, 1], row, color=color, lw=1.6, label=label)
         for pressure, state in free:
-            here = np.array([state])
+            here = np.array([[state.stretch, state.curvature]])
             heights = (0.0, state.stretch, made.law.value(here, pressure)[0])
             for axes, height in zip(panels, heights, strict=True):
                 axes.plot(1e3 * state.curvature, height, "o", color="black", ms=4)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 
 import numpy as np
 
@@ -12,34 +13,47 @@ from fiberbend.case.symmetry import Symmetry
 from fiberbend.columns import UNIFORM
 from fiberbend.models.choice import choose_model
 from fiberbend.schema.problems import CaseError, Problem
-from fiberbend.sectionlaw.law import SectionLaw
+from fiberbend.sectionlaw.box import Box, NoStateError, box_of
+from fiberbend.sectionlaw.errors import checked, sizes
+from fiberbend.sectionlaw.held import Held
+from fiberbend.sectionlaw.law import PLANE, SectionLaw
 from fiberbend.sectionlaw.made import Checked, Made
-from fiberbend.sectionlaw.range import Box, Reach, box_of, reach_of
+from fiberbend.sectionlaw.range import Reach, reach_of
 from fiberbend.sectionlaw.store import Store, digest_of
-from fiberbend.sectionlaw.walk import NoStateError, Walk
+from fiberbend.sectionlaw.walk import Walk
 from fiberbend.trial.calibrations import Calibrations
+from rod.functions import Floats
 from rod.spline import Samples
 from rod.table import NotReachedError, tabulate
 
 ERROR = 1e-3
-"""Of forces in parts of their range, and of the angle of a free state in parts of the greatest."""
-_PARTS = (1.0, 0.5, 0.25, 0.1)
+"""Of forces by the strains that they make, and of the angle of a free state, see `Checked`."""
+_PARTS = (1.0, 0.75, 0.5, 0.25, 0.1)
 """Of the margins, tried in turn where a section has no state at a corner of the range."""
 _TIGHTER = 0.3
 _LEAST = 1e-3
 """Of the error that is asked for: no free state is off by more for want of states."""
+_PULL = np.linspace(0.0, 1.0, 3)
+_TURNS = np.linspace(0.0, 1.0, 7)
+_PRESSURES: Floats = np.array([0.0, 0.08, 0.22, 0.44, 0.7, 1.0])
+"""Lines of a table at first. Threads go taut and the floor arches in the first kilopascals."""
 
 
 def table_of(
-    case: Case, error: float = ERROR, least: float | None = None, store: Store | None = None
+    case: Case,
+    error: float = ERROR,
+    least: float | None = None,
+    store: Store | None = None,
+    tell: Callable[[str], None] | None = None,
 ) -> Made:
     """The law of a section, from the store or anew.
 
     Args:
         case: a checked case of model section or cell that bends in its plane.
         error: asked for, in parts.
-        least: pressure from which the table is, MPa; a part of the greatest unless given.
+        least: pressure from which the table is, MPa; zero unless given.
         store: of tables; that of the user unless given.
+        tell: takes lines of progress while it is made.
 
     Raises:
         CaseError: the law cannot have what the case has, or the table does not reach the error.
@@ -50,7 +64,7 @@ def table_of(
     found = store.find(digest)
     if found is not None:
         return found
-    made = _made(case, error, least, digest)
+    made = _made(case, PLANE, error, least, digest, tell)
     store.keep(made)
     return made
 
@@ -82,7 +96,14 @@ def refuse(case: Case) -> None:
         raise CaseError(problems)
 
 
-def _made(case: Case, error: float, least: float | None, digest: str) -> Made:
+def _made(
+    case: Case,
+    strains: tuple[str, ...],
+    error: float,
+    least: float | None,
+    digest: str,
+    tell: Callable[[str], None] | None = None,
+) -> Made:
     began = time.process_time()
     reach = reach_of(case)
     ready = Calibrations().ready(case).case if waits(case) else case
@@ -90,12 +111,13 @@ def _made(case: Case, error: float, least: float | None, digest: str) -> Made:
     if least is not None and not 0 <= least < greatest:
         text = f"{1e3 * least:g} kPa, expected 0 or more, and less than {1e3 * greatest:.4g} kPa"
         raise CaseError([Problem("--from", text)])
+    held = Held(ready, strains)
     remarks, last = list(reach.remarks), ""
     for part in _PARTS:
-        box = box_of(reach, part, least)
-        walk = Walk(ready, box)
         try:
-            law, checked = _fitted(case, walk, box, reach, error)
+            box = box_of(reach, held, strains, part, least or 0.0)
+            walk = Walk(held, box, tell)
+            law, known = _fitted(case, strains, walk, box, reach, error)
         except NoStateError as stop:
             last = str(stop)
             continue
@@ -105,7 +127,7 @@ def _made(case: Case, error: float, least: float | None, digest: str) -> Made:
             remarks.append(f"{last}: the margins of the range are {100 * part:g} % of the usual")
         return Made(
             law=law,
-            checked=checked,
+            checked=known,
             samples=_samples(walk),
             error=error,
             digest=digest,
@@ -113,7 +135,7 @@ def _made(case: Case, error: float, least: float | None, digest: str) -> Made:
             model=choose_model(case)[0].name,
             length=case.actuator.length,
             free=reach.free,
-            solved=walk.solved,
+            solved=held.solved,
             seconds=time.process_time() - began,
             remarks=tuple(remarks),
         )
@@ -121,76 +143,26 @@ def _made(case: Case, error: float, least: float | None, digest: str) -> Made:
 
 
 def _fitted(
-    case: Case, walk: Walk, box: Box, reach: Reach, error: float
+    case: Case, strains: tuple[str, ...], walk: Walk, box: Box, reach: Reach, error: float
 ) -> tuple[SectionLaw, Checked]:
     """A law whose forces and free angles are as exact as asked for."""
     asked = error
+    begin = [_PULL, *[_TURNS] * (len(strains) - 1), _PRESSURES]
+    measure = sizes(box.chart)
     while True:
-        law = SectionLaw(tabulate(walk.sample, box.ranges, asked), box.chart)
-        checked = _checked(law, walk, reach, case.actuator.length)
-        worst = max(checked.force, checked.moment, checked.area, checked.angle)
+        table = tabulate(walk.sample, box.ranges, asked, begin=begin, sizes=measure)
+        law = SectionLaw(table, box.chart, strains)
+        known = checked(law, _samples(walk), reach)
+        worst = max(known.force, known.moment, known.area, known.angle)
         if worst <= error or asked < _LEAST * error:
             break
         asked *= _TIGHTER
     if worst > error:
         text = f"free angles of the table are off by {worst:.2g}, {error:.2g} asked for"
         raise NotReachedError(text)
-    return law, checked
+    return law, known
 
 
 def _samples(walk: Walk) -> Samples:
     points = np.array(list(walk.known))
-    values = np.array([value for value, _ in walk.known.values()])
-    return Samples(points, values, np.array([slopes for _, slopes in walk.known.values()]))
-
-
-def _checked(law: SectionLaw, walk: Walk, reach: Reach, length: float) -> Checked:
-    """Errors at states that are not fitted."""
-    samples = _samples(walk)
-    fitted = {tuple(point) for point in law.table.samples.points.tolist()}
-    held_out = np.array([tuple(point) not in fitted for point in samples.points.tolist()])
-    strains, told = law.chart.strains(samples.points), np.empty((len(samples.points), 3))
-    for number, pressure in enumerate(samples.points[:, 2].tolist()):
-        here = strains[number : number + 1]
-        told[number] = [*law.gradient(here, pressure)[0], law.chamber(here, pressure)[0]]
-    exact = law.chart.forces(samples.points, samples.slopes)
-    off = np.abs(told - exact)[held_out].max(axis=0) / np.ptp(exact, axis=0)
-    softest, place, pressure = min(
-        ((*law.table.softest(pressure), pressure) for pressure in _fine(law)),
-        key=lambda found: found[0],
-    )
-    return Checked(
-        states=int(held_out.sum()),
-        force=float(off[0]),
-        moment=float(off[1]),
-        area=float(off[2]),
-        angle=_angle_error(law, reach),
-        softest=softest,
-        where=(*law.chart.strains(np.array([[*place, pressure]]))[0].tolist(), pressure),
-    )
-
-
-def _fine(law: SectionLaw) -> list[float]:
-    """Pressures at which convexity is looked at."""
-    lines = law.table.axes[-1].lines
-    found: list[float] = np.linspace(lines[0], lines[-1], 4 * len(lines)).tolist()
-    return found
-
-
-def _angle_error(law: SectionLaw, reach: Reach) -> float:
-    """Of the free states, in parts of the greatest curvature, or of the stretch without one."""
-    worst = 0.0
-    stretches = [abs(state.stretch - 1.0) for _, state in reach.free]
-    curvatures = [abs(state.curvature) for _, state in reach.free]
-    bends = max(curvatures) * reach.height > 1e-6
-    low, high = law.table.axes[-1].lines[[0, -1]].tolist()
-    for pressure, state in reach.free:
-        if not low <= pressure <= high:
-            continue
-        found = law.free(pressure, state)
-        if bends:
-            off = abs(found.curvature - state.curvature) / max(curvatures)
-        else:
-            off = abs(found.stretch - state.stretch) / max(stretches)
-        worst = max(worst, off)
-    return worst
+    return Samples(points, *walk.sample(points))
