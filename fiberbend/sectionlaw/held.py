@@ -31,6 +31,8 @@ HELD = {
 """By the name of a strain of the centroids' line, as `rod.layout` has them, what holds it."""
 _SOME, _TOKEN = 1e-3, 1e-300
 """A pressure and a turn that are there, as far as symmetry goes."""
+_COUNTS = (2, 5, 12, 30)
+"""Steps along a way, tried in turn."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -102,6 +104,19 @@ class Held:
             scalars={k: v + moved.get(k, 0.0) for k, v in known.state.scalars.items()},
         )
         return self.solve(at, state)
+
+    def along(self, known: HeldState, at: Floats) -> HeldState | None:
+        """The state to which a straight way leads, by as few steps as it takes; None: none does."""
+        for count in _COUNTS:
+            state: HeldState | None = known
+            for number in range(1, count + 1):
+                assert state is not None
+                state = self.near(state, known.at + (at - known.at) * (number / count))
+                if state is None:
+                    break
+            if state is not None:
+                return state
+        return None
 
     def solve(self, at: Floats, start: State) -> HeldState | None:
         """A stable state from a start; None: none found.

@@ -64,8 +64,12 @@ def table_of(
     found = store.find(digest)
     if found is not None:
         return found
-    made = _made(case, PLANE, error, least, digest, tell)
-    store.keep(made)
+    with store.alone(digest):
+        # another process may have been quicker
+        made = store.find(digest)
+        if made is None:
+            made = _made(case, PLANE, error, least, digest, tell)
+            store.keep(made)
     return made
 
 
