@@ -14,6 +14,7 @@ from fiberbend.schema.problems import CaseError, Problem, found, meant
 
 if TYPE_CHECKING:
     from fiberbend.case.case import Case
+    from fiberbend.export.targets import Target
 
 _CASES = (".yaml", ".yml")
 
@@ -49,7 +50,8 @@ def export(
         text = f"{found(to)}, expected one of {names}{meant(to, list(TARGETS))}"
         raise CaseError([Problem("--to", text)])
     target = TARGETS[to]
-    case = _weighed(_case(run), density)
+    case = _case(run)
+    densities = _densities(case, density)
     folder = out or Path("exports") / f"{run.stem if run.suffix in _CASES else run.name}-{to}"
     files = [folder / name for name in target.names]
     taken = [path for path in files if path.exists()]
@@ -57,12 +59,13 @@ def export(
         text = "exists, expected a new folder by --out, or --overwrite"
         raise CaseError([Problem(str(path), text) for path in taken])
     settle_folders()
+    _check(target, case, densities)
     launch.start_mpi()
-    from fiberbend.export.hand import facts, handed
     from fiberbend.export import record as made
+    from fiberbend.export.hand import facts, handed
     from fiberbend.export.targets import DATA
 
-    record = made.record_of(handed(case))
+    record = made.record_of(handed(case, densities))
     contents = {DATA: made.text(record), **target.contents(record)}
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -86,6 +89,20 @@ def export(
     return 0
 
 
+def _check(target: Target, case: Case, densities: dict[str, float]) -> None:
+    """Refuse what is known to be missing before anything is solved.
+
+    Raises:
+        CaseError: masses that the program needs, or no section to solve.
+    """
+    from fiberbend.export.hand import density_words, law_case, weighed_case, without_density
+
+    law_case(case)
+    missing = without_density(weighed_case(case, densities))
+    if target.moves and missing:
+        raise CaseError([Problem("mass", f"{density_words(missing)}; --to json takes none")])
+
+
 def _case(run: Path) -> Case:
     """The case of a run, or of a file.
 
@@ -106,25 +123,25 @@ def _case(run: Path) -> Case:
     return result.case
 
 
-def _weighed(case: Case, density: tuple[str, ...]) -> Case:
-    """The case with densities for parts that have none.
+def _densities(case: Case, given: tuple[str, ...]) -> dict[str, float]:
+    """Densities by part, t/mm³.
 
     Raises:
         CaseError: no such part, or no density.
     """
     from fiberbend.schema.units import parse
 
-    specs = {part: spec for part, spec in dict(case.materials).items() if spec is not None}
-    for item in density:
+    parts = [part for part, spec in dict(case.materials).items() if spec is not None]
+    densities = {}
+    for item in given:
         part, _, value = item.partition("=")
-        if part not in specs:
-            wanted = f"expected PART=VALUE with one of {', '.join(specs)}"
+        if part not in parts:
+            wanted = f"expected PART=VALUE with one of {', '.join(parts)}"
             raise CaseError([Problem("--density", f"{found(item)}, {wanted}")])
         try:
-            given = parse(value, "density")
+            densities[part] = parse(value, "density")
         except ValueError as error:
             raise CaseError([Problem("--density", f"{found(item)}, {error}")]) from None
-        if given < 0:
-            raise CaseError([Problem("--density", f"{found(item)}, expected zero or more")])
-        specs[part] = specs[part].model_copy(update={"density": given})
-    return case.model_copy(update={"materials": case.materials.model_copy(update=specs)})
+        if not densities[part] > 0:
+            raise CaseError([Problem("--density", f"{found(item)}, expected more than zero")])
+    return densities

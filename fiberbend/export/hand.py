@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -11,43 +12,47 @@ from scipy.spatial import ConvexHull
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.case.section_beside import as_section
 from fiberbend.columns import UNIFORM
+from fiberbend.export.law import known
 from fiberbend.export.section import Handed
-from fiberbend.models.choice import choose_model, meshed
+from fiberbend.models.choice import choose_model
 from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.slender.beside import section_case
+from fiberbend.slender.laws import masses, young
+from fiberbend.slender.moments import Section, section_of, weighed
 from fiberbend.version import __version__
-from geometry.mesh.centroid import winding_weights
+from geometry.bodies.extrude import section_quadrilaterals
+from geometry.sections.size import MeshSize
 from rod.functions import Floats
-from rod.inertia import SectionMass
 
 STATES = 21
 """Pressures from none to the case's own."""
 
 
-def handed(case: Case) -> Handed:
+def handed(case: Case, densities: Mapping[str, float]) -> Handed:
     """What a case hands over.
 
     Args:
         case: of any model; its loads but for the pressure are left out.
+        densities: of parts whose materials have none, t/mm³.
 
     Raises:
         CaseError: it has no law of a section, no pressure, or zones.
     """
     alone, left_out = law_case(case)
-    from fiberbend.export.law import known
-
-    law = known(alone, STATES)
-    mass, cap_mass, missing = _masses(alone)
+    law, moments = known(alone, STATES), section_of(case)
+    heavy = weighed_case(case, densities)
+    missing = without_density(heavy)
+    mass, cap_mass = (None, None) if missing else masses(heavy, moments)
     return Handed(
         section=law.section,
-        cap=law.cap,
+        cap=cap_stiffness(case, moments),
         mass=mass,
         cap_mass=cap_mass,
-        no_mass=missing,
+        no_mass=density_words(missing),
         length=case.actuator.length,
         cap_length=case.actuator.cap,
-        outline=outline(alone),
+        outline=outline(case, moments),
         about={
             "title": case.title or "",
             "provenance": {
@@ -57,6 +62,7 @@ def handed(case: Case) -> Handed:
                 "case": case.resolved(),
                 "law_by": alone.model,
                 "left_out": left_out,
+                "density_given_kg_per_m3": {part: 1e12 * rho for part, rho in densities.items()},
             },
             "validity": law.validity,
         },
@@ -73,28 +79,63 @@ def law_case(case: Case) -> tuple[Case, list[str]]:
         text = "an export is of one section, expected a case without; export a case of each zone"
         raise CaseError([Problem("zones", text)])
     inflated = next((e for e in case.effects if e.inflation() is not None), None)
-    if inflated is None:
-        text = "none loads the chamber, expected effect pressure with to or angle"
+    load = None if inflated is None else inflated.inflation()
+    if load is None or (load.to is None and load.angle is None) or (load.to or 1.0) < 0:
+        text = "expected effect pressure with an angle, or with a pressure above zero"
         raise CaseError([Problem("effects", text)])
+    held = [
+        Problem(f"effects.{index}.{effect.name}", "holds a motion, which no section does by itself")
+        for index, effect in enumerate(case.effects)
+        if effect.fixed_scalars() and not effect.keeps_straight()
+    ]
+    if held:
+        raise CaseError(held)
     model, _ = choose_model(case)
-    if UNIFORM in model.fills and not case.straight:
+    if UNIFORM in model.fills:
         kept = [e for e in case.effects if e is inflated or not (e.load or e.keeps_straight())]
         alone = case.model_copy(update={"effects": tuple(kept), "model": model.name})
     else:
-        alone = as_section(case, inflated)
+        alone = section_case(case)
     there = {effect.name for effect in alone.effects}
     return alone, [effect.name for effect in case.effects if effect.name not in there]
 
 
-def outline(case: Case) -> Floats:
+def cap_stiffness(case: Case, moments: Section) -> Floats:
+    """Of a solid cap, (4, 4): N, N mm, N mm².
+
+    Against twist by St. Venant's estimate for solid sections, J ≈ A⁴/(40 I_p), a few percent off
+    (Timoshenko and Goodier 1970, section 109), with the mean shear modulus of its materials.
+    """
+    moduli = {name: young(each) for name, each in convert.site(case).materials.items()}
+    sums = weighed(moments.filled, moduli)
+    # the stretch at x, y is λ + k_x y − k_y x
+    by = np.array([(0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (-1.0, 0.0, 0.0)])
+    out = np.zeros((4, 4))
+    out[:3, :3] = by @ (sums + sums.T) / 2 @ by.T
+    parts = np.array(list(moments.filled.values())).sum(axis=0)
+    area, arm = parts[2, 2], parts[:2, 2] / parts[2, 2]
+    polar = np.trace(parts[:2, :2]) - area * float(arm @ arm)
+    # a modulus of three shear moduli: none of the rubbers in a cap can be compressed much
+    out[3, 3] = out[0, 0] / 3 / area * area**4 / (40 * polar)
+    return out
+
+
+def outline(case: Case, moments: Section) -> Floats:
     """The outer line of a section from its centroid, (k, 2), counter-clockwise, mm."""
-    mesh = meshed(case).mesh(case)
-    _, centre = winding_weights(mesh)
-    points = mesh.nodes[:, :2]
-    if mesh.half:
-        points = np.concatenate([points, points * [-1.0, 1.0]])
-    found: Floats = points[ConvexHull(points).vertices] - centre
+    points = section_quadrilaterals(
+        convert.dimensions(case.actuator), MeshSize(section=2, half=False)
+    ).nodes
+    found: Floats = points[ConvexHull(points).vertices] - [0.0, moments.height]
     return found
+
+
+def weighed_case(case: Case, densities: Mapping[str, float]) -> Case:
+    """The case with densities of its parts, t/mm³."""
+    specs = {
+        part: getattr(case.materials, part).model_copy(update={"density": density})
+        for part, density in densities.items()
+    }
+    return case.model_copy(update={"materials": case.materials.model_copy(update=specs)})
 
 
 def digest(case: Case) -> str:
@@ -108,15 +149,12 @@ def without_density(case: Case) -> list[str]:
     return [part for part, material in materials.items() if material.mass_density is None]
 
 
-def _masses(case: Case) -> tuple[SectionMass | None, SectionMass | None, str]:
-    """Of section and cap, and what to write where they are not known."""
-    missing = without_density(case)
-    if missing:
-        keys = ", ".join(f"materials.{part}.density" for part in missing)
-        return None, None, f"no density of {', '.join(missing)}; write {keys} in the case"
-    from fiberbend.sectionlaw.masses import cap_mass, section_mass
-
-    return section_mass(case), cap_mass(case), ""
+def density_words(missing: list[str]) -> str:
+    """What to write where parts have no density; empty where all have one."""
+    if not missing:
+        return ""
+    options = " ".join(f'--density {part}="1.1 g/cm^3"' for part in missing)
+    return f"no density of {', '.join(missing)} is known, expected such as {options}"
 
 
 def facts(record: dict[str, Any]) -> list[str]:

@@ -10,9 +10,9 @@ import numpy as np
 from fiberbend.case.case import Case
 from fiberbend.export.section import Section, axis_of
 from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.sectionlaw.stiffness import stiffness_at
 from fiberbend.trial.solve import solve
 from fiberbend.trial.wanted import Wanted
-from rod.functions import Floats
 
 _KPA = 1e3
 _STRAIGHT = (0.25, 0.5, 0.75, 1.0)
@@ -21,16 +21,14 @@ _STRAIGHT = (0.25, 0.5, 0.75, 1.0)
 
 @dataclasses.dataclass(frozen=True)
 class Known:
-    """A section and its caps.
+    """A section from no pressure to the greatest.
 
     Attributes:
-        section: of the chamber.
-        cap: stiffness of a cap, (4, 4).
+        section: free states and stiffness about them.
         validity: range, and how far a constant stiffness holds, as rod.json has them.
     """
 
     section: Section
-    cap: Floats
     validity: dict[str, Any]
 
 
@@ -42,35 +40,31 @@ def known(case: Case, states: int) -> Known:
         states: number of pressures.
 
     Raises:
-        CaseError: the section has no law, or does not come there.
+        CaseError: the section does not come there.
     """
-    from fiberbend.sectionlaw.stiffness import cap_stiffness, stiffness_at
-
     pressures = np.linspace(0.0, greatest(case), states)
     found = stiffness_at(case, pressures.tolist())
     section = Section(
         pressures,
         np.array([state.rest for state in found]),
         np.array([state.matrix for state in found]),
-        np.array([state.area for state in found]),
+        np.array([state.chamber for state in found]),
     )
-    return Known(section, cap_stiffness(case), _validity(case, section))
+    return Known(section, _validity(case, section))
 
 
 def greatest(case: Case) -> float:
     """Pressure at the end of the case, MPa.
 
     Raises:
-        CaseError: it has none, or does not come there.
+        CaseError: it does not come there.
     """
     load = case.inflation
-    goal = None if load is None else (load.angle or load.to)
-    if load is None or goal is None or (load.to is not None and load.to < 0):
-        text = "expected effect pressure with an angle, or with a pressure above zero"
-        raise CaseError([Problem("effects", text)])
+    assert load is not None, "refused before"
     if load.to is not None:
         return load.to
-    answer = solve(case, Wanted(angles=(goal,)))
+    assert load.angle is not None, "refused before"
+    answer = solve(case, Wanted(angles=(load.angle,)))
     if not answer.converged:
         raise CaseError([Problem("effects.pressure", f"no such free state: {answer.reason}")])
     return answer.free[0].pressure

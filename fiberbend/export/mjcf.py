@@ -84,8 +84,8 @@ def _lines(record: dict[str, Any]) -> Iterator[str]:
     off, stiff = (100 * part for part in (line.rest_off, line.stiffness_off))
     yield f'<mujoco model="{_safe(record["title"]) or "actuator"}">'
     yield f"""  <!-- Written by fiberbend from rod.json. m, kg, N; x lateral, y from floor to crown,
-       z along. The control 'pressure' is in kPa, 0 to {most:.6g}. Rest strains are linear in it and the
-       stiffness is constant: beside rod.json the curvature without load is off by up to
+       z along. The control 'pressure' is in kPa, 0 to {most:.6g}. Rest strains are linear in it
+       and the stiffness is constant: beside rod.json the curvature without load is off by up to
        {off[1]:.2g} % of the greatest, bending stiffness by {stiff[1]:.2g} %, that against
        stretch by {stiff[0]:.2g} %. rod_mujoco.py follows rod.json's table instead.
        Damping is assumed: {DAMPING_TIME:g} s times the stiffness. Armatures keep the time step of

@@ -79,7 +79,8 @@ def _axis(axis: Axis) -> dict[str, Any]:
         **_rest(axis.rest),
         "axial_stiffness_N": _plain(axis.axial),
         "bending_stiffness_N_mm2": _plain(axis.bending),
-        "coupling_left_out": _digits(axis.left_out),
+        "centre_off_mm": _digits(axis.off),
+        "coupling_of_stretch_and_twist": _digits(axis.twisted),
         "coupling_of_bending": _digits(axis.mixed),
     }
 

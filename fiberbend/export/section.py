@@ -53,8 +53,10 @@ class Axis:
         rest: strains of this line without load, (n, 4).
         axial: stiffness against stretch, (n,), N.
         bending: against curvatures and twist, (n, 3, 3), N mm².
-        left_out: greatest square of a coupling of force with curvatures and twist that is left
-            out, in parts of the two stiffnesses; the error of the axial response.
+        off: greatest distance of the elastic centre from the line, mm: a force along the line
+            bends as if it acted so far beside.
+        twisted: greatest square of the coupling of stretch with twist, which no line takes away,
+            in parts of both stiffnesses.
     """
 
     x: float
@@ -63,7 +65,8 @@ class Axis:
     rest: Floats
     axial: Floats
     bending: Floats
-    left_out: float
+    off: float
+    twisted: float
 
     @property
     def diagonal(self) -> Floats:
@@ -83,11 +86,15 @@ class Axis:
 
 def axis_of(section: Section) -> Axis:
     """The line of a section on which a force bends it least, over all pressures."""
+    x, y = (float(part.max() + part.min()) / 2 for part in _centres(section))
+    return about(section, x, y)
+
+
+def _centres(section: Section) -> tuple[Floats, Floats]:
+    """x and y of the elastic centre from the centroids, (n,) each, mm."""
     pull = section.stiffness[:, _STRETCH]
     # λ = λ' − y k_x + x k_y for a line at x, y
-    y = float(np.mean(pull[:, _BEND] / pull[:, _STRETCH]))
-    x = -float(np.mean(pull[:, _SIDE] / pull[:, _STRETCH]))
-    return about(section, x, y)
+    return -pull[:, _SIDE] / pull[:, _STRETCH], pull[:, _BEND] / pull[:, _STRETCH]
 
 
 def about(section: Section, x: float, y: float) -> Axis:
@@ -97,7 +104,7 @@ def about(section: Section, x: float, y: float) -> Axis:
     stiffness = turn.T @ section.stiffness @ turn
     axial, coupling = stiffness[:, 0, 0], stiffness[:, 0, 1:]
     bending = stiffness[:, 1:, 1:]
-    own = np.diagonal(bending, axis1=1, axis2=2)
+    centre_x, centre_y = _centres(section)
     parts = coupling[:, :, None] * coupling[:, None, :] / axial[:, None, None]
     return Axis(
         x=x,
@@ -106,7 +113,8 @@ def about(section: Section, x: float, y: float) -> Axis:
         rest=np.linalg.solve(turn, section.rest.T).T,
         axial=axial,
         bending=bending - parts,
-        left_out=float((coupling**2 / (axial[:, None] * own)).max()),
+        off=float(np.hypot(centre_x - x, centre_y - y).max()),
+        twisted=float((coupling[:, 2] ** 2 / (axial * bending[:, 2, 2])).max()),
     )
 
 

@@ -53,22 +53,19 @@ class Target:
     def _check(self, record: dict[str, Any]) -> None:
         mass, axis = record["mass"], record["axis"]
         if self.moves and not mass["known"]:
-            raise CaseError([Problem("mass", f"{mass['missing']}, or export --to json")])
-        if self.moves and axis["coupling_left_out"] > COUPLING:
+            raise CaseError([Problem("mass", mass["missing"])])
+        if self.moves:
+            self._refuse(axis, "coupling_of_stretch_and_twist", "stretch and twist")
+        if self.diagonal:
+            self._refuse(axis, "coupling_of_bending", "bending, side bending and twist")
+
+    def _refuse(self, axis: dict[str, Any], name: str, what: str) -> None:
+        if axis[name] > COUPLING:
             text = (
-                "stretch is coupled with bending or twist by "
-                f"{axis['coupling_left_out']:.2g} of both stiffnesses, expected less than "
-                f"{COUPLING:g}, for {self.about} has no such coupling; export --to json has it"
+                f"{what} are coupled by {axis[name]:.2g} of both stiffnesses, expected less than "
+                f"{COUPLING:g}: {self.about} has no such coupling; --to json has it"
             )
-            raise CaseError([Problem("axis", text)])
-        if self.diagonal and axis["coupling_of_bending"] > COUPLING:
-            text = (
-                "bending, side bending and twist are coupled by "
-                f"{axis['coupling_of_bending']:.2g} of both stiffnesses, expected less than "
-                f"{COUPLING:g}, for {self.about} has no such coupling; export --to json or "
-                "pyelastica has it"
-            )
-            raise CaseError([Problem("axis", text)])
+            raise CaseError([Problem(f"axis.{name}", text)])
 
 
 def _script(name: str) -> str:

@@ -63,7 +63,9 @@ def handed(made: Section | None = None, weighs: bool = True) -> Handed:
         cap=CAP_STIFFNESS,
         mass=MASS if weighs else None,
         cap_mass=CAP_MASS if weighs else None,
-        no_mass="" if weighs else "no density of floor; write materials.floor.density in the case",
+        no_mass=""
+        if weighs
+        else "no density of floor is known, expected such as --density floor=1",
         length=LENGTH,
         cap_length=CAP,
         outline=np.column_stack([11 * np.cos(t), 9 * np.sin(t)]),
@@ -76,6 +78,7 @@ def handed(made: Section | None = None, weighs: bool = True) -> Handed:
                 "case": {},
                 "law_by": "section",
                 "left_out": [],
+                "density_given_kg_per_m3": {},
             },
             "validity": {
                 "pressure_kPa": [0.0, 200.0],

@@ -12,6 +12,7 @@ from typing import Any
 import jsonschema  # type: ignore[import-untyped]
 import numpy as np
 import pytest
+from fiberbend.slender.moments import section_of
 
 import fiberbend
 from fiberbend.cli import main
@@ -151,7 +152,7 @@ def test_what_acts_beside_the_pressure_is_left_out_and_told() -> None:
 
 def test_the_outline_is_about_the_centroid() -> None:
     case = parse_case(DATA)
-    line = outline(case)
+    line = outline(case, section_of(case))
     x, y = line.T
     assert x.min() == pytest.approx(-x.max())
     # radius, wall and sheath
