@@ -170,7 +170,8 @@ def facts(record: dict[str, Any]) -> list[str]:
         lines.append(f"{name:12} {row.min():.4g} to {row.max():.4g} N mm²")
     axial = np.array(axis["axial_stiffness_N"])
     lines.append(f"stretching   {axial.min():.4g} to {axial.max():.4g} N")
-    lines.append(f"axis         {axis['y_mm']:.3g} mm above the line of centroids")
+    beside = "below" if axis["y_mm"] < 0 else "above"
+    lines.append(f"axis         {abs(axis['y_mm']):.3g} mm {beside} the line of centroids")
     if not record["mass"]["known"]:
         lines.append(f"no mass: {record['mass']['missing']}")
     return lines
