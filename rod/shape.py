@@ -41,9 +41,9 @@ class Shape:
     def __init__(self, layout: Layout, strains: Floats) -> None:
         self.layout, self.strains = layout, strains
         full = layout.full(strains)
-        self._v, spin = full[:, :3], full[:, 3:]
+        self._v, self._spin = full[:, :3], full[:, 3:]
         self._reach = layout.lengths[:, None, None]
-        phi = self._reach[..., 0] * spin
+        phi = self._reach[..., 0] * self._spin
         c = stumpff(np.sum(phi * phi, axis=-1))
         self._turn, self._mean = Pair(phi, c, 1), Pair(phi, c, 2)
         self._means = self._mean.matrix()
@@ -61,6 +61,23 @@ class Shape:
     def places(self) -> Floats:
         """r of the frames, (n + 1, 3), mm."""
         return self.frames[..., 3]
+
+    def along(self, reach: Floats) -> Floats:
+        """Axes and places [R | r] of sections anywhere, (k, 3, 4).
+
+        Args:
+            reach: of each from the root along the rod at rest, (k,), mm.
+        """
+        ends = np.cumsum(self.layout.lengths)
+        piece = np.minimum(np.searchsorted(ends, reach), len(ends) - 1)
+        within = (reach - (ends - self.layout.lengths)[piece])[:, None]
+        phi = within * self._spin[piece]
+        c = stumpff(np.sum(phi * phi, axis=-1))
+        step = within[..., None] * (Pair(phi, c, 2).matrix() @ self._v[piece][..., None])
+        base = self.frames[piece]
+        turned = base[..., :3] @ Pair(phi, c, 1).matrix()
+        places = base[..., 3:] + base[..., :3] @ step
+        return np.concatenate([turned, places], axis=-1)
 
     # --- first derivatives -----------------------------------------------------------------------
 

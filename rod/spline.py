@@ -175,16 +175,38 @@ def fitted(axes: tuple[Axis, ...], samples: Samples) -> Floats:
         ]
     )
     aim = np.concatenate([scale * each for scale, each in zip(scales, aims, strict=True)])
-    # columns of splines at the ends, which reach few points, are as long as the others
+    return _solved(matrix, aim, len(samples.points)).reshape(shape)
+
+
+def fitted_values(axes: tuple[Axis, ...], points: Floats, values: Floats) -> Floats:
+    """Coefficients of the product splines by least squares of values alone.
+
+    Args:
+        axes: of every variable.
+        points: (n, d).
+        values: of several functions there, (n, k).
+
+    Returns:
+        Coefficients, (k, count, ...), an axis for each variable behind the functions.
+
+    Raises:
+        ValueError: the points do not determine them.
+    """
+    (rows,) = _rows(axes, points, [()])
+    found = _solved(rows, values, len(points))
+    return found.T.reshape(-1, *(axis.count for axis in axes))
+
+
+def _solved(matrix: Floats, aim: Floats, points: int) -> Floats:
+    """Least squares, whose columns are made equally long: splines at the ends reach few points."""
     lengths = np.sqrt(np.sum(matrix**2, axis=0))
     if len(matrix) >= len(lengths) and lengths.all():
         q, r = np.linalg.qr(matrix / lengths)
         pivots = np.abs(np.diag(r))
         if pivots.min() > _SINGULAR * pivots.max():
-            solution = solve_triangular(r, q.T @ aim) / lengths
-            out: Floats = solution.reshape(shape)
-            return out
-    raise ValueError(f"{len(samples.points)} points do not determine {len(lengths)} coefficients")
+            found: Floats = (solve_triangular(r, q.T @ aim).T / lengths).T
+            return found
+    raise ValueError(f"{points} points do not determine {len(lengths)} coefficients")
 
 
 def _rows(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from fiberbend.case.case import Case, Mesh
 from fiberbend.case.zones import path_of, zone_cases
-from fiberbend.columns import ELEMENTS, RUN
+from fiberbend.columns import ELEMENTS, RUN, SOLVED
 from fiberbend.effects.effect import ZONES
 from fiberbend.effects.records import mirror_breakers
 from fiberbend.models.costs.price import Price, price
@@ -108,7 +108,11 @@ class ModelKind(ABC):
     """Seconds to write the fields of a state."""
 
     def elements(self) -> MeshedModel | None:
-        """The model where it is one of finite elements; None for a closed form."""
+        """The model where it is one of finite elements; None for a closed form or a rod."""
+        return None
+
+    def slender(self) -> SlenderModel | None:
+        """The model where it is a rod by the law of its section; None of others."""
         return None
 
     # --- what it supports ----------------------------------------------------------------------
@@ -223,10 +227,35 @@ class ModelKind(ABC):
         yield from ()
 
 
+class SlenderModel(ModelKind):
+    """A model of a rod: pieces along a line, by laws of their sections."""
+
+    turn: ClassVar[float]
+    """Greatest change of the angle in a step, rad."""
+    pieces: ClassVar[int]
+    """Between the caps, of equal lengths."""
+    cap_pieces: ClassVar[int]
+    """In each cap."""
+    step_s: ClassVar[float]
+    """Seconds a step."""
+
+    def slender(self) -> SlenderModel:
+        """The model itself."""
+        return self
+
+    @abstractmethod
+    def unknowns(self, case: Case) -> int:
+        """Strains of all pieces."""
+
+    @abstractmethod
+    def law_seconds(self, case: Case) -> float:
+        """Seconds for the law of its section where no table of it is kept yet."""
+
+
 class MeshedModel(ModelKind):
     """A model of finite elements."""
 
-    fills = frozenset({RUN, ELEMENTS})
+    fills = frozenset({RUN, SOLVED, ELEMENTS})
     shared: ClassVar[bool] = False
     """All ranks solve it together; else one rank does."""
     resumes: ClassVar[bool] = False

@@ -124,7 +124,12 @@ def _solve(
     own: Own,
     scratch: RunFolder | None = None,
 ) -> RunResult:
-    model = choose_model(case)[0].elements()
+    kind, _ = choose_model(case)
+    model, rod = kind.elements(), kind.slender()
+    if rod is not None:
+        from fiberbend.running.slender.run import run_rod
+
+        return run_rod(case, rod, folder, progress, comm, own, scratch)
     if model is None:
         from fiberbend.running.analytic import run_analytic
 
@@ -169,10 +174,9 @@ class _Run:
     ) -> None:
         self.case, self.model, self.folder = case, model, folder
         self.states, self.progress = folder or scratch, progress
-        self.comm, self.ranks = comm, ranks
-        self.own, self.may_leave = own or Own(), may_leave
+        self.comm, self.ranks, self.may_leave = comm, ranks, may_leave
+        self.own, self.solved = own or Own(), False
         self.recording: Recording | None = None
-        self.solved = False
         self.run: dict[str, Any] = {}
 
     def go(self, again: bool) -> RunResult:

@@ -34,8 +34,40 @@ class Free(NamedTuple):
     twist: float = 0.0
 
 
+class Derived:
+    """A law by value, first and second derivatives by strains and pressure: a `rod.law.Law`."""
+
+    def first(self, strains: Floats, pressure: float) -> Floats:
+        """∂Φ by strains and P, (n, m + 1)."""
+        raise NotImplementedError
+
+    def second(self, strains: Floats, pressure: float) -> Floats:
+        """∂²Φ by strains and P, (n, m + 1, m + 1)."""
+        raise NotImplementedError
+
+    def gradient(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`: N in N, moments in N mm."""
+        return self.first(strains, pressure)[:, :-1]
+
+    def hessian(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return self.second(strains, pressure)[:, :-1, :-1]
+
+    def chamber(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return -self.first(strains, pressure)[:, -1]
+
+    def chamber_gradient(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return -self.second(strains, pressure)[:, :-1, -1]
+
+    def chamber_slope(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return -self.second(strains, pressure)[:, -1, -1]
+
+
 @dataclasses.dataclass(frozen=True)
-class SectionLaw:
+class SectionLaw(Derived):
     """Φ of the line of centroids by strains and pressure; a `rod.law.Law`.
 
     Attributes:
@@ -54,13 +86,13 @@ class SectionLaw:
         area = self.table.chamber(place, pressure)
         return place, np.column_stack([self.table.gradient(place, pressure), -area])
 
-    def _first(self, strains: Floats, pressure: float) -> Floats:
+    def first(self, strains: Floats, pressure: float) -> Floats:
         """∂Φ by strains and P, (n, m + 1)."""
         _, slopes = self._slopes(strains, pressure)
         found: Floats = np.einsum("ni,nij->nj", slopes, self.chart.first(strains, pressure))
         return found
 
-    def _second(self, strains: Floats, pressure: float) -> Floats:
+    def second(self, strains: Floats, pressure: float) -> Floats:
         """∂²Φ by strains and P, (n, m + 1, m + 1)."""
         place, slopes = self._slopes(strains, pressure)
         n, m = place.shape
@@ -76,26 +108,6 @@ class SectionLaw:
     def value(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""
         return self.table.value(self.chart.place(strains, pressure), pressure)
-
-    def gradient(self, strains: Floats, pressure: float) -> Floats:
-        """See `rod.law.Law`: N in N, moments in N mm."""
-        return self._first(strains, pressure)[:, :-1]
-
-    def hessian(self, strains: Floats, pressure: float) -> Floats:
-        """See `rod.law.Law`."""
-        return self._second(strains, pressure)[:, :-1, :-1]
-
-    def chamber(self, strains: Floats, pressure: float) -> Floats:
-        """See `rod.law.Law`."""
-        return -self._first(strains, pressure)[:, -1]
-
-    def chamber_gradient(self, strains: Floats, pressure: float) -> Floats:
-        """See `rod.law.Law`."""
-        return -self._second(strains, pressure)[:, :-1, -1]
-
-    def chamber_slope(self, strains: Floats, pressure: float) -> Floats:
-        """See `rod.law.Law`."""
-        return -self._second(strains, pressure)[:, -1, -1]
 
     def outside(self, strains: Floats, pressure: float) -> str:
         """See `rod.law.Law`."""

@@ -12,6 +12,8 @@ import numpy as np
 from fiberbend.sectionlaw.chart import Chart
 from fiberbend.sectionlaw.law import Free, SectionLaw
 from fiberbend.sectionlaw.polynomial import Polynomial
+from fiberbend.sectionlaw.side import Side
+from fiberbend.sectionlaw.space import Round, Space
 from machine.folders import DAMAGED
 from rod.functions import Floats
 from rod.spline import Axis, Samples
@@ -47,7 +49,7 @@ class Made:
     """A table with where it comes from.
 
     Attributes:
-        law: the law.
+        section: the law by the table.
         checked: its errors.
         samples: all states that were asked for: Φ and its slopes by e, u and P.
         error: asked for.
@@ -59,9 +61,10 @@ class Made:
         solved: states that were solved, those on the way too.
         seconds: of processor time.
         remarks: what casts doubt on it, a line each.
+        side: what it does beside, where strains were asked for that are not in the table.
     """
 
-    law: SectionLaw
+    section: SectionLaw
     checked: Checked
     samples: Samples
     error: float
@@ -73,31 +76,41 @@ class Made:
     solved: int
     seconds: float
     remarks: tuple[str, ...] = ()
+    side: Side | None = None
+
+    @property
+    def law(self) -> SectionLaw | Round | Space:
+        """The law of a rod."""
+        return self.section if self.side is None else self.side.law(self.section)
 
     @property
     def strains(self) -> Floats:
         """Those of all states, (n, m)."""
-        return self.law.chart.strains(self.samples.points)
+        return self.section.chart.strains(self.samples.points)
 
     @property
     def forces(self) -> Floats:
         """N, moments and the area of the chamber at all states, (n, m + 1)."""
-        found = self.law.chart.forces(self.samples.points, self.samples.slopes)
-        return found * np.array([1.0] * len(self.law.strains) + [-1.0])
+        found = self.section.chart.forces(self.samples.points, self.samples.slopes)
+        return found * np.array([1.0] * len(self.section.strains) + [-1.0])
 
     def packed(self) -> bytes:
         """As an npz file."""
-        table, about = self.law.table, dataclasses.asdict(self)
-        for name in ("law", "samples"):
+        table, about = self.section.table, dataclasses.asdict(self)
+        for name in ("section", "samples", "side"):
             del about[name]
-        about["chart"] = dataclasses.asdict(self.law.chart)
-        about["strains"] = self.law.strains
+        about["chart"] = dataclasses.asdict(self.section.chart)
+        about["strains"] = self.section.strains
+        beside: dict[str, Floats] = {}
+        if self.side is not None:
+            about["side"] = dataclasses.asdict(self.side)
+            beside["side_coefficients"] = about["side"].pop("coefficients")
         about["degrees"] = [axis.degree for axis in table.axes]
         arrays = {f"lines_{number}": axis.lines for number, axis in enumerate(table.axes)}
         fitted = {"fitted_" + f.name: getattr(table.samples, f.name) for f in _OF_SAMPLES}
         asked = {f.name: getattr(self.samples, f.name) for f in _OF_SAMPLES}
         readable: dict[str, Floats] = {}
-        for number, name in enumerate(self.law.strains):
+        for number, name in enumerate(self.section.strains):
             readable[name + UNITS[name][0]] = self.strains[:, number]
             readable[UNITS[name][1]] = self.forces[:, number]
         readable["pressure_MPa"] = self.samples.points[:, -1]
@@ -109,6 +122,7 @@ class Made:
             coefficients=table.coefficients,
             errors=table.errors,
             **arrays,
+            **beside,
             **fitted,
             **asked,
             **readable,
@@ -148,7 +162,22 @@ def unpacked(content: bytes) -> Made:
         known = about.pop("checked")
         checked = Checked(**known | {"where": tuple(known["where"])})
         remarks = tuple(about.pop("remarks"))
-        return Made(law=law, checked=checked, samples=samples, free=free, remarks=remarks, **about)
+        beside, side = about.pop("side", None), None
+        if beside is not None:
+            beside["pairs"] = tuple((i, j) for i, j in beside["pairs"])
+            beside["lines"] = tuple(tuple(line) for line in beside["lines"])
+            for name in ("small", "limits", "degrees"):
+                beside[name] = tuple(beside[name])
+            side = Side(coefficients=given["side_coefficients"], **beside)
+        return Made(
+            section=law,
+            checked=checked,
+            samples=samples,
+            free=free,
+            remarks=remarks,
+            side=side,
+            **about,
+        )
     except (*DAMAGED, TypeError, OSError) as error:
         raise ValueError(f"no table: {error}") from None
 

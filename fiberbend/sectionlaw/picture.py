@@ -32,7 +32,7 @@ def draw(made: Made, style: Style = STYLE) -> Figure:
     """
     import matplotlib as mpl
 
-    low, high = made.law.table.axes[-1].lines[[0, -1]].tolist()
+    low, high = made.section.table.axes[-1].lines[[0, -1]].tolist()
     free = [(pressure, state) for pressure, state in made.free if low <= pressure <= high]
     pressures = sorted({low, *(pressure for pressure, _ in free)})
     colors = mpl.colormaps["viridis"](np.linspace(_FROM, _TO, len(pressures)))
@@ -79,7 +79,7 @@ def _look(axes: Any, title: str, style: Style) -> None:
 
 def _without_force(made: Made, pressure: float) -> Floats:
     """λ and k of all curvatures at which N = 0 within the table, (n, 2)."""
-    law = made.law
+    law = made.section
     e = law.table.axes[0].lines
     found = []
     for u in np.linspace(0.0, 1.0, _POINTS).tolist():

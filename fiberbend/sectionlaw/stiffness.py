@@ -10,8 +10,8 @@ import numpy as np
 from fiberbend.calibration.calibrate import waits
 from fiberbend.case.case import Case
 from fiberbend.schema.problems import CaseError, Problem
-from fiberbend.sectionlaw.box import words
-from fiberbend.sectionlaw.held import Held, HeldState
+from fiberbend.sectionlaw.states.box import words
+from fiberbend.sectionlaw.states.held import Held, HeldState
 from fiberbend.trial.calibrations import Calibrations
 from fiberbend.trial.solve import solve
 from fiberbend.trial.wanted import Wanted

@@ -25,7 +25,7 @@ _KINDS = (".py", ".c", ".yaml", ".json")
 _DIGITS = 16
 
 
-def digest_of(case: Case, error: float, least: float | None) -> str:
+def digest_of(case: Case, strains: tuple[str, ...], error: float, least: float | None) -> str:
     """A hash of section, rubber, winding, range, error and code; titles and output do not enter."""
     parts = {"actuator": case.actuator, "materials": case.materials}
     parts |= {f"effect {number}": effect for number, effect in enumerate(case.effects)}
@@ -35,6 +35,7 @@ def digest_of(case: Case, error: float, least: float | None) -> str:
         "mesh": case.mesh.model_dump_json(),
         "model": choose_model(case)[0].name,
         "solver": case.solver.model_dump_json(),
+        "strains": strains,
         "error": repr(error),
         "least": repr(least),
         "code": _code(),

@@ -8,19 +8,21 @@ from collections.abc import Callable
 import numpy as np
 
 from fiberbend.calibration.calibrate import waits
+from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.case.symmetry import Symmetry
+from fiberbend.case.symmetry import Symmetry, stays_straight
 from fiberbend.columns import UNIFORM
 from fiberbend.models.choice import choose_model
 from fiberbend.schema.problems import CaseError, Problem
-from fiberbend.sectionlaw.box import Box, NoStateError, box_of
 from fiberbend.sectionlaw.errors import checked, sizes
-from fiberbend.sectionlaw.held import Held
 from fiberbend.sectionlaw.law import PLANE, SectionLaw
 from fiberbend.sectionlaw.made import Checked, Made
 from fiberbend.sectionlaw.range import Reach, reach_of
+from fiberbend.sectionlaw.side import side_of
+from fiberbend.sectionlaw.states.box import Box, NoStateError, box_of
+from fiberbend.sectionlaw.states.held import Held
+from fiberbend.sectionlaw.states.walk import Walk
 from fiberbend.sectionlaw.store import Store, digest_of
-from fiberbend.sectionlaw.walk import Walk
 from fiberbend.trial.calibrations import Calibrations
 from rod.functions import Floats
 from rod.spline import Samples
@@ -46,10 +48,26 @@ def table_of(
     store: Store | None = None,
     tell: Callable[[str], None] | None = None,
 ) -> Made:
+    """The law of a section that bends in its plane; see `law_of`."""
+    return law_of(case, PLANE, error, least, store, tell)
+
+
+def law_of(
+    case: Case,
+    strains: tuple[str, ...],
+    error: float = ERROR,
+    least: float | None = None,
+    store: Store | None = None,
+    tell: Callable[[str], None] | None = None,
+) -> Made:
     """The law of a section, from the store or anew.
 
+    Stretch and curvature, and the twist of a section that twists by itself, are tabulated; what
+    loads alone make of side curvature and twist is quadratic, from exact second derivatives.
+
     Args:
-        case: a checked case of model section or cell that bends in its plane.
+        case: a checked case of model section or cell.
+        strains: names of those of the rod, as `rod.layout.STRAINS` orders them.
         error: asked for, in parts.
         least: pressure from which the table is, MPa; zero unless given.
         store: of tables; that of the user unless given.
@@ -58,9 +76,9 @@ def table_of(
     Raises:
         CaseError: the law cannot have what the case has, or the table does not reach the error.
     """
-    refuse(case)
+    refuse(case, strains)
     store = Store() if store is None else store
-    digest = digest_of(case, error, least)
+    digest = digest_of(case, strains, error, least)
     found = store.find(digest)
     if found is not None:
         return found
@@ -68,13 +86,17 @@ def table_of(
         # another process may have been quicker
         made = store.find(digest)
         if made is None:
-            made = _made(case, PLANE, error, least, digest, tell)
+            made = _made(case, strains, error, least, digest, tell)
             store.keep(made)
     return made
 
 
-def refuse(case: Case) -> None:
+def refuse(case: Case, strains: tuple[str, ...] = PLANE) -> None:
     """Say by name what the law of a section cannot have.
+
+    Args:
+        case: a checked case.
+        strains: of the rod.
 
     Raises:
         CaseError: the case has that.
@@ -93,8 +115,13 @@ def refuse(case: Case) -> None:
     if UNIFORM not in model.fills and not problems:
         problems.append(Problem("model", f"{model.name}, expected section or cell"))
     symmetry = Symmetry.of(case.acting)
-    if not symmetry.plane and not problems:
-        text = "a table is of stretch and curvature, expected a case that bends in its plane"
+    if strains[:2] != PLANE:
+        problems.append(Problem("strains", f"{', '.join(strains)}: expected stretch and curvature"))
+    if symmetry.sideways and not problems:
+        text = "a table is of a section that keeps to its plane but for a twist"
+        problems.append(Problem("effects", f"{text}; of this one: {symmetry.words()}"))
+    if symmetry.twists and "twist" not in strains and not problems:
+        text = f"a table of {' and '.join(strains)} is of a section that bends in its plane"
         problems.append(Problem("effects", f"{text}; of this one: {symmetry.words()}"))
     if problems:
         raise CaseError(problems)
@@ -115,13 +142,21 @@ def _made(
     if least is not None and not 0 <= least < greatest:
         text = f"{1e3 * least:g} kPa, expected 0 or more, and less than {1e3 * greatest:.4g} kPa"
         raise CaseError([Problem("--from", text)])
-    held = Held(ready, strains)
+    twists = Symmetry.of(case.acting).twists
+    large = (*PLANE, "twist") if twists else PLANE
+    more = set(strains) - set(large)
+    alike = convert.dimensions(case.actuator).alike_around and stays_straight(case)
+    held = Held(ready, large)
+    all_held = Held(ready, strains) if more else held
     remarks, last = list(reach.remarks), ""
     for part in _PARTS:
         try:
-            box = box_of(reach, held, strains, part, least or 0.0)
+            box = box_of(reach, held, large, part, least or 0.0)
             walk = Walk(held, box, tell)
-            law, known = _fitted(case, strains, walk, box, reach, error)
+            law, known = _fitted(large, walk, box, reach, error)
+            side = None
+            if more:
+                side = side_of(all_held, strains, law, box, reach.moment, alike, tell)
         except NoStateError as stop:
             last = str(stop)
             continue
@@ -130,7 +165,7 @@ def _made(
         if last:
             remarks.append(f"{last}: the margins of the range are {100 * part:g} % of the usual")
         return Made(
-            law=law,
+            section=law,
             checked=known,
             samples=_samples(walk),
             error=error,
@@ -139,15 +174,16 @@ def _made(
             model=choose_model(case)[0].name,
             length=case.actuator.length,
             free=reach.free,
-            solved=held.solved,
+            solved=held.solved + (all_held.solved if more else 0),
             seconds=time.process_time() - began,
             remarks=tuple(remarks),
+            side=side,
         )
     raise CaseError([Problem("effects.pressure", f"{last}, expected a smaller one")])
 
 
 def _fitted(
-    case: Case, strains: tuple[str, ...], walk: Walk, box: Box, reach: Reach, error: float
+    strains: tuple[str, ...], walk: Walk, box: Box, reach: Reach, error: float
 ) -> tuple[SectionLaw, Checked]:
     """A law whose forces and free angles are as exact as asked for."""
     asked = error

@@ -22,7 +22,7 @@ _NAMES = {
 
 def columns(made: Made) -> tuple[str, ...]:
     """Of the CSV; energy is that of section and air, whose slopes are forces and chamber."""
-    names = [_NAMES[name] for name in made.law.strains]
+    names = [_NAMES[name] for name in made.section.strains]
     return (
         *(strain for strain, _ in names),
         *("pressure_kPa", "energy_Nmm_per_mm"),
@@ -33,7 +33,7 @@ def columns(made: Made) -> tuple[str, ...]:
 
 def lines(made: Made) -> Iterator[str]:
     """What a table is: range, states, errors, seconds."""
-    law, known = made.law, made.checked
+    law, known = made.section, made.checked
     low, high = law.table.axes[-1].lines[[0, -1]].tolist()
     variables = ", ".join(name.replace("_", " ") for name in law.strains)
     yield f"Law of the section by a table: {made.title or made.model}"
@@ -83,14 +83,14 @@ def lines(made: Made) -> Iterator[str]:
 
 def _ends(made: Made, pressure: float) -> Floats:
     """Least and greatest strains at a pressure, (2, m)."""
-    ends = np.array([[0.0], [1.0]]) * np.ones(len(made.law.strains))
-    return made.law.chart.strains(np.column_stack([ends, [pressure, pressure]]))
+    ends = np.array([[0.0], [1.0]]) * np.ones(len(made.section.strains))
+    return made.section.chart.strains(np.column_stack([ends, [pressure, pressure]]))
 
 
 def text(made: Made) -> str:
     """All states as CSV, by pressure, curvature and stretch."""
     points, strains, forces = made.samples.points, made.strains, made.forces
-    fitted = {tuple(point) for point in made.law.table.samples.points.tolist()}
+    fitted = {tuple(point) for point in made.section.table.samples.points.tolist()}
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(columns(made))

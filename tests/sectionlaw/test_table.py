@@ -16,10 +16,10 @@ from fiberbend.reader.reader import parse_case
 from fiberbend.schema.problems import CaseError
 from fiberbend.sectionlaw import words
 from fiberbend.sectionlaw.chart import Chart
-from fiberbend.sectionlaw.held import Held, HeldState
 from fiberbend.sectionlaw.law import PLANE, Free
 from fiberbend.sectionlaw.made import Made, unpacked
 from fiberbend.sectionlaw.polynomial import fit
+from fiberbend.sectionlaw.states.held import Held, HeldState
 from fiberbend.sectionlaw.store import Store, digest_of
 from fiberbend.sectionlaw.table import refuse, table_of
 from fiberbend.trial.solve import solve
@@ -55,9 +55,9 @@ def made(store: Store) -> Made:
 def places(made: Made, count: int) -> list[tuple[np.ndarray[Any, Any], float]]:
     """Strains and pressures inside the table, away from its edges."""
     random = np.random.default_rng(5)
-    low, high = np.array([axis.lines[[0, -1]] for axis in made.law.table.axes]).T
+    low, high = np.array([axis.lines[[0, -1]] for axis in made.section.table.axes]).T
     points = low + random.uniform(0.1, 0.9, (count, 3)) * (high - low)
-    strains = made.law.chart.strains(points)
+    strains = made.section.chart.strains(points)
     return [(strains[i : i + 1], float(points[i, 2])) for i in range(count)]
 
 
@@ -196,14 +196,14 @@ def test_a_rod_takes_it(made: Made) -> None:
 
 def test_free_states_are_those_of_trials(made: Made) -> None:
     """At pressures at which no table was compared while it was made."""
-    greatest = made.law.table.axes[-1].lines[-1] / 1.05
+    greatest = made.section.table.axes[-1].lines[-1] / 1.05
     pressures = tuple(float(greatest * part) for part in (0.2, 0.45, 0.9))
     answer = solve(checked(BENT), Wanted(pressures=pressures))
     assert answer.converged
     angle = max(point.angle for point in answer.free)
     for point in answer.free:
         near = Free(1.0 + 0.9 * (point.stretch - 1), 0.9 * point.angle / made.length)
-        found = made.law.free(point.pressure, near)
+        found = made.section.free(point.pressure, near)
         assert found.curvature * made.length == pytest.approx(point.angle, abs=1e-3 * angle)
         assert found.stretch == pytest.approx(point.stretch, abs=1e-4)
         area = made.law.chamber(np.array([found[:2]]), point.pressure)[0]
@@ -221,8 +221,8 @@ def test_errors_are_those_asked_for(made: Made) -> None:
 
 def test_a_straight_tube_is_its_own_mirror_image(store: Store) -> None:
     made = table_of(checked(TUBE), 1e-2, store=store)
-    axes = made.law.table.axes
-    pressure, most = float(axes[-1].lines.mean()), -made.law.chart.least[1]
+    axes = made.section.table.axes
+    pressure, most = float(axes[-1].lines.mean()), -made.section.chart.least[1]
     stretch = 1.02
     for part in (0.3, 0.8):
         sides = [np.array([[stretch, sign * part * most]]) for sign in (1, -1)]
@@ -240,7 +240,7 @@ def test_a_straight_tube_is_its_own_mirror_image(store: Store) -> None:
         image = other.second * np.outer(sign, sign)
         assert one.second == pytest.approx(image, rel=1e-6, abs=1e-6 * np.abs(image).max())
     free = solve(checked(TUBE), Wanted(pressures=(pressure,))).free[0]
-    found = made.law.free(pressure, Free(stretch, 0.0))
+    found = made.section.free(pressure, Free(stretch, 0.0))
     assert found.stretch == pytest.approx(free.stretch, abs=2e-4)
     assert found.curvature * made.length == pytest.approx(0.0, abs=1e-3)
 
@@ -257,16 +257,19 @@ def test_the_cache_gives_the_same(made: Made, store: Store) -> None:
 
 
 def test_what_enters_has_another_digest() -> None:
-    digest = digest_of(checked(BENT), ERROR, None)
-    assert digest == digest_of(checked(BENT | {"title": "another"}), ERROR, None)
+    digest = digest_of(checked(BENT), PLANE, ERROR, None)
+    assert digest == digest_of(checked(BENT | {"title": "another"}), PLANE, ERROR, None)
     thick = {**BENT, "actuator": BENT["actuator"] | {"wall": "3 mm"}}
     soft = {**BENT, "materials": BENT["materials"] | {"wall": "ecoflex-0030"}}
     others = [thick, soft, under(BENT, angle="90 deg")]
     others.append(
         wound(BENT, pattern="double-helix", pitch="4 mm", fiber="kevlar", **{"as": "smeared"})
     )
-    found = {digest_of(checked(other), ERROR, None) for other in others}
-    found |= {digest_of(checked(BENT), 1e-2, None), digest_of(checked(BENT), ERROR, 0.01)}
+    found = {digest_of(checked(other), PLANE, ERROR, None) for other in others}
+    found |= {
+        digest_of(checked(BENT), PLANE, 1e-2, None),
+        digest_of(checked(BENT), PLANE, ERROR, 0.01),
+    }
     assert len(found | {digest}) == 7
 
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fiberbend.sectionlaw.box import Box, NoStateError, words
-from fiberbend.sectionlaw.held import Held, HeldState
+from fiberbend.sectionlaw.states.box import Box, NoStateError, words
+from fiberbend.sectionlaw.states.held import Held, HeldState
 from rod.functions import Floats
 
 _STEPS = (1.0, 0.25, 0.06, 0.015)
@@ -27,13 +27,24 @@ class Walk:
         held: the section.
         box: of the table.
         tell: takes a line of progress.
+        columns: of the strains of the table among those that are held, all of them unless given;
+            the others are zero.
 
     Attributes:
         known: states by u and P, at what was asked for.
     """
 
-    def __init__(self, held: Held, box: Box, tell: Callable[[str], None] | None = None) -> None:
+    def __init__(
+        self,
+        held: Held,
+        box: Box,
+        tell: Callable[[str], None] | None = None,
+        columns: tuple[int, ...] | None = None,
+    ) -> None:
         self._held, self._box, self._tell = held, box, tell
+        count = len(held.rest.at) - 1
+        self._columns = list(range(count) if columns is None else columns)
+        self._count = count
         low, high = np.array(box.ranges).T
         self._widths: Floats = high - low
         self._states = [held.rest, *box.known]
@@ -46,13 +57,18 @@ class Walk:
         Raises:
             NoStateError: at one of them.
         """
-        chart, states = self._box.chart, [self._at(point) for point in points]
+        chart, states = self._box.chart, [self.state(point) for point in points]
         forces = np.array([state.slopes for state in states])
         second = np.array([state.second for state in states])
         values = np.array([state.energy for state in states])
         return values, chart.carried(points, forces), chart.bent(points, forces, second)
 
-    def _at(self, point: Floats) -> HeldState:
+    def state(self, point: Floats) -> HeldState:
+        """The state at u and P.
+
+        Raises:
+            NoStateError: none is found.
+        """
         key = tuple(point.tolist())
         if key not in self.known:
             self.known[key] = self._go(point)
@@ -62,7 +78,7 @@ class Walk:
 
     def _place(self, at: Floats) -> Floats:
         """u and P by strains and P."""
-        place = self._box.chart.place(at[None, :-1], float(at[-1]))[0]
+        place = self._box.chart.place(at[None, self._columns], float(at[-1]))[0]
         return np.array([*place, at[-1]])
 
     def _go(self, point: Floats) -> HeldState:
@@ -71,7 +87,9 @@ class Walk:
         Raises:
             NoStateError: none of them leads there.
         """
-        goal = np.array([*self._box.chart.strains(point[None, :])[0], point[-1]])
+        goal = np.zeros(self._count + 1)
+        goal[self._columns] = self._box.chart.strains(point[None, :])[0]
+        goal[-1] = point[-1]
         away = np.abs((np.array(self._places) - point) / self._widths).max(axis=1)
         nearest = np.argsort(away, kind="stable")[:_TRIED].tolist()
         for step in _STEPS:

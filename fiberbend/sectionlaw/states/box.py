@@ -8,9 +8,9 @@ import math
 import numpy as np
 
 from fiberbend.sectionlaw.chart import Chart
-from fiberbend.sectionlaw.held import Held, HeldState
 from fiberbend.sectionlaw.polynomial import fit
 from fiberbend.sectionlaw.range import Reach
+from fiberbend.sectionlaw.states.held import Held, HeldState
 from rod.functions import Floats
 
 MARGIN = 0.25
