@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -58,6 +59,7 @@ def export(
     if taken and not overwrite:
         text = "exists, expected a new folder by --out, or --overwrite"
         raise CaseError([Problem(str(path), text) for path in taken])
+    _check_folder(folder)
     settle_folders()
     _check(target, case, densities)
     launch.start_mpi()
@@ -87,6 +89,19 @@ def export(
                 f"next:  runSofa {shlex.quote(str(folder / name))} (never run in {to} by the tests)"
             )
     return 0
+
+
+def _check_folder(folder: Path) -> None:
+    """Refuse a folder that cannot be made before anything is solved.
+
+    Raises:
+        CaseError: what is there of its path is no folder, or cannot be written.
+    """
+    there = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+    if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
+        what = "cannot be written" if there.is_dir() else "is a file"
+        text = f"{there} {what}, expected a folder that can be written"
+        raise CaseError([Problem(str(folder), text)])
 
 
 def _check(target: Target, case: Case, densities: dict[str, float]) -> None:
