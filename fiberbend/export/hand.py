@@ -15,6 +15,7 @@ from fiberbend.case.case import Case
 from fiberbend.columns import UNIFORM
 from fiberbend.export.law import known
 from fiberbend.export.section import Handed
+from fiberbend.export.torsion import twisting_stiffness
 from fiberbend.models.choice import choose_model
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.slender.beside import section_case
@@ -22,7 +23,9 @@ from fiberbend.slender.laws import masses, young
 from fiberbend.slender.moments import Section, section_of, weighed
 from fiberbend.version import __version__
 from geometry.bodies.extrude import section_quadrilaterals
+from geometry.bodies.quads import section_mesh
 from geometry.sections.size import MeshSize
+from geometry.sections.table import section_layout
 from rod.functions import Floats
 
 STATES = 21
@@ -101,22 +104,16 @@ def law_case(case: Case) -> tuple[Case, list[str]]:
 
 
 def cap_stiffness(case: Case, moments: Section) -> Floats:
-    """Of a solid cap, (4, 4): N, N mm, N mm².
-
-    Against twist by St. Venant's estimate for solid sections, J ≈ A⁴/(40 I_p), a few percent off
-    (Timoshenko and Goodier 1970, section 109), with the mean shear modulus of its materials.
-    """
-    moduli = {name: young(each) for name, each in convert.site(case).materials.items()}
-    sums = weighed(moments.filled, moduli)
+    """Of a solid cap of its materials at rest, (4, 4): N, N mm, N mm²."""
+    materials = convert.site(case).materials
+    sums = weighed(moments.filled, {name: young(each) for name, each in materials.items()})
     # the stretch at x, y is λ + k_x y − k_y x
     by = np.array([(0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (-1.0, 0.0, 0.0)])
     out = np.zeros((4, 4))
     out[:3, :3] = by @ (sums + sums.T) / 2 @ by.T
-    parts = np.array(list(moments.filled.values())).sum(axis=0)
-    area, arm = parts[2, 2], parts[:2, 2] / parts[2, 2]
-    polar = np.trace(parts[:2, :2]) - area * float(arm @ arm)
-    # a modulus of three shear moduli: none of the rubbers in a cap can be compressed much
-    out[3, 3] = out[0, 0] / 3 / area * area**4 / (40 * polar)
+    layout = section_layout(convert.dimensions(case.actuator), MeshSize(section=2, half=False))
+    shear = {name: each.initial_shear_modulus for name, each in materials.items()}
+    out[3, 3] = twisting_stiffness(section_mesh(layout), shear)
     return out
 
 
