@@ -43,7 +43,7 @@ def test_mujoco_rests_where_the_rod_does(load: str, tmp_path: Path) -> None:
     rods.write(tmp_path, "mujoco")
     found = rods.run(tmp_path, "rod_mujoco.py", *arguments(load))
     place, angle = expected(load)
-    assert found["angle_deg"] == pytest.approx(angle, rel=1e-3)
+    assert found["tip_angle_deg"] == pytest.approx(angle, rel=1e-3)
     assert found["tip_mm"] == pytest.approx(place, abs=0.15)
     assert found["speed"] < 1e-3
 
@@ -59,7 +59,7 @@ def test_pyelastica_rests_where_the_rod_does(load: str, lever: float, tmp_path: 
     rods.write(tmp_path, "pyelastica", rods.handed(rods.section(lever)))
     found = rods.run(tmp_path, "rod_pyelastica.py", *arguments(load), "--elements", "20")
     place, angle = expected(load, lever)
-    assert found["angle_deg"] == pytest.approx(angle, rel=2e-3)
+    assert found["tip_angle_deg"] == pytest.approx(angle, rel=2e-3)
     assert found["tip_mm"] == pytest.approx(place, abs=1.0)
     assert found["speed_mm_per_s"] < 0.5
 
@@ -75,7 +75,7 @@ def test_mujocos_control_alone_is_off_by_what_the_file_says(tmp_path: Path) -> N
     pressures = made["section"]["pressure_kPa"]
     greatest = max(made["section"]["rest_curvature_1_per_mm"])
     _, angle = expected("free")
-    apart = math.radians(abs(found["angle_deg"] - angle)) / rods.LENGTH
+    apart = math.radians(abs(found["tip_angle_deg"] - angle)) / rods.LENGTH
     at = float(np.interp(KPA, pressures, made["section"]["rest_curvature_1_per_mm"]))
     assert apart == pytest.approx(abs(line.slope[1] * KPA * 1e-3 - at), rel=0.02)
     assert 0 < apart <= 1.001 * line.rest_off[1] * greatest

@@ -116,7 +116,7 @@ def main() -> None:
         json.dumps(
             {
                 "pressure_kPa": given.pressure,
-                "angle_deg": round(angle, 4),
+                "tip_angle_deg": round(angle, 4),
                 "tip_mm": [round(float(part) / MM, 4) for part in data.site_xpos[tip]],
                 "speed": round(float(np.abs(data.qvel).max()), 6),
             }

@@ -288,7 +288,7 @@ def main() -> None:
         json.dumps(
             {
                 "pressure_kPa": given.pressure,
-                "angle_deg": round(angle, 4),
+                "tip_angle_deg": round(angle, 4),
                 "tip_mm": [round(float(part), 4) for part in place],
                 "speed_mm_per_s": round(speed / MM, 4),
             }
