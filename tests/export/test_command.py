@@ -86,7 +86,9 @@ def test_the_least_stiffness_is_the_slope_of_free_bending_under_a_moment(exporte
 @pytest.mark.skipif(not rods.PYTHON.exists(), reason="`make robots` makes MuJoCo's environment")
 def test_mujoco_bends_it_as_the_run_did(exported: Path, run: Path) -> None:
     found = rods.run(exported, "rod_mujoco.py", "--pressure", "60")
-    assert found["tip_angle_deg"] == pytest.approx(fiberbend.load(run).rows[-1]["angle_deg"], rel=2e-3)
+    assert found["tip_angle_deg"] == pytest.approx(
+        fiberbend.load(run).rows[-1]["angle_deg"], rel=2e-3
+    )
 
 
 def test_a_part_without_density_is_named(
