@@ -19,7 +19,7 @@ from fiberbend.export.torsion import twisting_stiffness
 from fiberbend.models.choice import choose_model
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.slender.beside import section_case
-from fiberbend.slender.laws import masses, young
+from fiberbend.slender.laws import masses, pulled
 from fiberbend.slender.moments import Section, section_of, weighed
 from fiberbend.version import __version__
 from geometry.bodies.extrude import section_quadrilaterals
@@ -106,7 +106,9 @@ def law_case(case: Case) -> tuple[Case, list[str]]:
 def cap_stiffness(case: Case, moments: Section) -> Floats:
     """Of a solid cap of its materials at rest, (4, 4): N, N mm, N mm²."""
     materials = convert.site(case).materials
-    sums = weighed(moments.filled, {name: young(each) for name, each in materials.items()})
+    sums = weighed(
+        moments.filled, {name: float(pulled(each)[0]) for name, each in materials.items()}
+    )
     # the stretch at x, y is λ + k_x y − k_y x
     by = np.array([(0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (-1.0, 0.0, 0.0)])
     out = np.zeros((4, 4))
