@@ -64,8 +64,8 @@ class BlockedTipEffect(Effect):
     def wants(self) -> dict[str, str]:
         """Roof and post as surfaces."""
         return {
-            STRIPS: "roof and post are no surfaces of it: closed forms fix the tip rigidly, of a rod "
-            "the sheath yields",
+            STRIPS: "roof and post are no surfaces of it: closed forms fix the tip rigidly, of a "
+            "rod the sheath yields",
         }
 
     def mirror_breaker(self) -> str:
