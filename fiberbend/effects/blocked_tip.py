@@ -56,9 +56,7 @@ class BlockedTipEffect(Effect):
 
     @staticmethod
     def _rigid(site: Site) -> float:
-        """Stiffness of strips that keep their height, MPa/mm: as of obstacles between which a body
-        is kept straight.
-        """
+        """Stiffness of strips, MPa/mm: that of obstacles that keep a body straight."""
         return _STIFFNESS * 3 * site.materials["wall"].initial_shear_modulus / site.actuator.wall
 
     def wants(self) -> dict[str, str]:
