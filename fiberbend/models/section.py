@@ -17,6 +17,7 @@ from fiberbend.effects.effect import (
     ARC,
     CHAMBER,
     HELD,
+    OUTLINE,
     SIDE,
     THREAD,
     TWIST,
@@ -47,7 +48,7 @@ class Section(UniformModel):
     """Nothing depends on z in the frame that turns with the section."""
 
     name = "section"
-    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, SIDE, THREAD, ZONES})
+    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, SIDE, THREAD, OUTLINE, ZONES})
     turn = math.radians(10)
     first_turn = math.radians(10)
     memory = 5
