@@ -233,10 +233,11 @@ class BeddedPotential(FiberPotential):
     def extrapolate(self, states: list[dict[str, Floats]], weights: Floats) -> None:
         """Predicted forces from a weighted sum of remembered states."""
         super().extrapolate(states, weights)
-        self._predicted_across = sum(
+        across: Floats = sum(
             (weight * state["across"] for weight, state in zip(weights, states, strict=True)),
             np.zeros(len(self.index)),
         )
+        self._predicted_across = across
 
 
 class _Slip:

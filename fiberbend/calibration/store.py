@@ -16,6 +16,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from fiberbend.calibration import record
 from fiberbend.calibration.record import Calibration
 from machine import folders
 
@@ -120,7 +121,7 @@ def _read(entry: Any, digest: str) -> Calibration:
         raise ValueError("its content is not what was written")
     if entry["digest"] != digest:
         raise ValueError("it is of another section")
-    return Calibration.read(entry["found"])
+    return record.read(entry["found"])
 
 
 def _sum(entry: dict[str, Any]) -> str:

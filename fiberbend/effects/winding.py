@@ -179,7 +179,9 @@ class WindingEffect(Effect):
                 yield Problem(f"{path}.{key}", f"no effect {where}, expected no value")
         if self.representation != SMEARED and self.width == 0 and (self.lines or 1) > 1:
             yield Problem(f"{path}.lines", f"{self.lines}, expected 1 line where the width is zero")
-        yield from bedded.problems(path, self, self._wanted == CALIBRATED)
+        slack = self.tension_only and self._wanted == CALIBRATED
+        given = (self.families, self.bulging, self.bedding)
+        yield from bedded.problems(path, *(each is not None for each in given), slack)
         if self.bulging is not None:
             yield from self.bulging.problems(f"{path}.bulging")
         wrong = list(self._wrong(path))

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from fiberbend.effects.wound.thread import BeddingSpec, BulgingSpec
 from fiberbend.schema.problems import Problem
 
 if TYPE_CHECKING:
     from fem.effects.winding import BeddedWinding
-    from fiberbend.effects.wound.family import FamilySpec
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats
     from geometry.winding.ribbons import Ribbons
@@ -19,25 +18,23 @@ if TYPE_CHECKING:
     from materials.bulging import Bulging
 
 
-class Said(Protocol):
-    """What a winding says of it."""
+def problems(
+    path: str, families: bool, bulging: bool, bedding: bool, slack: bool
+) -> Iterator[Problem]:
+    """Numbers of the other kind of winding, and threads that go slack where they are calibrated.
 
-    families: tuple[FamilySpec, ...] | None
-    bulging: BulgingSpec | None
-    bedding: BeddingSpec | None
-    tension_only: bool
-
-
-def problems(path: str, winding: Said, calibrated: bool) -> Iterator[Problem]:
-    """Numbers of the other kind of winding, and threads that go slack where they are calibrated."""
-    if winding.families is None:
-        if winding.bedding is not None:
-            text = "no effect without families, expected bulging"
-            yield Problem(f"{path}.bedding", text)
-        return
-    if winding.bulging is not None:
+    Args:
+        path: of the winding.
+        families: it has families.
+        bulging: it has these numbers.
+        bedding: and these.
+        slack: it is calibrated and goes slack.
+    """
+    if not families and bedding:
+        yield Problem(f"{path}.bedding", "no effect without families, expected bulging")
+    if families and bulging:
         yield Problem(f"{path}.bulging", "no effect beside families, expected bedding")
-    if winding.tension_only and calibrated:
+    if families and slack:
         yield Problem(
             f"{path}.tension_only",
             "families whose rubber yields are calibrated taut, expected false, or as: discrete or "
