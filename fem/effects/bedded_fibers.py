@@ -162,13 +162,14 @@ class BeddedPotential(FiberPotential):
         if correction is None:
             return
         bed, given = self._bedding, scalars or {}
-        strain = self._along.change(correction, scalars)
+        strain: Floats = self._along.change(correction, scalars)
         for name, slope in zip(self._slip.names, self._slip.slopes.T, strict=True):
             strain = strain - slope * given.get(name, 0.0)
-        y = bed.across * self._across.change(correction, scalars)
+        y: Floats = bed.across * self._across.change(correction, scalars)
         y = y + bed.pressure / bed.normal * given.get(PRESSURE, 0.0)
         self._predicted = self.stiffness * (self.strain + strain) + self._mixed_y * y
-        self._predicted_across = self._along_y + self._mixed_y * strain + self._second_y * y
+        across: Floats = self._along_y + self._mixed_y * strain + self._second_y * y
+        self._predicted_across = across
 
     def tangent_blocks(self) -> Floats:
         """∂²Π/∂w² of every segment, (n, k, k)."""
@@ -233,10 +234,8 @@ class BeddedPotential(FiberPotential):
     def extrapolate(self, states: list[dict[str, Floats]], weights: Floats) -> None:
         """Predicted forces from a weighted sum of remembered states."""
         super().extrapolate(states, weights)
-        across: Floats = sum(
-            (weight * state["across"] for weight, state in zip(weights, states, strict=True)),
-            np.zeros(len(self.index)),
-        )
+        kept = np.array([state["across"] for state in states])
+        across: Floats = weights @ kept
         self._predicted_across = across
 
 

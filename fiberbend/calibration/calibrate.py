@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from fiberbend.calibration import reach as classes
+from fiberbend.calibration import ways
 from fiberbend.calibration.digest import content, digest
 from fiberbend.calibration.reach import Reach
 from fiberbend.calibration.record import DOUBTFUL, DOUBTFUL_FAMILIES, Calibrated, Calibration
@@ -84,27 +85,16 @@ def calibrate(
 
 def _classes(case: Case) -> Iterator[tuple[Reach, str, bool]]:
     """Classes of curvature from the first that holds a case's angles on, with their digests."""
-    if _families(case):
-        from fiberbend.calibration.families import content as own
-
-        yield Reach.of(0), digest(own(case)), True
+    if ways.of_families(case):
+        yield Reach.of(0), digest(ways.content(case)), True
         return
     for number in range(classes.first(case).number, classes.CLASSES):
         reach = Reach.of(number)
         yield reach, digest(content(case, reach)), number == classes.CLASSES - 1
 
 
-def _families(case: Case) -> bool:
-    """Whether families are calibrated, on a way of their own."""
-    return case.turns is not None and case.turns.pitch is None
-
-
 def _content(case: Case, reach: Reach) -> dict[str, Any]:
-    if _families(case):
-        from fiberbend.calibration.families import content as own
-
-        return own(case)
-    return content(case, reach)
+    return ways.content(case) if ways.of_families(case) else content(case, reach)
 
 
 def _solve(case: Case, reach: Reach) -> Calibration:
@@ -112,7 +102,7 @@ def _solve(case: Case, reach: Reach) -> Calibration:
 
     began = time.perf_counter()
     try:
-        if _families(case):
+        if ways.of_families(case):
             from fiberbend.calibration.families import calibrated
 
             return calibrated(case)
@@ -134,13 +124,13 @@ def _result(
 
 def _doubts(case: Case, result: Calibrated) -> Iterator[str]:
     """What makes a calibration doubtful for a case."""
-    most = DOUBTFUL_FAMILIES if _families(case) else DOUBTFUL
+    most = DOUBTFUL_FAMILIES if ways.of_families(case) else DOUBTFUL
     if result.left_percent > most:
         yield (
             f"winding: its calibration leaves {result.left_percent:.1f} % between section and "
             f"cell, more than {most:g} %"
         )
-    if _families(case):
+    if ways.of_families(case):
         if not result.found.whole:
             up_to = 1e3 * result.found.pressure
             yield f"winding: its cell came to {up_to:.4g} kPa; beyond, nothing is known of it"

@@ -4,29 +4,23 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from fem.march.records import State
-from fiberbend.calibration import digest
+from fiberbend.calibration import ways
 from fiberbend.calibration.fit import CalibrationError, least_squares
 from fiberbend.calibration.reach import height
 from fiberbend.calibration.record import OfFamilies
 from fiberbend.case import convert
-from fiberbend.case.case import Case, Mesh, Output, Solver
-from fiberbend.effects.effect import Effect
-from fiberbend.effects.pressure import inflate
+from fiberbend.case.case import Case
 from fiberbend.uniform.small import Small
 from materials.bedding import Bedding
 
 Floats = npt.NDArray[np.float64]
 
-LAYERS = 6
-"""Elements of the cell along the least distance of neighbouring threads of a family."""
-PARTS = (0.1, 0.3, 0.5, 0.75, 1.0)
-"""Of the pressure or the angle of a case, at which its cell is looked at."""
 _NORMAL, _ALONG = 2.5, 20.0
 """k0 and k_s over the wall's shear modulus at the start: 1.7 to 4.2 and 13 to 60 of the windings
 of docs/evidence/families.md."""
@@ -61,8 +55,9 @@ def calibrated(case: Case) -> OfFamilies:
         CalibrationError: it cannot be calibrated.
     """
     began = time.perf_counter()
-    _check(case)
-    cell = Small(_small(case, "cell"))
+    if reason := ways.objection(case):
+        raise CalibrationError(reason)
+    cell = Small(ways.small(case, "cell"))
     states, report = cell.march()
     if len(states) < 2:
         raise CalibrationError(f"its cell has {len(states)} states only: {report.reason}")
@@ -85,74 +80,6 @@ def calibrated(case: Case) -> OfFamilies:
         growth=max(r.area for r in known) / rest,
         whole=report.status == "converged",
         seconds=round(time.perf_counter() - began, 2),
-    )
-
-
-def content(case: Case) -> dict[str, Any]:
-    """All that enters; caps and densities do not."""
-    effects = [
-        {effect.name: effect.model_dump(exclude={"representation", "bedding"})}
-        for effect in case.effects
-        if effect.winds() or effect.inflation() is None
-    ]
-    load = case.inflation
-    found = digest.common(case)
-    return found | {
-        "effects": effects,
-        "length": case.actuator.length,
-        "load": None if load is None else dataclasses.asdict(load),
-        "mesh": [digest.CELL, LAYERS, digest.SECTION, digest.TOLERANCE],
-    }
-
-
-def _check(case: Case) -> None:
-    """Why a case is not calibrated.
-
-    Raises:
-        CalibrationError: it is not.
-    """
-    load, turns = case.inflation, case.turns
-    assert turns is not None
-    if load is None or (load.to is None and load.angle is None):
-        raise CalibrationError("families are calibrated on the way to a pressure or an angle")
-    if case.straight or any(effect.held() for effect in case.effects):
-        raise CalibrationError("families are calibrated where nothing is held")
-    if turns.period is None:
-        raise CalibrationError(turns.misfit)
-
-
-def _small(case: Case, model: str) -> Case:
-    """Cell or section of a case, at parts of its load."""
-    load, turns = case.inflation, case.turns
-    assert load is not None
-    assert turns is not None
-    if load.to is not None:
-        drive: Effect = inflate(to=load.to)
-        asked = {"at_pressures": tuple(part * load.to for part in PARTS)}
-    else:
-        assert load.angle is not None
-        drive = inflate(angle=load.angle)
-        asked = {"at_angles": tuple(part * load.angle for part in PARTS)}
-    cell = model == "cell"
-    effects = tuple(
-        drive
-        if effect.inflation() is not None
-        else (effect.in_cell() or effect)
-        if cell
-        else effect
-        for effect in case.effects
-    )
-    axial = turns.spacing / LAYERS
-    mesh = {"section": digest.CELL, "axial": axial} if cell else {"section": digest.SECTION}
-    return case.model_copy(
-        update={
-            "model": model,
-            "effects": effects,
-            "mesh": Mesh().model_copy(update=mesh),
-            "solver": Solver().model_copy(update={"tolerance": digest.TOLERANCE}),
-            "output": Output().model_copy(update=asked),
-            "accuracy": None,
-        }
     )
 
 
@@ -187,7 +114,7 @@ class _Sections:
         effects = (e.with_bulging(begin) if e.uncalibrated() else e for e in case.effects)
         self._windings = [effect for effect in case.effects if effect.uncalibrated()]
         wound = case.model_copy(update={"effects": tuple(effects)})
-        self._small = Small(_small(wound, "section"))
+        self._small = Small(ways.small(wound, "section"))
         states, report = self._small.march()
         if len(states) < len(known):
             raise CalibrationError(

@@ -180,8 +180,8 @@ class WindingEffect(Effect):
         if self.representation != SMEARED and self.width == 0 and (self.lines or 1) > 1:
             yield Problem(f"{path}.lines", f"{self.lines}, expected 1 line where the width is zero")
         slack = self.tension_only and self._wanted == CALIBRATED
-        given = (self.families, self.bulging, self.bedding)
-        yield from bedded.problems(path, *(each is not None for each in given), slack)
+        families, bedding = self.families is not None, self.bedding is not None
+        yield from bedded.problems(path, families, self.bulging is not None, bedding, slack)
         if self.bulging is not None:
             yield from self.bulging.problems(f"{path}.bulging")
         wrong = list(self._wrong(path))
