@@ -63,8 +63,8 @@ def lost_pressure(case: Case, model: ModelKind) -> Iterator[str]:
     if turns.pitch is None:
         if turns.bulges:
             yield (
-                "winding: with the bulges of its own cell, most families within 1.5 % of a fine "
-                "cell's turns and lengthening; the run says what is left (docs/evidence/families.md)"
+                "winding: with the bulges of its own cell, most families within 1.5 % of its turns "
+                "and lengthening; the run says what is left (docs/evidence/families.md)"
             )
         elif model.resolved_bulging(case) < 1:
             yield (

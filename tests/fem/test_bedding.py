@@ -37,6 +37,7 @@ FAMILIES = (
     Family(0.0, 0, 6.0),
 )
 KEY = "BeddedWinding"
+Way = tuple[np.ndarray, dict[str, float]]
 
 
 def _section(
@@ -131,8 +132,8 @@ def _scalars(scene: Scene) -> list[str]:
     return [*scene.natural, PRESSURE]
 
 
-def _moved(scene: Scene, w: np.ndarray, rest: dict[str, float], by: float, way: object) -> None:
-    fields, scalars = way  # type: ignore[misc]
+def _moved(scene: Scene, w: np.ndarray, rest: dict[str, float], by: float, way: Way) -> None:
+    fields, scalars = way
     for name, value in rest.items():
         scene.set_scalar(name, value + by * scalars[name])
     scene.set(w + by * fields)
@@ -204,7 +205,9 @@ def test_forces_are_predicted_to_first_order() -> None:
         scene.assemble_tangent()
         moves = {name: size * rate for name, rate in way[1].items()}
         scene.predict(size * way[0], moves)
-        found = {"force": potential.predicted, "across": potential._predicted_across}
+        across = potential._predicted_across
+        assert across is not None
+        found = {"force": potential.predicted, "across": across}
         _moved(scene, w, rest, size, way)
         after = potential.state()
         errors.append(
