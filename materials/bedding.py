@@ -5,10 +5,6 @@ from __future__ import annotations
 import dataclasses
 import math
 
-START = 2.0
-"""k over the shear modulus of the rubber, about: 1.6 to 3.2 of the windings of
-docs/evidence/families.md."""
-
 
 @dataclasses.dataclass(frozen=True)
 class Bedding:

@@ -102,7 +102,7 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ),
     (
         case(HELIX, kind="calibrated") | {"model": "cell"},
-        f"{W}: families are calibrated in a section",
+        f"{W}: model cell does not support it: families are calibrated in a section",
     ),
     (case(HELIX, width="1 mm"), f"{W}.width: no effect on a smeared winding"),
 ]
