@@ -22,9 +22,6 @@ from fiberbend.effects.records import (
     HOOPS as HOOPS,
 )
 from fiberbend.effects.records import (
-    OUTLINE as OUTLINE,
-)
-from fiberbend.effects.records import (
     SIDE as SIDE,
 )
 from fiberbend.effects.records import (

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Literal, Self
 from pydantic import ConfigDict, Field
 
 from fiberbend.effects.effect import (
-    OUTLINE,
     THREAD,
     TURNS,
     TWIST,
@@ -20,6 +19,7 @@ from fiberbend.effects.effect import (
     Site,
     Stretch,
 )
+from fiberbend.effects.records import OUTLINE
 from fiberbend.effects.wound import bedded, zoned
 from fiberbend.effects.wound.by_families import ByFamilies
 from fiberbend.effects.wound.by_pattern import ByPattern

@@ -17,7 +17,6 @@ from fiberbend.effects.effect import (
     ARC,
     CHAMBER,
     HELD,
-    OUTLINE,
     SIDE,
     THREAD,
     TWIST,
@@ -25,6 +24,7 @@ from fiberbend.effects.effect import (
     WOUND,
     ZONES,
 )
+from fiberbend.effects.records import OUTLINE
 from fiberbend.models.costs.size import summed
 from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import ProblemSize, Rung, completed_mesh, count
