@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -59,7 +60,7 @@ def table(
     from fiberbend.sectionlaw.table import table_of
 
     store = Store()
-    made = table_of(checked, asked, start, store, say)
+    made = table_of(checked, asked, start, store, lambda line: say(line, sys.stderr))
     for line in (*words.lines(made), *(f"  note: {remark}" for remark in store.remarks)):
         say(line)
     try:

@@ -22,7 +22,7 @@ ERROR = 1e-2
 MU = 0.3
 BAR: Data = {
     "actuator": {"section": "circle", "radius": "0.5 mm", "length": "100 mm", "wall": "5 mm"},
-    "materials": {"wall": {"law": "neo-hooke", "mu": f"{MU} MPa", "density": "1100 kg/m^3"}},
+    "materials": {"wall": {"law": "neo-hooke", "mu": f"{MU} MPa"}},
     "effects": [{"pressure": {"to": "1 kPa"}}],
     "model": "section",
     "mesh": {"section": 2},

@@ -79,7 +79,7 @@ class Held:
             twist=_TOKEN if "twist" in strains else None,
         )
         self._small = Small(loaded.model_copy(update={"effects": (*loaded.effects, token)}))
-        self._strains, self._length = strains, case.actuator.length
+        self._length = case.actuator.length
         self._share = self._small.scene.body.symmetry_factor / self._length
         self._names = [HELD[name] for name in strains]
         self.solved = 0
