@@ -19,11 +19,13 @@ from rod.functions import Floats
 from rod.inertia import SectionMass, lump, spread
 from rod.law import Linear, Zones
 from rod.layout import Layout
+from rod.loads import TipForce, Weight
 from rod.modes import modes
 from rod.motion import Motion
-from rod.rod import Level, Rod, TipLoad
+from rod.rod import Level, Rod
 from rod.statics import Path, march
 from rod.table import tabulate
+from rod.term import Term
 
 LENGTH, WIDTH, HEIGHT = 120.0, 16.0, 14.0
 YOUNG, DENSITY = 1.0, 1.1e-9
@@ -37,16 +39,17 @@ FORCE = 0.6
 PIECES = (6, 12, 24, 48)
 STIFFNESS = {"shear_y": SHEAR, "stretch": AXIAL, "curvature": BENDING}
 NO_SHEAR, WITH_SHEAR = ("stretch", "curvature"), ("shear_y", "stretch", "curvature")
+WEIGHT = (0.0, -9810.0, 0.0)
 STEPS = np.linspace(0.2, 1.0, 5).tolist()
 
 
-def bar(pieces: int, strains: tuple[str, ...], tip: TipLoad | None = None) -> Rod:
-    """The bar, clamped."""
+def bar(pieces: int, strains: tuple[str, ...], *tip: Term) -> Rod:
+    """The bar, clamped; its first term is its weight."""
     layout = Layout(np.full(pieces, LENGTH / pieces), strains)
     law = Linear(np.diag([STIFFNESS[name] for name in strains]), layout.at_rest()[0])
     second = (DENSITY * HEIGHT * WIDTH**3 / 12, DENSITY * BENDING / YOUNG, 0.0)
     masses = spread(layout, [SectionMass(DENSITY * AREA, second=second)])
-    return Rod(layout, law, masses, (0.0, -9810.0, 0.0), tip)
+    return Rod(layout, law, masses, (Weight(masses, WEIGHT), *tip))
 
 
 def exact(shear: float) -> Floats:
@@ -134,8 +137,8 @@ def discretisations() -> str:
     for pieces in PIECES:
         for name, strains in (("screws", NO_SHEAR), ("screws with shear", WITH_SHEAR)):
             aim = exact(math.inf if strains is NO_SHEAR else SHEAR)
-            rod = bar(pieces, strains, TipLoad(force=(0.0, -FORCE, 0.0)))
-            path = Path(Level(), Level(tip=1.0))
+            rod = bar(pieces, strains, TipForce((0.0, -FORCE, 0.0)))
+            path = Path(Level(), Level(amounts=(0.0, 1.0)))
             states = march(rod, rod.layout.at_rest(), path, STEPS)
             angle = float(np.sum(rod.layout.weights("curvature") * states[-1].strains))
             tip = states[-1].shape.places[-1]
@@ -160,15 +163,15 @@ def shear_share() -> str:
     for name, force, mass in (("0.2 N", 0.2, 0.0), ("0.6 N", FORCE, 0.0), ("20 g", 0.0, 2e-5)):
         found = []
         for strains in (NO_SHEAR, WITH_SHEAR):
-            plain = bar(48, strains, TipLoad(force=(0.0, -force, 0.0)))
+            plain = bar(48, strains, TipForce((0.0, -force, 0.0)))
             law = plain.law
             assert isinstance(law, Linear)
             cap = dataclasses.replace(law, stiffness=100 * law.stiffness)
             caps = Zones((law, cap), [1, 1, *([0] * 44), 1, 1])
             masses = plain.inertia.copy()
             masses[-1] += lump(mass, (0.0, 0.0, 0.0))
-            rod = Rod(plain.layout, caps, masses, (0.0, -9810.0, 0.0), plain.tip)
-            path = Path(Level(), Level(weight=1.0 if mass else 0.0, tip=1.0))
+            rod = Rod(plain.layout, caps, masses, (Weight(masses, WEIGHT), *plain.terms[1:]))
+            path = Path(Level(), Level(amounts=(1.0 if mass else 0.0, 1.0)))
             found.append(march(rod, rod.layout.at_rest(), path, STEPS)[-1])
         angles, tips = zip(
             *((float(np.sum(s.shape.layout.weights("curvature") * s.strains)),
@@ -234,8 +237,8 @@ def tables() -> str:
     for error in (1e-3, 1e-4, 1e-5):
         law = tabulate(rubber, ranges, error)
         plain = bar(48, NO_SHEAR)
-        rod = Rod(plain.layout, law, plain.inertia, (0.0, -9810.0, 0.0))
-        path = Path(Level(), Level(pressure=0.3, weight=1.0))
+        rod = Rod(plain.layout, law, plain.inertia, plain.terms)
+        path = Path(Level(), Level(0.3, (1.0,)))
         rest = rod.layout.at_rest()
         state = march(rod, rest, path, STEPS)[-1]
         angle = float(np.sum(rod.layout.weights("curvature") * state.strains))
@@ -269,10 +272,11 @@ def costs() -> str:
         layout = Layout(np.full(48, LENGTH / 48), free)
         law = Linear(np.diag([AXIAL, *(BENDING for _ in free[1:])]), layout.at_rest()[0])
         masses = bar(48, NO_SHEAR).inertia
-        rod = Rod(layout, law, masses, (0.0, -9810.0, 0.0), TipLoad(force=(0.0, -0.1, 0.0)))
-        path = Path(Level(), Level(weight=1.0, tip=1.0))
+        terms = (Weight(masses, WEIGHT), TipForce((0.0, -0.1, 0.0)))
+        rod = Rod(layout, law, masses, terms)
+        path = Path(Level(), Level(amounts=(1.0, 1.0)))
         state = least(lambda: march(rod, layout.at_rest(), path, STEPS)) / len(STEPS)  # noqa: B023
-        motion = Motion(rod, lambda time: Level(weight=1.0), 0.005 * np.diag(law.stiffness))
+        motion = Motion(rod, lambda time: Level(amounts=(1.0,)), 0.005 * np.diag(law.stiffness))
         begin = motion.at(layout.at_rest())
         step = least(lambda: list(motion.run(begin, 5e-3, 10)), 4) / 10  # noqa: B023
         rows.append([name, layout.at_rest().size, f"{state:.1f} ms", f"{step:.1f} ms"])

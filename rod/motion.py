@@ -5,13 +5,14 @@ masses P. Velocities of the frames are unknowns beside the strains ε, which pla
 from ε₀, V₀ to ε₁, V₁ is the midpoint rule
 
     X₁ − X₀ = Δt (V₀ + V₁)/2,      ∇̄G(ε₀, ε₁) + C Δε/Δt = 0,
-    G(ε) = ∫ Φ(ε) ds + Σ A : X(ε),     A = (V₁ − V₀) P/Δt − loads,
+    G(ε) = ∫ Φ(ε) ds + Π(ε) + Σ A : X(ε),     A = (V₁ − V₀) P/Δt,
 
-with the discrete gradient ∇̄G = ∇G(ε̄) + [G₁ − G₀ − ∇G(ε̄)·Δε] W Δε/(Δε·W Δε) at the mean strains
-ε̄ (Gonzalez 1996, doi 10.1007/BF02440162). As ∇̄G·Δε = G₁ − G₀, what is undamped keeps ½ Σ tr(V P Vᵀ)
-+ ∫ Φ − loads : X to the last digits of Newton's method. It is the method of Betsch 2005
-(doi 10.1016/j.cma.2005.01.004) with strains as the reduced unknowns; of second order, and stable at
-any Δt. ΔX is exact: no rotation drifts.
+with the potential Π of all terms that have one and the discrete gradient
+∇̄G = ∇G(ε̄) + [G₁ − G₀ − ∇G(ε̄)·Δε] W Δε/(Δε·W Δε) at the mean strains ε̄ (Gonzalez 1996,
+doi 10.1007/BF02440162). As ∇̄G·Δε = G₁ − G₀, what is undamped keeps ½ Σ tr(V P Vᵀ) + ∫ Φ ds + Π to
+the last digits of Newton's method, whatever the terms are. Terms without a potential do their
+virtual work at ε̄. It is the method of Betsch 2005 (doi 10.1016/j.cma.2005.01.004) with strains as
+the reduced unknowns; of second order, and stable at any Δt. ΔX is exact: no rotation drifts.
 
 Damping: `viscosity` is Kelvin's and Voigt's, forces and moments η ε̇ of the sections (N s of
 stretch, N mm² s of curvatures); `drag` is Rayleigh's part of the mass, 1/s. Both take energy out in
@@ -130,12 +131,10 @@ class Motion:
         return rates.reshape(shape.strains.shape)
 
     def energy(self, moving: Moving) -> float:
-        """Of motion, sections and dead loads together, N mm."""
-        rod = self.rod
-        level = self._level(moving.time)
+        """Of motion, sections and all terms that have a potential, N mm."""
         kinetic = float(np.sum(moving.velocity @ self.inertia * moving.velocity)) / 2
-        held = float(np.sum(rod.dead(level) * moving.frames))
-        return kinetic + rod.elastic(moving.strains, level.pressure) - held
+        shape, level = self.rod.shape(moving.strains), self._level(moving.time)
+        return kinetic + self.rod.potential(shape, level)
 
     def run(self, moving: Moving, step: float, count: int) -> Iterator[Moving]:
         """States after each of a number of steps.
@@ -182,7 +181,7 @@ class Motion:
     def _whole(self, moving: Moving, step: float) -> Moving:
         """One step by Newton's method, from a change of strains like the last one's."""
         rod, level = self.rod, self._level(moving.time + step / 2)
-        now = _Step(self, moving, step, level, rod.dead(level))
+        now = _Step(self, moving, step, level)
         change = moving.step
         last, slow = np.inf, True
         for _ in range(_MOST):
@@ -217,20 +216,25 @@ class _Step:
         moving: the state before.
         step: Δt, s.
         level: in the middle of the step.
-        dead: loads of constant direction then.
     """
 
-    def __init__(
-        self, motion: Motion, moving: Moving, step: float, level: Level, dead: Floats
-    ) -> None:
+    def __init__(self, motion: Motion, moving: Moving, step: float, level: Level) -> None:
         self._motion, self._rod, self._before = motion, motion.rod, moving
         self._level = level
+        acting = self._rod.acting(level)
+        self._kept = [pair for pair in acting if pair[0].conservative]
+        self._others = [pair for pair in acting if not pair[0].conservative]
         self._lengths = self._rod.layout.lengths[:, None]
-        self._elastic = self._rod.elastic(moving.strains, level.pressure)
+        self._potentials = self._parts(self._rod.shape(moving.strains))
         self._viscous = self._lengths * motion.viscosity / step
         # A = weight ΔX P + start
         self._weight = 2 / step**2 + motion.drag / step
-        self._start = -2 / step * moving.velocity @ motion.inertia - dead
+        self._start = -2 / step * moving.velocity @ motion.inertia
+
+    def _parts(self, shape: Shape) -> Floats:
+        """Potentials of the sections and of each term, N mm."""
+        elastic = self._rod.elastic(shape.strains, self._level.pressure)
+        return np.array([elastic, *(term.potential(shape, a) for term, a in self._kept)])
 
     def residual(self, change: Floats) -> Floats:
         """∇̄G + C Δε/Δt less the virtual work of loads without a potential, (n, m)."""
@@ -244,11 +248,13 @@ class _Step:
         self._loads = self._pushed + self._start
         law = rod.law.gradient(self._middle.strains, pressure)
         self._forces = self._lengths * law + self._middle.pulled(self._loads)
-        elastic = rod.elastic(self._after.strains, pressure)
+        for term, amount in self._kept:
+            self._forces += term.residual(self._middle, amount)
+        after, before = self._parts(self._after), self._potentials
         done, foreseen = float(np.sum(self._loads * moved)), float(np.sum(self._forces * change))
-        gap = elastic - self._elastic + done - foreseen
+        gap = float(np.sum(after - before)) + done - foreseen
         # of a rod that hardly moves it is round-off, over a square that is next to nothing
-        sizes = abs(elastic) + abs(self._elastic) + abs(done) + abs(foreseen)
+        sizes = float(np.abs([*after, *before, done, foreseen]).sum())
         known = abs(gap) > _ROUND_OFF * sizes
         self._weighed = motion.weights * change
         square = float(np.sum(self._weighed * change))
@@ -256,8 +262,8 @@ class _Step:
         # what the gradient in the middle misses of the difference, and the square it is spread by
         self._missed, self._square = (gap / square, square) if known else (0.0, np.inf)
         out = out + self._missed * self._weighed
-        if self._level.tip:
-            out = out - self._level.tip * rod.tip.work(self._middle)
+        for term, amount in self._others:
+            out = out + term.residual(self._middle, amount)
         return out
 
     def tangent(self) -> Floats:
@@ -265,14 +271,18 @@ class _Step:
         rod, motion, pressure = self._rod, self._motion, self._level.pressure
         middle, after = self._middle, self._after
         out: Floats = rod.stiffness(middle.strains, pressure) + middle.curved(self._loads)
+        for term, amount in self._kept:
+            out += term.tangent(middle, amount)
         out = out / 2 + self._weight * middle.mass(motion.inertia, after)
         law = self._lengths * rod.law.gradient(after.strains, pressure)
+        for term, amount in self._kept:
+            law = law + term.residual(after, amount)
         ahead = law + after.pulled(self._loads + self._pushed) - self._forces
         w = self._weighed.ravel()
         row = (ahead.ravel() - self._change.ravel() @ out) / self._square
         out += np.outer(w, row - 2 * self._missed / self._square * w)
         diagonal = self._viscous + self._missed * motion.weights
         out[np.diag_indices_from(out)] += diagonal.ravel()
-        if self._level.tip:
-            out -= self._level.tip / 2 * rod.tip.slope(middle)
+        for term, amount in self._others:
+            out += term.tangent(middle, amount) / 2
         return out

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -10,7 +11,9 @@ from rod.functions import Floats
 from rod.inertia import SectionMass, spread
 from rod.law import Linear
 from rod.layout import STRAINS, Layout
-from rod.rod import Rod, TipLoad
+from rod.loads import NO_LOAD, TipForce, TipMoment, Vector, Weight
+from rod.rod import Rod
+from rod.term import Term
 
 PLANE = ("stretch", "curvature")
 SPACE = STRAINS[2:]
@@ -85,12 +88,23 @@ class Bar:
         self,
         pieces: int,
         strains: tuple[str, ...] = PLANE,
-        tip: TipLoad | None = None,
+        tip: Sequence[Term] = (),
         gravity: tuple[float, float, float] = DOWN,
     ) -> Rod:
-        """The bar as a rod under its weight."""
+        """The bar as a rod: its first term is its weight."""
         layout = self.layout(pieces, strains)
-        return Rod(layout, self.law(strains), spread(layout, [self.mass()]), gravity, tip)
+        masses = spread(layout, [self.mass()])
+        return Rod(layout, self.law(strains), masses, (Weight(masses, gravity), *tip))
+
+
+def both(
+    force: Vector,
+    moment: Vector,
+    follows: bool = False,
+    arm: Vector = NO_LOAD,
+) -> tuple[Term, Term]:
+    """A force and a moment at the tip."""
+    return TipForce(force, follows, arm), TipMoment(moment, follows)
 
 
 def bent(layout: Layout, seed: int = 1, most: float = 0.3) -> Floats:

@@ -13,8 +13,9 @@ from scipy.optimize import brentq
 from rod.inertia import SectionMass, lump, spread
 from rod.law import Linear
 from rod.layout import STRAINS
+from rod.loads import TipForce
 from rod.modes import modes
-from rod.rod import Level, Rod, TipLoad
+from rod.rod import Level, Rod
 from rod.statics import Path, solve
 from tests.rod.bars import PLANE, SPACE, Bar
 
@@ -131,13 +132,13 @@ def test_a_frequency_falls_to_zero_at_eulers_load() -> None:
     buckles = math.pi**2 * bar.young * bar.second / (4 * bar.length**2)
     found = []
     for part in (0.0, 0.5, 0.9, 0.999, 1.002):
-        tip = TipLoad(force=(0.0, 0.0, -part * buckles))
+        tip = TipForce((0.0, 0.0, -part * buckles))
         layout = bar.layout(48, ("curvature",))
         law = Linear(np.array([[bar.young * bar.second]]), np.zeros(1))
         masses = spread(layout, [SectionMass(bar.density * bar.area)])
-        rod = Rod(layout, law, masses, tip=tip)
+        rod = Rod(layout, law, masses, [tip])
         shape = rod.shape(layout.at_rest())
-        found.append(float(modes(rod, shape, Level(tip=1.0), 1).frequencies[0]))
+        found.append(float(modes(rod, shape, Level(amounts=(1.0,)), 1).frequencies[0]))
     exact = [pressed(bar, part * buckles) for part in (0.0, 0.5, 0.9)]
     np.testing.assert_allclose(found[:3], exact, rtol=1e-3)
     assert found[2] > found[3] > 0 > found[4]
@@ -148,9 +149,9 @@ def test_modes_are_refused_where_there_are_none() -> None:
     bare = Rod(bar.layout(3), bar.law(PLANE))
     with pytest.raises(ValueError, match="without inertia"):
         modes(bare, bare.shape(bare.layout.at_rest()), Level(), 1)
-    tip = TipLoad(force=(0.1, 0.05, 0.0), follows=True)
-    rod = bar.rod(3, SPACE, tip)
-    state = solve(rod, rod.layout.at_rest(), Path(Level(), Level(tip=1.0)), 0.1)
+    rod = bar.rod(3, SPACE, [TipForce((0.1, 0.05, 0.0), follows=True)])
+    path = Path(Level(), Level(amounts=(0.0, 1.0)))
+    state = solve(rod, rod.layout.at_rest(), path, 0.1)
     with pytest.raises(ValueError, match="has no potential"):
         modes(rod, state.shape, state.level, 1)
 
@@ -158,7 +159,7 @@ def test_modes_are_refused_where_there_are_none() -> None:
 def test_modes_of_a_bent_rod_are_those_of_small_motions() -> None:
     """Of the tangent at the bent state: an eigenvector is a solution of K x = ω² M x."""
     rod = THICK.rod(8, STRAINS)
-    state = solve(rod, rod.layout.at_rest(), Path(Level(), Level(weight=1.0)), 1.0)
+    state = solve(rod, rod.layout.at_rest(), Path(Level(), Level(amounts=(1.0,))), 1.0)
     found = modes(rod, state.shape, state.level, 2)
     x = found.strains[1].ravel()
     tangent, mass = rod.tangent(state.shape, state.level), state.shape.mass(rod.inertia)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import math
 
@@ -10,14 +11,16 @@ import pytest
 
 from rod.functions import Floats
 from rod.layout import STRAINS
+from rod.loads import TipMoment, Weight
 from rod.modes import modes
 from rod.motion import Motion, Moving
-from rod.rod import Level, Rod, TipLoad
+from rod.rod import Level, Rod
+from rod.shape import Shape
 from rod.statics import NoEquilibriumError, Path, march, solve
-from tests.rod.bars import PLANE, SPACE, Bar
+from tests.rod.bars import DOWN, PLANE, SPACE, Bar, both
 
 BAR = Bar()
-WEIGHT = Level(weight=1.0)
+WEIGHT = Level(amounts=(1.0,))
 
 
 def kinetic(rod: Rod, moving: Moving) -> float:
@@ -62,6 +65,61 @@ def test_energy_is_kept(strains: tuple[str, ...], step: float, count: int) -> No
     )
 
 
+@dataclasses.dataclass(frozen=True)
+class Cushion:
+    """Π = a k d⁴/4 of the depths d of frames below a floor: a potential that begins smoothly."""
+
+    height: float = -20.0
+    stiffness: float = 1e-3
+    conservative: bool = True
+
+    def _depths(self, shape: Shape) -> Floats:
+        return np.maximum(self.height - shape.places[:, 1], 0.0)
+
+    def potential(self, shape: Shape, amount: float) -> float:
+        """See `Term`."""
+        return amount * self.stiffness / 4 * float(np.sum(self._depths(shape) ** 4))
+
+    def _loads(self, shape: Shape, amount: float) -> Floats:
+        loads = np.zeros_like(shape.frames)
+        loads[:, 1, 3] = amount * self.stiffness * self._depths(shape) ** 3
+        return loads
+
+    def residual(self, shape: Shape, amount: float) -> Floats:
+        """See `Term`."""
+        return -shape.pulled(self._loads(shape, amount))
+
+    def tangent(self, shape: Shape, amount: float) -> Floats:
+        """See `Term`."""
+        out = -shape.curved(self._loads(shape, amount))
+        for frame, depth in enumerate(self._depths(shape)):
+            moves = shape.jacobian(frame)[0][1]
+            out += 3 * amount * self.stiffness * depth**2 * np.outer(moves, moves)
+        return out
+
+    def growth(self, shape: Shape, amount: float) -> Floats:
+        """See `Term`."""
+        return self.residual(shape, 1.0)
+
+
+@pytest.mark.parametrize("strains", [PLANE, SPACE])
+def test_energy_is_kept_by_any_term_with_a_potential(strains: tuple[str, ...]) -> None:
+    """It falls onto a floor that is soft, touches it and lifts off."""
+    plain = BAR.rod(6, strains)
+    rod = Rod(plain.layout, plain.law, plain.inertia, (Weight(plain.inertia, DOWN), Cushion()))
+    motion = Motion(rod, lambda time: Level(amounts=(1.0, 1.0)))
+    start = motion.at(bent_rod(rod))
+    first = motion.energy(start)
+    worst, most, held = 0.0, 0.0, []
+    for moving in motion.run(start, 1e-3, 300):
+        worst = max(worst, abs(motion.energy(moving) - first))
+        most = max(most, kinetic(rod, moving))
+        held.append(Cushion().potential(rod.shape(moving.strains), 1.0))
+    assert worst < 1e-9 * most
+    assert max(held) > 0.1 * most
+    assert held[-1] < max(held) / 2
+
+
 def test_a_large_step_is_halved_and_keeps_the_energy() -> None:
     rod = BAR.rod(12, SPACE)
     motion = Motion(rod, lambda time: WEIGHT)
@@ -75,12 +133,12 @@ def test_a_large_step_is_halved_and_keeps_the_energy() -> None:
 def rising(time: float) -> Level:
     """A pressure and a weight that begin and end smoothly."""
     share = math.sin(math.pi * min(time / 0.2, 1.0) / 2) ** 2
-    return Level(weight=share, tip=share)
+    return Level(amounts=(share, share, share))
 
 
 @pytest.mark.parametrize("strains", [PLANE, SPACE])
 def test_the_scheme_is_of_second_order(strains: tuple[str, ...]) -> None:
-    tip = TipLoad((0.0, -0.01, 0.0), (1.0, 2.0, 1.0) if strains is SPACE else (2.0, 0.0, 0.0))
+    tip = both((0.0, -0.01, 0.0), (1.0, 2.0, 1.0) if strains is SPACE else (2.0, 0.0, 0.0))
     rod = BAR.rod(4, strains, tip)
     viscosity = 0.003 * np.diag(rod.law.hessian(rod.layout.at_rest(), 0.0)[0])
     ends = []
@@ -135,8 +193,8 @@ def test_damping_takes_energy_until_it_rests() -> None:
 
 def test_a_moment_does_the_work_that_energy_gains() -> None:
     moment = 2.0
-    rod = BAR.rod(6, PLANE, TipLoad(moment=(moment, 0.0, 0.0)), gravity=(0.0, 0.0, 0.0))
-    motion = Motion(rod, lambda time: Level(tip=1.0))
+    rod = BAR.rod(6, PLANE, [TipMoment((moment, 0.0, 0.0))])
+    motion = Motion(rod, lambda time: Level(amounts=(0.0, 1.0)))
     start = motion.at(rod.layout.at_rest())
     first = motion.energy(start)
     for moving in motion.run(start, 1e-3, 200):
@@ -161,7 +219,7 @@ def test_what_cannot_move_is_refused() -> None:
     for wrong in ({"viscosity": -1.0}, {"drag": -1.0}):
         with pytest.raises(ValueError, match="zero or more"):
             Motion(BAR.rod(3), lambda time: Level(), **wrong)
-    motion = Motion(BAR.rod(3), lambda time: Level(weight=math.nan))
+    motion = Motion(BAR.rod(3), lambda time: Level(amounts=(math.nan,)))
     with pytest.raises(NoEquilibriumError, match="does not converge"):
         motion.step(motion.at(BAR.layout(3).at_rest()), 1e-3)
 

@@ -15,28 +15,32 @@ from rod.functions import Floats
 from rod.inertia import SectionMass, lump, spread
 from rod.law import Linear, Zones
 from rod.layout import STRAINS, Layout
-from rod.rod import Level, Rod, TipLoad
+from rod.loads import TipForce, TipMoment, Weight
+from rod.rod import Level, Rod
 from rod.statics import Angle, NoEquilibriumError, Path, Volume, march, solve, unstable_modes
-from tests.rod.bars import PLANE, SPACE, Bar, bent
+from rod.term import Term
+from tests.rod.bars import PLANE, SPACE, Bar, bent, both
 from tests.rod.elastica import elastica
 
 BAR = Bar()
 STIFF = 1e9
 """Times EI/L²: a stretch that the elastica has not."""
-TIP = Path(Level(), Level(tip=1.0))
+TIP = Path(Level(), Level(amounts=(1.0,)))
+WEIGHT = Path(Level(), Level(amounts=(1.0,)))
+ALL = Path(Level(), Level(amounts=(1.0, 1.0, 1.0)))
 
 
-def inextensible(bar: Bar, pieces: int, tip: TipLoad, strains: tuple[str, ...] = PLANE) -> Rod:
+def inextensible(bar: Bar, pieces: int, tip: Term, strains: tuple[str, ...] = PLANE) -> Rod:
     bending = bar.young * bar.second
     stiffness = dict.fromkeys(STRAINS, bending) | {"stretch": STIFF * bending / bar.length**2}
     rest = np.array([1.0 if name == "stretch" else 0.0 for name in strains])
     law = Linear(np.diag([stiffness[name] for name in strains]), rest)
-    return Rod(bar.layout(pieces, strains), law, tip=tip)
+    return Rod(bar.layout(pieces, strains), law, terms=[tip])
 
 
 def errors(force: float, pieces: int) -> Floats:
     """Of the tip's angle in parts of it, and of its place in parts of the length."""
-    rod = inextensible(BAR, pieces, TipLoad(force=(0.0, -force, 0.0)))
+    rod = inextensible(BAR, pieces, TipForce((0.0, -force, 0.0)))
     state = march(rod, rod.layout.at_rest(), TIP, np.linspace(0.2, 1.0, 5).tolist())[-1]
     angle, down, along = elastica(force, BAR.young * BAR.second, BAR.length)
     x, y, z = state.shape.places[-1]
@@ -58,7 +62,7 @@ def test_elastica_under_a_tip_force(alpha2: float) -> None:
 def test_elastica_under_a_tip_moment_is_an_arc() -> None:
     """M = 2π EI/L closes a circle; pieces are arcs, so that nothing is left of any mesh."""
     moment = 2 * math.pi * BAR.young * BAR.second / BAR.length
-    rod = inextensible(BAR, 5, TipLoad(moment=(moment, 0.0, 0.0)))
+    rod = inextensible(BAR, 5, TipMoment((moment, 0.0, 0.0)))
     half, whole = march(rod, rod.layout.at_rest(), TIP, [0.5, 1.0])
     np.testing.assert_allclose(whole.shape.places[-1], 0.0, atol=1e-9)
     top = [0.0, -2 * BAR.length / math.pi, 0.0]
@@ -70,7 +74,7 @@ def test_elastica_under_a_tip_moment_is_an_arc() -> None:
 def test_a_moment_in_space_makes_a_helix(follows: bool) -> None:
     """Where EI = GJ, all sections turn about the moment at the rate |M|/EI, with any mesh."""
     moment = np.array([40.0, -20.0, 60.0])
-    rod = inextensible(BAR, 7, TipLoad(moment=tuple(moment), follows=follows), SPACE)
+    rod = inextensible(BAR, 7, TipMoment(moment, follows), SPACE)
     state = march(rod, rod.layout.at_rest(), TIP, [0.25, 0.5, 0.75, 1.0])[-1]
     s = BAR.length / 7 * np.arange(8)
     turns = Rotation.from_rotvec(np.outer(s / (BAR.young * BAR.second), moment)).as_matrix()
@@ -86,10 +90,10 @@ def test_eulers_load(strains: tuple[str, ...]) -> None:
     shear = 1 / bar.shear if "shear_y" in strains else 0.0
     buckles = math.pi**2 * bending / (4 * bar.length**2)
     exact = brentq(lambda p: p * (1 - p / axial + p * shear) - buckles, 0, 2 * buckles)
-    rod = bar.rod(48, strains, TipLoad(force=(0.0, 0.0, -1.0)))
+    rod = bar.rod(48, strains, [TipForce((0.0, 0.0, -1.0))])
 
     def lowest(load: float) -> float:
-        path = Path(Level(), Level(tip=load))
+        path = Path(Level(), Level(amounts=(0.0, load)))
         state = solve(rod, rod.layout.at_rest(), path, 1.0)
         tangent = rod.tangent(state.shape, state.level)
         low = float(np.linalg.eigvalsh(tangent)[0])
@@ -101,7 +105,7 @@ def test_eulers_load(strains: tuple[str, ...]) -> None:
 
 
 def test_the_straight_bar_under_a_pull_is_exact() -> None:
-    rod = BAR.rod(3, tip=TipLoad(force=(0.0, 0.0, 16.0)))
+    rod = Rod(BAR.layout(3), BAR.law(PLANE), terms=[TipForce((0.0, 0.0, 16.0))])
     state = solve(rod, rod.layout.at_rest(), TIP, 1.0)
     np.testing.assert_allclose(state.strains, np.tile([1.1, 0.0], (3, 1)), atol=1e-13)
 
@@ -112,22 +116,20 @@ def test_a_hanging_bar_is_stretched_by_its_weight() -> None:
     layout = bar.layout(8)
     masses = spread(layout, [bar.mass()])
     masses[-1] += lump(mass, (0.0, 0.0, 4.0))
-    rod = Rod(layout, bar.law(PLANE), masses, (0.0, 0.0, 9810.0))
-    state = solve(rod, layout.at_rest(), Path(Level(), Level(weight=1.0)), 1.0)
+    rod = Rod(layout, bar.law(PLANE), masses, [Weight(masses, (0.0, 0.0, 9810.0))])
+    state = solve(rod, layout.at_rest(), WEIGHT, 1.0)
     own = bar.density * 9810 * bar.length**2 / (2 * bar.young)
     hung = mass * 9810 * bar.length / (bar.young * bar.area)
     assert state.shape.places[-1, 2] - bar.length == pytest.approx(own + hung, rel=1e-12)
 
 
 def test_a_following_force_is_a_dead_one_where_it_ends() -> None:
-    follower = BAR.rod(
-        10, STRAINS, TipLoad((0.02, -0.06, 0.03), (3.0, 1.0, 2.0), True, (1.0, 2.0, 3.0))
-    )
-    state = march(follower, follower.layout.at_rest(), TIP, [0.5, 1.0])[-1]
+    force, moment, arm = (0.02, -0.06, 0.03), (3.0, 1.0, 2.0), (1.0, 2.0, 3.0)
+    follower = BAR.rod(10, STRAINS, both(force, moment, True, arm))
+    path = Path(Level(), Level(amounts=(0.0, 1.0, 1.0)))
+    state = march(follower, follower.layout.at_rest(), path, [0.5, 1.0])[-1]
     turn = state.shape.rotations[-1]
-    tip = follower.tip
-    dead = TipLoad(tuple(turn @ tip.force), tuple(turn @ tip.moment), False, tip.arm)
-    rod = BAR.rod(10, STRAINS, dead)
+    rod = BAR.rod(10, STRAINS, both(turn @ force, turn @ moment, False, arm))
     left = rod.residual(state.shape, state.level)
     assert np.abs(left).max() < 1e-8 * np.abs(rod.residual(state.shape, Level())).max()
     assert state.iterations <= 6, "its tangent is exact"
@@ -138,11 +140,11 @@ def test_a_following_force_is_a_dead_one_where_it_ends() -> None:
 def test_residual_and_tangent_are_those_of_differences(
     strains: tuple[str, ...], follows: bool
 ) -> None:
-    tip = TipLoad((0.3, -0.2, 0.1), (2.0, -3.0, 1.0), follows, (1.0, -2.0, 3.0))
+    tip = both((0.3, -0.2, 0.1), (2.0, -3.0, 1.0), follows, (1.0, -2.0, 3.0))
     plain = BAR.rod(5, strains, tip, gravity=(3000.0, -9000.0, 2000.0))
     law = dataclasses.replace(BAR.law(strains), thrust=np.arange(1.0, len(strains) + 1), area=7.0)
-    rod = Rod(plain.layout, law, plain.inertia, (3000.0, -9000.0, 2000.0), tip)
-    level, q = Level(0.1, 0.7, 1.3), bent(plain.layout)
+    rod = Rod(plain.layout, law, plain.inertia, plain.terms)
+    level, q = Level(0.1, (0.7, 1.3, 0.9)), bent(plain.layout)
     shape = rod.shape(q)
     sizes = np.where(np.array(["curv" in s or s == "twist" for s in strains]), 0.1, 1.0)
     tangent = np.zeros((q.size, q.size))
@@ -157,9 +159,9 @@ def test_residual_and_tangent_are_those_of_differences(
     scale = np.outer(np.tile(sizes, 5), np.tile(sizes, 5))
     found = rod.tangent(shape, level)
     assert np.abs((found - tangent) * scale).max() < 2e-9 * np.abs(found * scale).max()
-    other = level.tip * tip.work(shape)
-    np.testing.assert_allclose(rod.residual(shape, level) + other, slope, rtol=1e-7, atol=1e-6)
-    more = Level(0.2, 0.9, 0.8)
+    other = sum(t.residual(shape, a) for t, a in rod.acting(level) if not t.conservative)
+    np.testing.assert_allclose(rod.residual(shape, level) - other, slope, rtol=1e-7, atol=1e-6)
+    more = Level(0.2, (0.9, 0.8, 1.7))
     further = more.less(level)
     ahead = rod.residual(shape, more) - rod.residual(shape, level)
     np.testing.assert_allclose(rod.growth(shape, level, further), ahead, rtol=1e-10, atol=1e-10)
@@ -239,7 +241,7 @@ def test_zones_have_their_own_laws() -> None:
     bar = Bar()
     stiff = Linear(100 * bar.law(PLANE).stiffness, bar.law(PLANE).rest)
     laws = Zones((bar.law(PLANE), stiff), [1, 0, 0, 1])
-    rod = Rod(bar.layout(4), laws, tip=TipLoad(moment=(5.0, 0.0, 0.0)))
+    rod = Rod(bar.layout(4), laws, terms=[TipMoment((5.0, 0.0, 0.0))])
     state = solve(rod, rod.layout.at_rest(), TIP, 1.0)
     k = 5.0 / (bar.young * bar.second)
     np.testing.assert_allclose(state.strains[:, 1], [k / 100, k, k, k / 100], rtol=1e-12)
@@ -255,10 +257,9 @@ def test_what_a_mirror_shows_is_the_mirrored_state() -> None:
     signs = np.array([1.0, 1, -1, -1])
     states = []
     for side in (1.0, -1.0):
-        tip = TipLoad((0.05 * side, -0.03, 0.02), (2.0, 3.0 * side, 5.0 * side))
+        tip = both((0.05 * side, -0.03, 0.02), (2.0, 3.0 * side, 5.0 * side))
         rod = BAR.rod(8, SPACE, tip)
-        both = Path(Level(), Level(weight=1.0, tip=1.0))
-        states.append(march(rod, rod.layout.at_rest(), both, [0.5, 1.0])[-1])
+        states.append(march(rod, rod.layout.at_rest(), ALL, [0.5, 1.0])[-1])
     np.testing.assert_allclose(states[0].strains, states[1].strains * signs, atol=1e-12)
     assert states[0].shape.places[-1, 0] == -states[1].shape.places[-1, 0]
 
@@ -273,11 +274,10 @@ def test_a_turned_scene_has_the_same_strains() -> None:
     found = []
     for rotation in (np.eye(3), turn):
         layout = Layout(np.full(8, 15.0), SPACE, rotation, rotation @ np.array([1.0, 2.0, 3.0]))
-        tip = TipLoad(tuple(rotation @ force), tuple(rotation @ moment))
         masses = spread(layout, [BAR.mass()])
-        rod = Rod(layout, BAR.law(SPACE), masses, tuple(rotation @ gravity), tip)
-        both = Path(Level(), Level(weight=1.0, tip=1.0))
-        found.append(march(rod, layout.at_rest(), both, [0.5, 1.0])[-1].strains)
+        terms = [Weight(masses, rotation @ gravity), *both(rotation @ force, rotation @ moment)]
+        rod = Rod(layout, BAR.law(SPACE), masses, terms)
+        found.append(march(rod, layout.at_rest(), ALL, [0.5, 1.0])[-1].strains)
     np.testing.assert_allclose(found[1], found[0], atol=1e-11)
 
 
@@ -288,8 +288,8 @@ def test_modes_of_a_tangent_without_symmetry_are_counted() -> None:
 
 
 def test_a_state_of_48_pieces_takes_less_than_10_ms() -> None:
-    rod = BAR.rod(48, PLANE, TipLoad(force=(0.0, -0.02, 0.0)))
-    path = Path(Level(), Level(weight=1.0, tip=1.0))
+    rod = BAR.rod(48, PLANE, [TipForce((0.0, -0.02, 0.0))])
+    path = Path(Level(), Level(amounts=(1.0, 1.0)))
     march(rod, rod.layout.at_rest(), path, [0.5])
     best = math.inf
     # the best of many: other programs on the same processor slow down most of them
@@ -304,6 +304,8 @@ def test_wrong_inertia_and_sections_are_refused() -> None:
     layout = BAR.layout(3)
     with pytest.raises(ValueError, match="for each of 4 frames"):
         Rod(layout, BAR.law(PLANE), np.zeros((3, 4, 4)))
+    with pytest.raises(ValueError, match="2 amounts for 1 terms"):
+        BAR.rod(3).acting(Level(amounts=(1.0, 1.0)))
     with pytest.raises(ValueError, match="each of 3 pieces"):
         spread(layout, [BAR.mass()] * 2)
     with pytest.raises(ValueError, match="no distribution of mass"):

@@ -11,8 +11,9 @@ from scipy.interpolate import BSpline
 from rod.functions import Floats
 from rod.law import Linear, Zones
 from rod.layout import Layout
+from rod.loads import TipForce
 from rod.motion import Motion
-from rod.rod import Level, Rod, TipLoad
+from rod.rod import Level, Rod
 from rod.spline import Axis, Samples, fitted
 from rod.statics import NoEquilibriumError, Path, Volume, march
 from rod.table import NotReachedError, Table, tabulate
@@ -151,8 +152,8 @@ def test_what_cannot_be_reached_is_refused() -> None:
 
 def rod_of(table: Table, pieces: int = 6) -> Rod:
     bar = Bar()
-    plain = bar.rod(pieces, tip=TipLoad(force=(0.0, -0.01, 0.0)))
-    return Rod(plain.layout, table, plain.inertia, (0.0, -9810.0, 0.0), plain.tip)
+    plain = bar.rod(pieces, tip=[TipForce((0.0, -0.01, 0.0))])
+    return Rod(plain.layout, table, plain.inertia, plain.terms)
 
 
 def test_a_rod_by_a_table_is_one_by_the_law() -> None:
@@ -174,9 +175,9 @@ def test_a_rod_by_a_table_is_one_by_the_law() -> None:
 
 def test_a_rod_by_a_table_keeps_its_energy() -> None:
     rod = rod_of(tabulate(Counted(), RANGES, 1e-3))
-    level = Level(pressure=0.02, weight=1.0)
+    level = Level(0.02, (1.0,))
     start = march(
-        rod, np.tile([1.0, 0.0], (6, 1)), Path(Level(), Level(0.02, 0.2)), [0.0, 0.5, 1.0]
+        rod, np.tile([1.0, 0.0], (6, 1)), Path(Level(), Level(0.02, (0.2,))), [0.0, 0.5, 1.0]
     )
     motion = Motion(rod, lambda time: level)
     moving = motion.at(start[-1].strains)

@@ -24,7 +24,8 @@ from fiberbend.sectionlaw.walk import Walk
 from fiberbend.trial.solve import solve
 from fiberbend.trial.wanted import Wanted
 from rod.layout import Layout
-from rod.rod import Level, Rod, TipLoad
+from rod.loads import TipMoment
+from rod.rod import Level, Rod
 from rod.statics import Path as LoadPath
 from rod.statics import solve as rod_solve
 from tests.trial.cases import Data, checked, shipped, under, wound
@@ -131,11 +132,11 @@ def test_a_rod_takes_it(made: Made) -> None:
     pressure, state = made.free[-1]
     layout = Layout(np.full(8, made.length / 8))
     near = np.tile([1.0 + 0.95 * (state.stretch - 1.0), 0.95 * state.curvature], (8, 1))
-    level = Level(pressure=pressure, tip=1.0)
+    level = Level(pressure, (1.0,))
     angle = state.curvature * made.length
     turns = []
     for moment in (0.0, 10.0, -10.0):
-        rod = Rod(layout, made.law, tip=TipLoad(moment=(moment, 0.0, 0.0)))
+        rod = Rod(layout, made.law, terms=[TipMoment((moment, 0.0, 0.0))])
         found = rod_solve(rod, near, LoadPath(level, level), 0.0).strains
         forces = made.law.gradient(found, pressure)
         assert forces == pytest.approx(np.tile([0.0, moment], (8, 1)), abs=1e-5)
