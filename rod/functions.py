@@ -26,8 +26,11 @@ _SMALL = 4.0
 """Greatest s by the series: its terms fall from the first one on."""
 _TERMS = 13
 """Of the series of c_6 and c_7 at s = 4: the next one is below 1e-23."""
-_FEWER = ((1e-3, 3), (0.05, 5), (0.5, 8))
-"""Greatest s, and terms that are then below 1e-19."""
+_NEAR = ((1e-3, 6), (0.05, 8), (0.5, 11))
+"""Greatest s, and terms of all series that leave less than 1e-18 of c_0 out."""
+_SERIES = np.array(
+    [[(-1) ** j / math.factorial(2 * j + k) for j in range(_NEAR[-1][1])] for k in range(ORDER)]
+)
 _EYE = np.eye(3)
 _CROSS = np.zeros((3, 3, 3))
 """[a×] = Σ a_k of these."""
@@ -69,13 +72,17 @@ def stumpff(s: Floats) -> Floats:
     Returns:
         The functions along a new first axis, (8, ...).
     """
-    c = np.empty((ORDER, *s.shape))
     greatest = float(s.max())
+    for bound, terms in _NEAR:
+        if greatest <= bound:
+            # one product of matrices: numpy needs a microsecond for every call
+            powers = np.vander(s.ravel(), terms, increasing=True).T
+            return (_SERIES[:, :terms] @ powers).reshape(ORDER, *s.shape)
+    c = np.empty((ORDER, *s.shape))
     near = s if greatest <= _SMALL else np.minimum(s, _SMALL)
-    terms = next((count for bound, count in _FEWER if greatest <= bound), _TERMS)
     for k in (ORDER - 2, ORDER - 1):
         total = np.ones_like(near)
-        for j in range(terms, 0, -1):
+        for j in range(_TERMS, 0, -1):
             total = 1.0 - near * total / ((2 * j + k) * (2 * j + k - 1))
         c[k] = total / math.factorial(k)
     for k in range(ORDER - 3, -1, -1):
