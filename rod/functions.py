@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.intp]
 
 ORDER = 8
 """Functions c_0 to c_7: two derivatives of c3 need the last one."""

@@ -61,6 +61,11 @@ class Layout:
         """Pieces and strains of each."""
         return len(self.lengths), len(self.strains)
 
+    @property
+    def plane(self) -> bool:
+        """Whether it stays in the plane of y and z of its root."""
+        return not {"shear_x", "side_curvature", "twist"} & set(self.strains)
+
     def at_rest(self) -> Floats:
         """Strains of the straight rod, (n, m)."""
         return np.tile(AT_REST[list(self.columns)], (len(self.lengths), 1))

@@ -115,6 +115,7 @@ class TipMoment:
     """A moment at the tip.
 
     In space it has no potential: it does virtual work, and its tangent is not symmetric in general.
+    In a plane there is `PlaneMoment`.
 
     Attributes:
         moment: M, N mm; in space, or in the tip's axes where it follows.
@@ -152,6 +153,38 @@ class TipMoment:
             turned = shape.jacobian()[1]
             out -= turned.T @ (cross_matrix(moment) @ turned)
         return -amount * out
+
+    def growth(self, shape: Shape, amount: float) -> Floats:
+        """See `Term`."""
+        return self.residual(shape, 1.0)
+
+
+@dataclasses.dataclass(frozen=True)
+class PlaneMoment:
+    """−M θ: a moment about x at the tip of a rod that bends in the plane of y and z.
+
+    Attributes:
+        moment: M, N mm; it bends toward −y where it is positive.
+    """
+
+    moment: float
+
+    @property
+    def conservative(self) -> bool:
+        """See `Term`."""
+        return True
+
+    def potential(self, shape: Shape, amount: float) -> float:
+        """See `Term`; zero where the rod is straight."""
+        return float(np.sum(self.residual(shape, amount) * shape.strains))
+
+    def residual(self, shape: Shape, amount: float) -> Floats:
+        """See `Term`."""
+        return -amount * self.moment * shape.layout.weights("curvature")
+
+    def tangent(self, shape: Shape, amount: float) -> Floats:
+        """See `Term`."""
+        return np.zeros((shape.strains.size, shape.strains.size))
 
     def growth(self, shape: Shape, amount: float) -> Floats:
         """See `Term`."""

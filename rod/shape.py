@@ -19,7 +19,7 @@ import functools
 
 import numpy as np
 
-from rod.functions import Floats, Pair, axial, cross, cross_matrix, stumpff, trace
+from rod.functions import Floats, Ints, Pair, axial, cross, cross_matrix, stumpff, trace
 from rod.layout import Layout
 
 _EYE = np.eye(3)
@@ -41,9 +41,9 @@ class Shape:
     def __init__(self, layout: Layout, strains: Floats) -> None:
         self.layout, self.strains = layout, strains
         full = layout.full(strains)
-        self._v, spin = full[:, :3], full[:, 3:]
+        self._v, self._spin = full[:, :3], full[:, 3:]
         self._reach = layout.lengths[:, None, None]
-        phi = self._reach[..., 0] * spin
+        phi = self._reach[..., 0] * self._spin
         c = stumpff(np.sum(phi * phi, axis=-1))
         self._turn, self._mean = Pair(phi, c, 1), Pair(phi, c, 2)
         self._means = self._mean.matrix()
@@ -61,6 +61,33 @@ class Shape:
     def places(self) -> Floats:
         """r of the frames, (n + 1, 3), mm."""
         return self.frames[..., 3]
+
+    @property
+    def arcs(self) -> Floats:
+        """Lengths of the pieces' lines, (n,), mm."""
+        out: Floats = self._reach[:, 0, 0] * np.linalg.norm(self._v, axis=1)
+        return out
+
+    def between(self, pieces: Ints, parts: Floats) -> Floats:
+        """Frames within pieces, (s, 3, 4).
+
+        Args:
+            pieces: which, (s,).
+            parts: of the piece before each frame, 0 to 1, (s,).
+        """
+        reach = parts[:, None] * self._reach[pieces, 0]
+        phi = reach * self._spin[pieces]
+        c = stumpff(np.sum(phi * phi, axis=-1))
+        step = np.concatenate(
+            [
+                Pair(phi, c, 1).matrix(),
+                reach[..., None] * (Pair(phi, c, 2).matrix() @ self._v[pieces][..., None]),
+            ],
+            axis=-1,
+        )
+        out: Floats = self._base[pieces] @ step
+        out[..., 3] += self.places[pieces]
+        return out
 
     # --- first derivatives -----------------------------------------------------------------------
 
@@ -191,6 +218,27 @@ class Shape:
         columns = list(self.layout.columns)
         place = np.arange(n)
         out.reshape(n, m, n, m)[place, :, place] = blocks[:, columns][:, :, columns]
+        return out
+
+    def stiffened(self, blocks: Floats) -> Floats:
+        """Σ s_i · B s_j of springs on the frames, s the screw (u0, ω) of what moves a frame.
+
+        With ∂x = u0 + ω × x of a point x, a stiffness D there is the block AᵀD A, A = (I, −[x×]).
+
+        Args:
+            blocks: B of each frame about the origin, symmetric, (n + 1, 6, 6).
+
+        Returns:
+            Symmetric matrix (n m, n m).
+        """
+        n, m = self.layout.shape
+        screws = np.concatenate(self._screws, axis=1)
+        pushed = _after(blocks) @ screws
+        left, right = (np.swapaxes(part, 0, 1).reshape(6, n * m) for part in (screws, pushed))
+        out = _upper(left.T @ right, n, m)
+        out = out + out.T
+        place = np.arange(n)
+        out.reshape(n, m, n, m)[place, :, place] = np.swapaxes(screws, 1, 2) @ pushed
         return out
 
     # --- inertia ---------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 from collections.abc import Sequence
 from typing import Protocol
@@ -14,6 +15,7 @@ from scipy.linalg.lapack import dgesv
 from rod.functions import Floats
 from rod.rod import Level, Rod
 from rod.shape import Shape
+from rod.term import Iterate, Iterated
 
 _CLOSE = 1e-9
 """Greatest last correction of a stretch, and of an angle over the whole length in rad; as it falls
@@ -147,6 +149,7 @@ def solve(
     target: float,
     held: Held | None = None,
     share: float | None = None,
+    before: State | None = None,
 ) -> State:
     """The equilibrium at a share of a path, or at a given angle on it, by Newton's method.
 
@@ -157,6 +160,8 @@ def solve(
         target: the share; with `held` its value.
         held: what is given in place of the share.
         share: to start from where it is unknown; 0 if none is given.
+        before: an equilibrium near by, whose contacts the search begins with; None: those of the
+            strains to start from.
 
     Returns:
         The state.
@@ -167,12 +172,14 @@ def solve(
     sizes, change = size(rod), path.end.less(path.start)
     at = target if held is None else (0.0 if share is None else share)
     last = math.inf
+    near = (rod.shape(strains), path.at(at)) if before is None else (before.shape, before.level)
+    search = _Search(rod, *near)
     for iteration in range(1, _MOST + 1):
         shape, level = rod.shape(strains), path.at(at)
-        tangent = rod.tangent(shape, level)
-        columns = [-rod.residual(shape, level).ravel()]
+        tangent = search.rod.tangent(shape, level)
+        columns = [-search.rod.residual(shape, level).ravel()]
         if held is not None:
-            columns.append(-rod.growth(shape, level, change).ravel())
+            columns.append(-search.rod.growth(shape, level, change).ravel())
         solved, singular = dgesv(tangent, np.stack(columns, axis=1))[2:]
         if singular:
             raise NoEquilibriumError(f"iteration {iteration}: the tangent is singular")
@@ -184,11 +191,12 @@ def solve(
             with np.errstate(divide="ignore"):
                 more = np.divide(missing, float(row @ solved[:, 1]) + by_share)
             step, at = step + more * solved[:, 1], at + float(more)
+        settled = search.stepped(shape, level, step.reshape(strains.shape), path.at(at))
         strains = strains + step.reshape(strains.shape)
         if not way(rod, step.reshape(strains.shape)) < _FAR:
             raise NoEquilibriumError(f"iteration {iteration}: the correction is too great")
         moved = float(np.max(np.abs(step.reshape(strains.shape) / sizes)))
-        if moved < _CLOSE or (moved < _LOOSE and moved > last / 2):
+        if settled and (moved < _CLOSE or (moved < _LOOSE and moved > last / 2)):
             break
         last = moved
     else:
@@ -198,6 +206,44 @@ def solve(
     if outside:
         raise NoEquilibriumError(outside)
     return State(shape, level, at, iteration, unstable_modes(rod.tangent(shape, level)))
+
+
+class _Search:
+    """A rod whose terms remember what happens within one search.
+
+    Args:
+        rod: the rod.
+        shape: from which they begin.
+        level: there.
+
+    Attributes:
+        rod: with the iterates of its terms.
+    """
+
+    def __init__(self, rod: Rod, shape: Shape, level: Level) -> None:
+        amounts = itertools.chain(level.amounts, itertools.repeat(0.0))
+        self._iterates: dict[int, Iterate] = {
+            number: term.iterate(shape, amount)
+            for number, (term, amount) in enumerate(zip(rod.terms, amounts, strict=False))
+            if isinstance(term, Iterated)
+        }
+        if not self._iterates:
+            self.rod = rod
+            return
+        terms = [self._iterates.get(number, term) for number, term in enumerate(rod.terms)]
+        self.rod = Rod(rod.layout, rod.law, None, terms)
+
+    def stepped(self, shape: Shape, level: Level, change: Floats, after: Level) -> bool:
+        """Tells them of a step; whether none of them changed its mind."""
+        amounts, others = (
+            [*each.amounts, *[0.0] * (len(self.rod.terms) - len(each.amounts))]
+            for each in (level, after)
+        )
+        settled = [
+            term.stepped(shape, amounts[number], change, others[number] - amounts[number])
+            for number, term in self._iterates.items()
+        ]
+        return all(settled)
 
 
 def unstable_modes(tangent: Floats) -> int:
@@ -237,6 +283,7 @@ def march(
     strains, share = (start.strains, start.share) if isinstance(start, State) else (start, 0.0)
     now = share if held is None else held.value(rod, strains, path.at(share))
     known = [(now, strains, share)]
+    last = start if isinstance(start, State) else None
     states = []
     for target in targets:
         begin, part = known[-1][0], 1.0
@@ -246,7 +293,7 @@ def march(
             goal = target if done + part == 1.0 else begin + (done + part) * (target - begin)
             guess, at = _ahead(known, goal)
             try:
-                state = solve(rod, guess, path, goal, held, at)
+                state = solve(rod, guess, path, goal, held, at, last)
                 if way(rod, state.strains - guess) > _AWAY:
                     raise NoEquilibriumError(f"the state at {goal:.6g} is far from the last one")
             except NoEquilibriumError:
@@ -254,7 +301,7 @@ def march(
                 if part < _SMALLEST:
                     raise
                 continue
-            known = [*known[-1:], (goal, state.strains, state.share)]
+            known, last = [*known[-1:], (goal, state.strains, state.share)], state
             done += part
             part *= 2
         states.append(state)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from rod.functions import Floats
 from rod.shape import Shape
@@ -30,3 +30,33 @@ class Term(Protocol):
 
     def growth(self, shape: Shape, amount: float) -> Floats:
         """Derivative of the residual by the amount, (n, m)."""
+
+
+class Iterate(Term, Protocol):
+    """A term within one search by Newton's method, of which it remembers something."""
+
+    def stepped(self, shape: Shape, amount: float, change: Floats, grows: float) -> bool:
+        """Takes note of a step.
+
+        Args:
+            shape: before it.
+            amount: before it.
+            change: of the strains, (n, m).
+            grows: change of the amount.
+
+        Returns:
+            Whether what it remembers is of the same kind as before: if not, the search goes on.
+        """
+
+
+@runtime_checkable
+class Iterated(Term, Protocol):
+    """A term whose own iterate Newton's method converges by, to the term's own equilibrium."""
+
+    def iterate(self, before: Shape, amount: float) -> Iterate:
+        """What stands for it in one search.
+
+        Args:
+            before: a state near by.
+            amount: of it there.
+        """

@@ -9,7 +9,8 @@ import dataclasses
 from typing import TYPE_CHECKING
 
 from fiberbend.case import case, zones
-from fiberbend.effects.effect import Requests, Site, mirror_breakers
+from fiberbend.effects.effect import Requests, Site
+from fiberbend.effects.records import mirror_breakers
 
 if TYPE_CHECKING:
     from fiberbend.states.obstacles import Shape

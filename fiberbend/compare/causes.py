@@ -17,7 +17,7 @@ from fiberbend import columns as col
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.compare.others import OtherModel
-from fiberbend.effects.effect import tip_strips
+from fiberbend.effects.records import tip_strips
 from fiberbend.models import lines
 from fiberbend.models.closed_form import (
     analytic_curves,

@@ -57,6 +57,7 @@ from fiberbend.effects.records import (
 from fiberbend.effects.records import (
     Inflation as Inflation,
 )
+from fiberbend.effects.records import OnRod, RodSite
 from fiberbend.effects.records import (
     Requests as Requests,
 )
@@ -347,6 +348,19 @@ class Effect(Spec):
         """
         raise NotImplementedError(f"effect {self.name} cannot be built")
 
+    def on_rod(self, site: RodSite) -> OnRod:
+        """The effect on a rod; nothing of what stands in the section beside: it is in its law.
+
+        Args:
+            site: the actuator as a rod.
+
+        Raises:
+            NotImplementedError: a rod cannot have the effect.
+        """
+        if self.beside() is None:
+            raise NotImplementedError(f"effect {self.name} is not known to act on a rod")
+        return OnRod()
+
     def unlike(self, other: Effect) -> str:
         """Why one mesh cannot have it in one zone and another of its kind in the next.
 
@@ -382,17 +396,3 @@ class Effect(Spec):
 def keep_straight(effects: Iterable[Effect]) -> bool:
     """Whether effects keep the actuator from bending: its force is asked for, not its angle."""
     return any(effect.keeps_straight() for effect in effects)
-
-
-def mirror_breakers(effects: Iterable[Effect]) -> Iterator[str]:
-    """Why x = 0 is no mirror plane, one reason for each effect that breaks the symmetry."""
-    for effect in effects:
-        reason = effect.mirror_breaker()
-        if reason:
-            yield reason
-
-
-def tip_strips(effects: Iterable[Effect]) -> Strips | None:
-    """The strips of roof and post, of the first effect that has any."""
-    found = (effect.strips() for effect in effects)
-    return next((strips for strips in found if strips is not None), None)

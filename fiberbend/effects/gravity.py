@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Literal
 
-from fiberbend.effects.effect import SPACE, Built, Effect, Requests, Site
+from fiberbend.effects.effect import Built, Effect, Requests, Site
+from fiberbend.effects.records import LINE, OnRod, RodRamp, RodSite
 from fiberbend.schema.quantities import Acceleration
 
 if TYPE_CHECKING:
@@ -25,8 +26,8 @@ class GravityEffect(Effect):
     """Standard gravity by default."""
 
     def needs(self) -> dict[str, str]:
-        """A body in space."""
-        return {SPACE: "weight bends no uniform arc"}
+        """A line in space."""
+        return {LINE: "weight bends no uniform arc"}
 
     def mirror_breaker(self) -> str:
         """A pull along x."""
@@ -69,3 +70,9 @@ class GravityEffect(Effect):
             if region in mesh.regions and material.mass_density is not None
         }
         return Built((Gravity(density, self.weight()),), (Ramp(Gravity.scalar, 1.0, first=1.0),))
+
+    def on_rod(self, site: RodSite) -> OnRod:
+        """Weight of all sections and caps, put on in one step."""
+        from rod.loads import Weight
+
+        return OnRod((("gravity", Weight(site.inertia, self.weight())),), (RodRamp("gravity"),))

@@ -15,6 +15,7 @@ from fiberbend.effects.effect import (
     Requests,
     Site,
 )
+from fiberbend.effects.records import OnRod, RodRamp, RodSite
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Angle, SignedPressure, Volume
 
@@ -86,17 +87,25 @@ class PressureEffect(Effect):
         """None beside those of the chamber's load."""
         return 0
 
+    def _driven(self) -> tuple[str, float]:
+        """What is given, as a ramp drives it, and its value at the end."""
+        for drive, target in (("conjugate", self.volume), ("control", self.angle)):
+            if target is not None:
+                return drive, target
+        assert self.to is not None, "checked when the case was read"
+        return "value", self.to
+
+    def on_rod(self, site: RodSite) -> OnRod:
+        """It is in the law of the section: a load without a term."""
+        drive, target = self._driven()
+        return OnRod(ramps=(RodRamp("pressure", target, drive),))
+
     def build(self, site: Site, mesh: MeshData, requests: Requests) -> Built:
         """−P V, with the path of the load."""
         from fem.effects.chamber_pressure import ChamberPressure
         from fem.march.records import Ramp
 
-        drive, target = "value", self.to
-        if self.volume is not None:
-            drive, target = "conjugate", self.volume
-        elif self.angle is not None:
-            drive, target = "control", self.angle
-        assert target is not None
+        drive, target = self._driven()
         by_value = drive == "value"
         ramp = Ramp(
             ChamberPressure.scalar,

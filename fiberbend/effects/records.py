@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -11,9 +11,12 @@ if TYPE_CHECKING:
     from fem.march.records import Ramp
     from fiberbend.effects.effect import Effect
     from geometry.actuator import Actuator
-    from geometry.mesh.data import MeshData
+    from geometry.mesh.data import Floats, MeshData
+    from geometry.sections.size import Strips
     from geometry.winding.segments import EmbeddedFibers
     from materials.material import Material
+    from rod.layout import Layout
+    from rod.term import Term as RodTerm
 
 CHAMBER = "chamber"
 """A model has the chamber that a pressure inflates."""
@@ -25,6 +28,8 @@ HELD = "held"
 """A model has the centre-line of a uniform bend, whose stretch and turns can be held."""
 SPACE = "space"
 """A model is a whole body in space, with everything that can act on one."""
+LINE = "line"
+"""A model is a line in space with two ends, on which weights, tip loads and obstacles act."""
 ENDS = "ends"
 """A model gives the force of a support of the tip."""
 STRIPS = "strips"
@@ -149,3 +154,71 @@ class Built:
     ramps: tuple[Ramp, ...] = ()
     fibers: EmbeddedFibers | None = None
     smeared: bool = False
+
+
+@dataclasses.dataclass(frozen=True)
+class RodSite:
+    """The actuator of a case as a rod, as its effects see it.
+
+    Attributes:
+        actuator: dimensions; its sections stand across the line, of which `layout` has the height.
+        layout: pieces, free strains and clamped root: z from −cap on, y at the line of centroids.
+        inertia: of the sections on the frames, (n + 1, 4, 4); see `rod.inertia`.
+        tip: the outer face's centroid in the axes of the last frame, mm.
+        weight: acceleration by which it is heavy, x, y and z, mm/s²; None: without weight.
+    """
+
+    actuator: Actuator
+    layout: Layout
+    inertia: Floats
+    tip: tuple[float, float, float]
+    weight: tuple[float, float, float] | None = None
+
+
+@dataclasses.dataclass(frozen=True)
+class RodRamp:
+    """One load of a rod: the amount of some of its terms, or the pressure of its chamber.
+
+    Attributes:
+        load: its name, by which columns call it.
+        target: the amount at the end; of the pressure what it is driven by.
+        drive: as of `fem.march.records.Ramp`: 'value', 'conjugate' or 'control'.
+        units: of the amount and of what it does work on, which end the names of the columns.
+        potential: it has one, so that its columns tell its work.
+    """
+
+    load: str
+    target: float = 1.0
+    drive: str = "value"
+    units: tuple[str, str] = ("", "mJ")
+    potential: bool = True
+
+
+@dataclasses.dataclass(frozen=True)
+class OnRod:
+    """An effect as a rod takes it.
+
+    Attributes:
+        terms: of the rod, each with the load that is its amount; without a name it acts whole from
+            the beginning.
+        ramps: loads, in order.
+        inertia: masses that it adds to the frames, (n + 1, 4, 4); None: none.
+    """
+
+    terms: tuple[tuple[str, RodTerm], ...] = ()
+    ramps: tuple[RodRamp, ...] = ()
+    inertia: Floats | None = None
+
+
+def mirror_breakers(effects: Iterable[Effect]) -> Iterator[str]:
+    """Why x = 0 is no mirror plane, one reason for each effect that breaks the symmetry."""
+    for effect in effects:
+        reason = effect.mirror_breaker()
+        if reason:
+            yield reason
+
+
+def tip_strips(effects: Iterable[Effect]) -> Strips | None:
+    """The strips of roof and post, of the first effect that has any."""
+    found = (effect.strips() for effect in effects)
+    return next((strips for strips in found if strips is not None), None)

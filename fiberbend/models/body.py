@@ -28,8 +28,8 @@ from fiberbend.effects.effect import (
     WOUND,
     ZONES,
     Effect,
-    tip_strips,
 )
+from fiberbend.effects.records import LINE, tip_strips
 from fiberbend.models.costs.size import pieces
 from fiberbend.models.ends import AT_ENDS, at_ends
 from fiberbend.models.mesh_error import section_error
@@ -65,7 +65,7 @@ class Body(MeshedModel):
 
     name = "body"
     offers = frozenset(
-        {CHAMBER, WOUND, SPACE, ENDS, STRIPS, VOLUME, TWIST, SIDE, THREAD, TURNS, ZONES}
+        {CHAMBER, WOUND, SPACE, LINE, ENDS, STRIPS, VOLUME, TWIST, SIDE, THREAD, TURNS, ZONES}
     )
     fills = MeshedModel.fills | {MIDDLE, BODY, ZONE_COLUMNS}
     shared = True

@@ -8,7 +8,7 @@ from analytic.bending import Hemicircle
 from analytic.stress import Stress, wound
 from fiberbend.case import convert
 from fiberbend.case.case import Case, MaterialSpec
-from fiberbend.effects.effect import tip_strips
+from fiberbend.effects.records import tip_strips
 from fiberbend.models import lines
 
 SHAPE = "hemicircle"

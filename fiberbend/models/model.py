@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 from fiberbend.case.case import Case, Mesh
 from fiberbend.case.zones import path_of, zone_cases
 from fiberbend.columns import ELEMENTS, RUN
-from fiberbend.effects.effect import ZONES, mirror_breakers
-from fiberbend.effects.records import MOTION
+from fiberbend.effects.effect import ZONES
+from fiberbend.effects.records import MOTION, mirror_breakers
 from fiberbend.models.costs.price import Price, price
 from fiberbend.models.costs.size import ProblemSize as ProblemSize
 from fiberbend.models.costs.size import thread_mb

@@ -12,6 +12,7 @@ from fiberbend.case.symmetry import Symmetry
 from fiberbend.case.zones import shared_pressures
 from fiberbend.columns import UNIFORM, ZONES
 from fiberbend.effects.effect import SPACE
+from fiberbend.effects.records import LINE
 from fiberbend.models.ends import AT_ENDS, left_out
 from fiberbend.models.model import (
     MeshedModel,
@@ -127,7 +128,8 @@ def not_uniform(case: Case, twists: bool) -> Iterator[Objection]:
         case: the case.
         twists: something may twist the body.
     """
-    if not any(effect.load and SPACE not in effect.needs() for effect in case.effects):
+    uniform = (e.load and not {SPACE, LINE} & set(e.needs()) for e in case.effects)
+    if not any(uniform):
         yield "effects", "nothing bends it uniformly but a pressure or effect hold"
     elif case.straight and case.inflation is not None and case.inflation.angle is not None:
         yield "effects", "kept straight, it reaches no angle: expected a pressure by its value"

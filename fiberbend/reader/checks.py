@@ -18,7 +18,8 @@ from fiberbend.case.case import (
 from fiberbend.case.symmetry import upside_down
 from fiberbend.case.timed import checks as timed
 from fiberbend.case.timed.spec import TimeSpec
-from fiberbend.effects.effect import Draft, Effect, Inflation, keep_straight, mirror_breakers
+from fiberbend.effects.effect import Draft, Effect, Inflation, keep_straight
+from fiberbend.effects.records import mirror_breakers
 from fiberbend.effects.table import EFFECTS
 from fiberbend.models.choice import MODELS, choose_model
 from fiberbend.reader.material_checks import material_problems

@@ -7,7 +7,8 @@ from collections.abc import Collection, Iterator
 
 from fiberbend.case.case import Case
 from fiberbend.case.zones import lengths, path_of, zone_case
-from fiberbend.effects.effect import Effect, mirror_breakers
+from fiberbend.effects.effect import Effect
+from fiberbend.effects.records import mirror_breakers
 from fiberbend.reader.checks import ValidParts, check
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.units import show

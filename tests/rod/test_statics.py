@@ -15,7 +15,7 @@ from rod.functions import Floats
 from rod.inertia import SectionMass, lump, spread
 from rod.law import Linear, Zones
 from rod.layout import STRAINS, Layout
-from rod.loads import TipForce, TipMoment, Weight
+from rod.loads import PlaneMoment, TipForce, TipMoment, Weight
 from rod.rod import Level, Rod
 from rod.statics import Angle, NoEquilibriumError, Path, Volume, march, solve, unstable_modes
 from rod.term import Term
@@ -68,6 +68,23 @@ def test_elastica_under_a_tip_moment_is_an_arc() -> None:
     top = [0.0, -2 * BAR.length / math.pi, 0.0]
     np.testing.assert_allclose(half.shape.places[-1], top, atol=1e-9)
     assert (half.unstable, whole.unstable) == (0, 0)
+
+
+def test_a_moment_in_the_plane_has_a_potential() -> None:
+    """It is the moment in space, whether that follows or not."""
+    layout = BAR.layout(5)
+    assert layout.plane
+    assert not BAR.layout(5, SPACE).plane
+    rod = BAR.rod(5)
+    shape = rod.shape(bent(layout))
+    plane = PlaneMoment(7.0)
+    for follows in (False, True):
+        space = TipMoment((7.0, 0.0, 0.0), follows)
+        np.testing.assert_allclose(plane.residual(shape, 0.3), space.residual(shape, 0.3))
+        np.testing.assert_allclose(space.tangent(shape, 0.3), 0.0, atol=1e-9)
+    angle = float(np.sum(layout.weights("curvature") * shape.strains))
+    assert plane.potential(shape, 0.3) == pytest.approx(-0.3 * 7.0 * angle)
+    assert not plane.tangent(shape, 0.3).any()
 
 
 @pytest.mark.parametrize("follows", [False, True])

@@ -14,7 +14,7 @@ from fem.kernels import cache_folder
 from fem.kinematics.domain import Domain
 from fem.scene import Scene
 from fiberbend.case import convert
-from fiberbend.effects.effect import tip_strips
+from fiberbend.effects.records import tip_strips
 from fiberbend.models.choice import meshed
 from fiberbend.models.parts import build
 from fiberbend.reader.reader import as_case

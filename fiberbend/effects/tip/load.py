@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
-from fiberbend.effects.effect import SPACE, Built, Draft, Effect, Requests, Site
+from fiberbend.effects.effect import Built, Draft, Effect, Requests, Site
+from fiberbend.effects.records import LINE, OnRod, RodRamp, RodSite
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import SignedForce, SignedMoment
 
 if TYPE_CHECKING:
     from fem.effects.effect import Effect as Term
     from geometry.mesh.data import MeshData
+    from rod.term import Term as RodTerm
 
 _NONE = (0.0, 0.0, 0.0)
 _LOAD = "load_tip_load"
@@ -35,7 +37,7 @@ class TipLoadEffect(Effect):
 
     def needs(self) -> dict[str, str]:
         """A tip."""
-        return {SPACE: "only a whole body has a tip (section and cell: effect hold)"}
+        return {LINE: "only a whole body has a tip (section and cell: effect hold)"}
 
     def mirror_breaker(self) -> str:
         """What pulls out of the plane x = 0."""
@@ -104,3 +106,18 @@ class TipLoadEffect(Effect):
         if self.moment[0]:
             terms.append(TipMoment(self.moment[0]))
         return Built(tuple(terms), (ramp,))
+
+    def on_rod(self, site: RodSite) -> OnRod:
+        """Force and moment at the centroid of the tip's outer face."""
+        from rod.loads import PlaneMoment, TipForce, TipMoment
+
+        terms: list[RodTerm] = []
+        if any(self.force):
+            terms.append(TipForce(self.force, self.follows, site.tip))
+        if any(self.moment[1:]) or (any(self.moment) and not site.layout.plane):
+            terms.append(TipMoment(self.moment, self.follows))
+        elif any(self.moment):
+            terms.append(PlaneMoment(self.moment[0]))
+        potential = all(term.conservative for term in terms)
+        named = tuple(("tip-load", term) for term in terms)
+        return OnRod(named, (RodRamp("tip-load", potential=potential),))

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
-from fiberbend.effects.effect import SPACE, Built, Draft, Effect, Requests, Site
+from fiberbend.effects.effect import Built, Draft, Effect, Requests, Site
+from fiberbend.effects.records import LINE, OnRod, RodSite
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Mass
 from fiberbend.schema.units import show
@@ -25,7 +26,7 @@ class TipMassEffect(Effect):
 
     def needs(self) -> dict[str, str]:
         """A tip."""
-        return {SPACE: "only a whole body has a tip"}
+        return {LINE: "only a whole body has a tip"}
 
     def mirror_breaker(self) -> str:
         """None of its own: gravity's direction is gravity's."""
@@ -60,3 +61,15 @@ class TipMassEffect(Effect):
         assert site.weight is not None, "checked when the case was read"
         x, y, z = (self.mass * acceleration for acceleration in site.weight)
         return Built((TipWeight((x, y, z)),))
+
+    def on_rod(self, site: RodSite) -> OnRod:
+        """A point at the centroid of the tip's outer face; heavy as gravity is on."""
+        import numpy as np
+
+        from rod.inertia import lump
+        from rod.loads import Weight
+
+        assert site.weight is not None, "checked when the case was read"
+        inertia = np.zeros_like(site.inertia)
+        inertia[-1] = lump(self.mass, site.tip)
+        return OnRod((("gravity", Weight(inertia, site.weight)),), inertia=inertia)
