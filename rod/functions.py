@@ -98,6 +98,19 @@ def stumpff(s: Floats) -> Floats:
     return c
 
 
+def matrices(phi: Floats, c: Floats) -> tuple[Floats, Floats]:
+    """The rotation exp [φ×] and its mean on the way from 0 to φ, (n, 3, 3) both.
+
+    Args:
+        phi: φ, (n, 3), rad.
+        c: `stumpff` of |φ|².
+    """
+    across = cross_matrix(phi)
+    first, second = c[1:3, :, None, None], c[2:4, :, None, None]
+    both = _EYE + first * across + second * (across @ across)
+    return both[0], both[1]
+
+
 class Pair:
     """The map I + f [φ×] + g [φ×]² of vectors φ, by f = c_k and g = c_{k+1}.
 
@@ -122,19 +135,23 @@ class Pair:
         return square
 
     @functools.cached_property
-    def _f(self) -> tuple[Floats, Floats, Floats]:
-        """f, df/ds, d²f/ds²."""
-        return self._slopes(self._k)
+    def _f(self) -> tuple[Floats, Floats]:
+        """f, df/ds."""
+        return self._c[self._k], self._slope(self._k)
 
     @functools.cached_property
-    def _g(self) -> tuple[Floats, Floats, Floats]:
-        return self._slopes(self._k + 1)
+    def _g(self) -> tuple[Floats, Floats]:
+        return self._c[self._k + 1], self._slope(self._k + 1)
 
-    def _slopes(self, k: int) -> tuple[Floats, Floats, Floats]:
-        c = self._c
-        first, third = ((i * c[i + 2] - c[i + 1]) / 2 for i in (k, k + 2))
-        second = ((k + 1) * c[k + 3] - c[k + 2]) / 2
-        return c[k], first, (k * third - second) / 2
+    def _slope(self, k: int) -> Floats:
+        """dc_k/ds."""
+        out: Floats = (k * self._c[k + 2] - self._c[k + 1]) / 2
+        return out
+
+    def _second(self, k: int) -> Floats:
+        """d²c_k/ds²."""
+        out: Floats = (k * self._slope(k + 2) - self._slope(k + 1)) / 2
+        return out
 
     def matrix(self) -> Floats:
         """The map itself, (..., 3, 3)."""
@@ -176,7 +193,7 @@ class Pair:
         bent = bent - 2 * total[..., None] * phi
         f, g = self._f, self._g
         rate = 2 * (f[1] * along + g[1] * square)
-        second = 4 * (f[2] * along + g[2] * square)
+        second = 4 * (self._second(self._k) * along + self._second(self._k + 1) * square)
         half = 2 * (f[1][..., None] * w + g[1][..., None] * bent) + second[..., None] * phi / 2
         outer = _outer(half, phi)
         eye = _EYE
