@@ -48,7 +48,9 @@ class Points:
     @functools.cached_property
     def _split(self) -> _Split:
         """The rod split where they are."""
-        return _Split(self._shape, self._skin.pieces[self.stations], self._skin.parts[self.stations])
+        return _Split(
+            self._shape, self._skin.pieces[self.stations], self._skin.parts[self.stations]
+        )
 
     @functools.cached_property
     def _frame(self) -> Ints:

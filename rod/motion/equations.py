@@ -188,6 +188,7 @@ class Equations:
             drag=motion.drag / step * float(np.vdot(moved @ motion.inertia, moved)),
             dropped=dropped,
         )
-        return Moving(
-            time, shape, velocity, change / step, self._end, energy, before.work.plus(work)
-        )
+        rate = change / step
+        ahead = 2 * rate - before.rate
+        passed = before.work.plus(work)
+        return Moving(time, shape, velocity, rate, ahead, self._end, energy, passed)

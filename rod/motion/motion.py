@@ -41,7 +41,7 @@ from rod.rod import Level, Rod
 from rod.shape import Shape
 from rod.statics import NoEquilibriumError, size
 
-_CLOSE = 1e-11
+_CLOSE = 1e-12
 _LOOSE = 1e-7
 _MOST = 30
 _FAR = 1e3
@@ -124,7 +124,7 @@ class Motion:
         energy = Energy(
             self.kinetic(velocity), self.stored(strains, pressure), self.held(shape, level.amounts)
         )
-        return Moving(time, shape, velocity, rates, pressure, energy, Work())
+        return Moving(time, shape, velocity, rates, rates, pressure, energy, Work())
 
     # --- energy ----------------------------------------------------------------------------------
 
@@ -133,7 +133,7 @@ class Motion:
         return float(np.vdot(velocity @ self.inertia, velocity)) / 2
 
     def stored(self, strains: Floats, pressure: float) -> float:
-        """Elastic energy of the sections, N mm: ∫ Φ ds + P V, of which the air's work is no part."""
+        """Elastic energy of the sections, ∫ Φ ds + P V, N mm; the work of the air is no part of it."""
         rod = self.rod
         return rod.elastic(strains, pressure) + pressure * rod.volume(strains, pressure)
 
@@ -201,9 +201,9 @@ class Motion:
         return self._halved(self._halved(moving, step / 2, least), step / 2, least)
 
     def _whole(self, moving: Moving, step: float) -> Moving:
-        """One step by Newton's method, from a change of strains like the last one's."""
+        """One step by Newton's method, from the change of strains that the last two foresee."""
         now = Equations(self, moving, step)
-        change = step * moving.rate
+        change = step * moving.ahead
         last, slow = np.inf, True
         for _ in range(_MOST):
             residual = now.residual(change)

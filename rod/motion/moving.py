@@ -71,6 +71,7 @@ class Moving:
         shape: the rod.
         velocity: V = Ẋ of its frames X, (n + 1, 3, 4); 1/s and mm/s.
         rate: mean ε̇ of the last step, (n, m), 1/s and 1/(mm s).
+        ahead: what that of the next step is foreseen to be, likewise.
         pressure: P of the chamber, MPa.
         energy: where it is.
         work: since the motion began.
@@ -80,6 +81,7 @@ class Moving:
     shape: Shape
     velocity: Floats
     rate: Floats
+    ahead: Floats
     pressure: float
     energy: Energy
     work: Work
