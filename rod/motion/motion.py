@@ -133,7 +133,7 @@ class Motion:
         return float(np.vdot(velocity @ self.inertia, velocity)) / 2
 
     def stored(self, strains: Floats, pressure: float) -> float:
-        """Elastic energy of the sections, ∫ Φ ds + P V, N mm; the work of the air is no part of it."""
+        """Elastic energy of the sections without the work of the air, ∫ Φ ds + P V, N mm."""
         rod = self.rod
         return rod.elastic(strains, pressure) + pressure * rod.volume(strains, pressure)
 

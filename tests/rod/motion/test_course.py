@@ -24,7 +24,7 @@ BAR = Bar()
 
 def test_events_have_the_times_of_a_pendulum() -> None:
     """Small swings about the hanging state pass it at every half period T/2 = π √(l/g)."""
-    rod, small = hinged(), 1e-4
+    rod, small = hinged(), 1e-2
     motion = Motion(rod, lambda time: Level(amounts=(1.0,)))
     strains = np.zeros((3, 1))
     strains[0] = (math.pi / 2 - small) / 1e-3
@@ -37,7 +37,7 @@ def test_events_have_the_times_of_a_pendulum() -> None:
     assert [event.below for event in found] == [False, True]
     # the midpoint rule's own period is longer by (ω Δt)²/12 of it
     exact = np.array([0.5, 1.5]) * half * (1 + (math.pi / 40) ** 2 / 12)
-    np.testing.assert_allclose([event.time for event in found], exact, rtol=2e-5)
+    np.testing.assert_allclose([event.time for event in found], exact, rtol=3e-4)
 
 
 def test_touch_and_lift_off_are_where_the_gap_is_zero() -> None:
