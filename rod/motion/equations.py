@@ -156,7 +156,7 @@ class Equations:
 
     # --- what it leads to ------------------------------------------------------------------------
 
-    def moved(self, change: Floats) -> Moving:
+    def moved(self, change: Floats, iterations: int) -> Moving:
         """The state after the step, with the change of strains that solves its equations."""
         before, motion, rod, step = self._before, self._motion, self._rod, self._step
         time = before.time + step
@@ -191,4 +191,4 @@ class Equations:
         rate = change / step
         ahead = 2 * rate - before.rate
         passed = before.work.plus(work)
-        return Moving(time, shape, velocity, rate, ahead, self._end, energy, passed)
+        return Moving(time, shape, velocity, rate, ahead, self._end, energy, passed, iterations)

@@ -205,7 +205,7 @@ class Motion:
         now = Equations(self, moving, step)
         change = step * moving.ahead
         last, slow = np.inf, True
-        for _ in range(_MOST):
+        for iteration in range(1, _MOST + 1):
             residual = now.residual(change)
             if slow:
                 # no exception by a singular one: what it gives is not finite, or too far
@@ -218,7 +218,7 @@ class Motion:
             # what is left after it falls once more as the corrections do
             falls = min(1.0, moves / last) if last < np.inf else 1.0
             if moves * falls < _CLOSE or (moves < _LOOSE and moves > last / 2):
-                found = now.moved(change)
+                found = now.moved(change, iteration)
                 outside = self.rod.law.outside(found.strains, found.pressure)
                 if outside:
                     raise NoEquilibriumError(f"at {found.time:.6g} s: {outside}")

@@ -75,6 +75,7 @@ class Moving:
         pressure: P of the chamber, MPa.
         energy: where it is.
         work: since the motion began.
+        iterations: of Newton's method in the last step.
     """
 
     time: float
@@ -85,6 +86,7 @@ class Moving:
     pressure: float
     energy: Energy
     work: Work
+    iterations: int = 0
 
     @property
     def strains(self) -> Floats:
