@@ -66,6 +66,8 @@ MIDDLE = "middle"
 """Columns of a model that separates the bend of the middle from that of the ends."""
 TIMED = "timed"
 """Columns of a run in time."""
+SOLVED = "solved"
+"""Columns of a model that finds its states in equilibrium: of finite elements, or as a rod."""
 ELEMENTS = "elements"
 """Columns of a model of finite elements."""
 UNIFORM = "uniform"
@@ -163,34 +165,34 @@ COLUMNS = (
     ),
     Column(VOLUME_ERROR, "", "the same of all rubber together", ELEMENTS),
     Column(TIP_X, "mm", "x of the tip"),
-    Column(SIDE_ANGLE, "°", "turn about its own y, toward x, where it leaves its plane", ELEMENTS),
-    Column(TWIST, "°", "turn of the sections about the centre-line, likewise", ELEMENTS),
+    Column(SIDE_ANGLE, "°", "turn about its own y, toward x, where it leaves its plane", SOLVED),
+    Column(TWIST, "°", "turn of the sections about the centre-line, likewise", SOLVED),
     Column(UNIFORM_ANGLE, "°", "L times the curvature of the middle half", MIDDLE),
     Column(UNIFORM_SIDE, "°", "the same of the side angle", BODY),
     Column(UNIFORM_TWIST, "°", "the same of the twist", BODY),
-    Column(AXIS_STRETCH, "", "stretch of the centre-line, through the centroids", ELEMENTS),
+    Column(AXIS_STRETCH, "", "stretch of the centre-line, through the centroids", SOLVED),
     Column("zone_{zone}_angle_deg", "°", "the bending angle's part of a zone", ZONES),
     Column("zone_{zone}_twist_deg", "°", "the twist's part of a zone, likewise", ZONES),
     Column("zone_{zone}_stretch", "", "stretch of the centre-line of a zone", ZONES),
     Column(UNIFORM_STRETCH, "", "stretch of the middle half of it", BODY),
     Column(FLOOR_STRETCH, "", "stretch λ0 of the line y = 0", UNIFORM),
     Column(CROWN_STRETCH, "", "stretch of the highest line", UNIFORM),
-    Column(WORK, "mJ", "work of the loads since rest, Σ ∫ q dQ", ELEMENTS),
-    Column(STORED, "mJ", "stored energy", ELEMENTS),
+    Column(WORK, "mJ", "work of the loads since rest, Σ ∫ q dQ", SOLVED),
+    Column(STORED, "mJ", "stored energy", SOLVED),
     Column("energy_{effect}_mJ", "mJ", "potential of an effect", ELEMENTS),
     Column(
         "load_{load}",
         "",
         "a load beside the pressure, of gravity the share that acts; its unit ends the name",
-        ELEMENTS,
+        SOLVED,
     ),
     Column(
         "conjugate_{load}",
         "",
         "what it does work on, of gravity mJ; its unit ends the name",
-        ELEMENTS,
+        SOLVED,
     ),
-    Column(MODES, "", "unstable modes with every load kept at its value", ELEMENTS),
+    Column(MODES, "", "unstable modes with every load kept at its value", SOLVED),
     Column(ROOF_FORCE, "N", "force of the roof on the body", BODY),
     Column("clamp_force_x_N", "N", "force of the clamp on the body along x", BODY),
     Column("clamp_force_y_N", "N", "the same along y", BODY),

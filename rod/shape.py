@@ -89,6 +89,17 @@ class Shape:
         out[..., 3] += self.places[pieces]
         return out
 
+    def along(self, reach: Floats) -> Floats:
+        """Axes and places [R | r] of sections anywhere, (k, 3, 4).
+
+        Args:
+            reach: of each from the root along the rod at rest, (k,), mm.
+        """
+        ends = np.cumsum(self.layout.lengths)
+        piece = np.minimum(np.searchsorted(ends, reach), len(ends) - 1)
+        within = reach - (ends - self.layout.lengths)[piece]
+        return self.between(piece, within / self.layout.lengths[piece])
+
     # --- first derivatives -----------------------------------------------------------------------
 
     @functools.cached_property

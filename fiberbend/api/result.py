@@ -224,7 +224,7 @@ class Result(RunResult):
         from fiberbend.models.choice import MODELS
         from fiberbend.results.states import States
 
-        if self.model in MODELS and MODELS[self.model].elements() is None:
+        if self.model in MODELS and MODELS[self.model].line:
             text = f"model {self.model} is a closed form without states, expected section or dearer"
             raise CaseError([Problem("mesh", text)])
         if self.kept_in is None or not self.kept_in.is_dir():

@@ -10,6 +10,7 @@ MODELS = (
     "analytic",
     "section",
     "cell",
+    "rod",
     "body",
 )
 """From the cheapest to the dearest: `auto` takes the first that supports everything."""

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from fiberbend.effects.effect import Effect
     from geometry.actuator import Actuator
     from geometry.mesh.data import Floats, MeshData
+    from geometry.sections.shape import ShapedActuator
     from geometry.sections.size import Strips
     from geometry.winding.segments import EmbeddedFibers
     from materials.material import Material
@@ -168,7 +169,7 @@ class RodSite:
         weight: acceleration by which it is heavy, x, y and z, mm/s²; None: without weight.
     """
 
-    actuator: Actuator
+    actuator: ShapedActuator
     layout: Layout
     inertia: Floats
     tip: tuple[float, float, float]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from fiberbend.case.case import Case, Mesh
 from fiberbend.case.zones import path_of, zone_cases
-from fiberbend.columns import ELEMENTS, RUN
+from fiberbend.columns import ELEMENTS, RUN, SOLVED
 from fiberbend.effects.effect import ZONES
 from fiberbend.effects.records import MOTION, mirror_breakers
 from fiberbend.models.costs.price import Price, price
@@ -93,6 +93,8 @@ class ModelKind(ABC):
     """Groups of columns of history.csv, see `fiberbend.columns`; others are refused."""
     line: ClassVar[str] = ""
     """Where it has no elements: its name among `fiberbend.models.closed_form.analytic_curves`."""
+    slender: ClassVar[bool] = False
+    """It is a rod by the law of its section, without elements of its own."""
     ends: ClassVar[bool] = False
     """It has the caps, and the bend near them."""
     gives_blocked_force: ClassVar[bool] = False
@@ -228,7 +230,7 @@ class ModelKind(ABC):
 class MeshedModel(ModelKind):
     """A model of finite elements."""
 
-    fills = frozenset({RUN, ELEMENTS})
+    fills = frozenset({RUN, SOLVED, ELEMENTS})
     shared: ClassVar[bool] = False
     """All ranks solve it together; else one rank does."""
     resumes: ClassVar[bool] = False

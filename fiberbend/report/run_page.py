@@ -166,7 +166,7 @@ def _states(
     path: Path, case: Case, rows: list[dict[str, Any]]
 ) -> tuple[States | None, Space | None, str]:
     """The states that can be seen in space, or why there are none."""
-    if choose_model(case)[0].elements() is None:
+    if choose_model(case)[0].line:
         return None, None, "This run is a closed form: it has no body that could be seen in space."
     if not rows or not (path / MESH).exists():
         return None, None, "This run kept no states: there is no body to be seen in space."

@@ -124,7 +124,12 @@ def _solve(
     own: Own,
     scratch: RunFolder | None = None,
 ) -> RunResult:
-    model = choose_model(case)[0].elements()
+    kind = choose_model(case)[0]
+    model = kind.elements()
+    if kind.slender:
+        from fiberbend.running.slender.run import run_rod
+
+        return run_rod(case, kind, folder, progress, comm, own, scratch)
     if model is None:
         from fiberbend.running.analytic import run_analytic
 

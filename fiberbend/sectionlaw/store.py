@@ -27,7 +27,7 @@ _KINDS = (".py", ".c", ".yaml", ".json")
 _DIGITS = 16
 
 
-def digest_of(case: Case, error: float, least: float | None) -> str:
+def digest_of(case: Case, error: float, least: float | None, wide: float = 1.0) -> str:
     """A hash of section, rubber, winding, range, error and code; titles and output do not enter."""
     parts = {"actuator": case.actuator, "materials": case.materials}
     parts |= {f"effect {number}": effect for number, effect in enumerate(case.effects)}
@@ -39,6 +39,7 @@ def digest_of(case: Case, error: float, least: float | None) -> str:
         "solver": case.solver.model_dump_json(),
         "error": repr(error),
         "least": repr(least),
+        "wide": repr(wide),
         "code": _code(),
     }
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()[:_DIGITS]

@@ -31,7 +31,11 @@ _LEAST = 1e-3
 
 
 def table_of(
-    case: Case, error: float = ERROR, least: float | None = None, store: Store | None = None
+    case: Case,
+    error: float = ERROR,
+    least: float | None = None,
+    store: Store | None = None,
+    wide: float = 1.0,
 ) -> Made:
     """The law of a section, from the store or anew.
 
@@ -40,17 +44,18 @@ def table_of(
         error: asked for, in parts.
         least: pressure from which the table is, MPa; a part of the greatest unless given.
         store: of tables; that of the user unless given.
+        wide: times the usual margins of the range, of a rod whose loads bend it far.
 
     Raises:
         CaseError: the law cannot have what the case has, or the table does not reach the error.
     """
     refuse(case)
     store = Store() if store is None else store
-    digest = digest_of(case, error, least)
+    digest = digest_of(case, error, least, wide)
     found = store.find(digest)
     if found is not None:
         return found
-    made = _made(case, error, least, digest)
+    made = _made(case, error, least, digest, wide)
     store.keep(made)
     return made
 
@@ -82,7 +87,7 @@ def refuse(case: Case) -> None:
         raise CaseError(problems)
 
 
-def _made(case: Case, error: float, least: float | None, digest: str) -> Made:
+def _made(case: Case, error: float, least: float | None, digest: str, wide: float) -> Made:
     began = time.process_time()
     reach = reach_of(case)
     ready = Calibrations().ready(case).case if waits(case) else case
@@ -92,7 +97,7 @@ def _made(case: Case, error: float, least: float | None, digest: str) -> Made:
         raise CaseError([Problem("--from", text)])
     remarks, last = list(reach.remarks), ""
     for part in _PARTS:
-        box = box_of(reach, part, least)
+        box = box_of(reach, wide * part, least)
         walk = Walk(ready, box)
         try:
             law, checked = _fitted(case, walk, box, reach, error)

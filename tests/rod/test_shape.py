@@ -52,6 +52,20 @@ def inertia(layout: Layout) -> Floats:
     return out
 
 
+@EVERY
+def test_sections_anywhere_are_on_the_line(strains: tuple[str, ...]) -> None:
+    """At frames they are these; between, those of a rod of more pieces of the same strains."""
+    layout = turned(strains)
+    q = bent(layout)
+    shape = Shape(layout, q)
+    ends = np.concatenate([[0.0], np.cumsum(layout.lengths)])
+    np.testing.assert_allclose(shape.along(ends), shape.frames, rtol=1e-13, atol=1e-12)
+    finer = Layout(np.repeat(layout.lengths / 2, 2), strains, layout.rotation, layout.place)
+    halves = Shape(finer, np.repeat(q, 2, axis=0))
+    between = np.concatenate([[0.0], np.cumsum(finer.lengths)])
+    np.testing.assert_allclose(shape.along(between), halves.frames, rtol=1e-13, atol=1e-12)
+
+
 def test_constant_strains_make_a_screw() -> None:
     spin, stretch, n = np.array([0.011, -0.004, 0.02]), 1.13, 9
     layout = Layout(np.full(n, 12.0), SPACE)

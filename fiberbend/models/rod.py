@@ -1,0 +1,90 @@
+"""`model: rod`: the actuator as a line, by the law of its section and of its caps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from fiberbend.case.case import Case
+from fiberbend.case.symmetry import Symmetry
+from fiberbend.columns import MIDDLE, SOLVED
+from fiberbend.effects.effect import CHAMBER, SIDE, THREAD, TURNS, TWIST, WOUND
+from fiberbend.effects.records import LINE
+from fiberbend.models.ends import AT_ENDS
+from fiberbend.models.model import ModelKind, Objection
+
+
+class Rod(ModelKind):
+    """A geometrically exact rod: a uniform bend anew in every piece, under weights and loads."""
+
+    name = "rod"
+    offers = frozenset({CHAMBER, WOUND, THREAD, TURNS, TWIST, SIDE, LINE})
+    fills = ModelKind.fills | {MIDDLE, SOLVED}
+    slender = True
+    agreement = 0.5
+    start_s = 5.0
+    pictures_s = (5.0, 1.0)
+    turn = math.radians(10)
+    """Greatest change of the angle in a step, rad: a step takes milliseconds."""
+    law_s = 20.0
+    """Seconds that the law of a section takes where no table of it is kept yet; of a cell more."""
+
+    def limits(self, case: Case) -> Iterator[Objection]:
+        """No law of its section reaches there."""
+        load = case.inflation
+        if load is None:
+            text = "the law of a section reaches from rest to a pressure or an angle"
+            yield "effects", f"{text}, expected effect pressure with one"
+        for index, effect in enumerate(case.effects):
+            path, own = f"effects.{index}.{effect.name}", effect.inflation()
+            if own is not None and own.volume is not None:
+                text = "the law of a section reaches to a pressure or an angle, expected one"
+                yield f"{path}.volume", text
+            if own is not None and ((own.to or 0.0) < 0 or (own.angle or 0.0) < 0):
+                yield path, "the law of a section is of pressures above zero, and no vacuum"
+        symmetry = Symmetry.of(case.acting)
+        if not symmetry.across and not self._wound_alike(case):
+            yield "effects", "its law is of stretch and curvature, and its winding twists it"
+        elif symmetry.across:
+            reasons = "; ".join(symmetry.across)
+            yield "effects", f"its law is of bending in the plane x = 0: {reasons}"
+        if case.output.fields and "fields" in case.output.model_fields_set:
+            yield "output.fields", "a rod has no fields: its sections are known by their law alone"
+
+    def _wound_alike(self, case: Case) -> bool:
+        """Whether its section has both mirror planes."""
+        beside = (effect.beside() for effect in case.effects)
+        return Symmetry.of([effect for effect in beside if effect is not None]).plane
+
+    def leaves_out(self, case: Case) -> Iterator[Objection]:
+        """How sections near the caps differ from others."""
+        yield from super().leaves_out(case)
+        yield "actuator.cap", "sections near the caps bend as others do, and caps as beams"
+
+    def completed(self, case: Case) -> Case:
+        """A rod has no fields to write."""
+        if "fields" in case.output.model_fields_set:
+            return case
+        output = case.output.model_copy(update={"fields": False})
+        return case.model_copy(update={"output": output})
+
+    def unused(self, case: Case) -> dict[str, set[str]]:
+        """Mesh and solver, but for steps."""
+        steps = {"first_step", "max_step", "max_turn", "max_cutbacks"}
+        return {
+            "mesh": case.mesh.model_fields_set,
+            "solver": case.solver.model_fields_set - steps,
+        }
+
+    def errors(self, case: Case) -> Iterator[str]:
+        """Ends, and the law."""
+        if case.inflation is None:
+            return
+        yield "law of the section: within 0.1 % of the section's own forces (fiberbend table)"
+        yield (
+            f"{AT_ENDS}the baseline of 120 mm bends 0.7 % less than a body at 60 kPa, under its "
+            "weight 0.9 % less at most (docs/rod.md)"
+        )
+
+
+MODEL = Rod()

@@ -1,0 +1,1 @@
+"""Runs of rods, from the case to the folder."""

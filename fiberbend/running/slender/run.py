@@ -1,0 +1,322 @@
+"""A run of a rod, from the case to its folder."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from fem.march.records import Ramp
+from fiberbend import columns as col
+from fiberbend.answer.answer import answer
+from fiberbend.case import convert
+from fiberbend.case.case import Case
+from fiberbend.case.measured import read_measured
+from fiberbend.compare.check import Check, crosscheck
+from fiberbend.models.model import ModelKind
+from fiberbend.models.result import Curve, RunResult
+from fiberbend.models.rod import MODEL
+from fiberbend.plan.doubts import doubts
+from fiberbend.process import signals
+from fiberbend.process.signals import stop_of
+from fiberbend.results.folder import MESH, RunFolder
+from fiberbend.results.states import LAST, step_label, write_snapshot
+from fiberbend.running import messages, record
+from fiberbend.running.calibrated import Own
+from fiberbend.running.history import departures, work_of
+from fiberbend.running.hooks import SAME, not_reached, shows_states
+from fiberbend.running.launch import on_rank_0
+from fiberbend.running.outputs import draw, write_page
+from fiberbend.running.progress import Progress
+from fiberbend.running.slender.solid import Solid
+from fiberbend.running.slender.touch import passes_itself
+from fiberbend.slender.actuator import Slender, slender
+from fiberbend.slender.path import BEYOND, Course, Limits, Point
+from fiberbend.slender.rows import Rows
+from fiberbend.states.labels import angle_labels, pressure_labels, unused
+from fiberbend.states.snapshot import Snapshot
+
+
+def run_rod(
+    case: Case,
+    model: ModelKind,
+    folder: RunFolder | None,
+    progress: Progress,
+    comm: Any,
+    own: Own | None,
+    scratch: RunFolder | None,
+) -> RunResult:
+    """Solve a case as a rod; collective.
+
+    Args:
+        case: of model rod.
+        model: its model.
+        folder: where the results go, or None.
+        progress: reports to the user.
+        comm: an mpi4py communicator, of which one rank solves it.
+        own: what the run has of itself beside its case.
+        scratch: where states go without a folder, or None.
+    """
+    run = _RodRun(case, model, folder, progress, comm.size, own or Own(), scratch)
+    try:
+        return on_rank_0(comm, run.go)
+    except KeyboardInterrupt as error:
+        stop = stop_of(error)
+        stop.reason = messages.interrupted(run.rows, 0, False)
+        stop.together = comm.size == 1 or None
+        if folder is not None and folder.writes:
+            known = (run.rows, progress.wall_s, comm.size)
+            folder.write_run(**record.unfinished("interrupted", stop.reason, model.name, *known))
+        raise stop from None
+
+
+class _RodRun:
+    """The steps of one run, and what they share; see `run_rod`.
+
+    Attributes:
+        rows: of the history.
+        warnings: so far.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        model: ModelKind,
+        folder: RunFolder | None,
+        progress: Progress,
+        ranks: int,
+        own: Own,
+        scratch: RunFolder | None,
+    ) -> None:
+        self.case, self.model, self.folder = case, model, folder
+        self.progress, self.ranks, self.own = progress, ranks, own
+        self.states = folder or scratch
+        self.rows: list[dict[str, Any]] = []
+        self.warnings: list[str] = []
+
+    def go(self) -> RunResult:
+        """Make the law, solve, write."""
+        case, progress = self.case, self.progress
+        known = doubts(case)
+        progress.phase("law")
+        rod = slender(case)
+        progress.phase("solve")
+        course = self._course(rod)
+        maker = Rows(rod, course.tells)
+        self._add(maker.row(0, course.points[0]))
+        self._rows = maker
+        report = course.run()
+        self._work()
+        self.warn([*self.own.remarks, *rod.section.remarks], silent=True)
+        self.warn(known)
+        self.warn(messages.remarks(report))
+        touching = passes_itself(rod, course.points)
+        if touching is not None:
+            at = course.points[touching]
+            measures = {"control": at.angle, "value pressure": at.values.get("pressure", 0.0)}
+            self.warn([f"at the latest {messages.self_contact(measures)}"])
+        status, reason = self._ended(rod, course)
+        self.warn(self._jumps(), silent=True)
+        missed = not_reached(case, report, self.rows)
+        self.warn([messages.missed(missed)] if missed else [], silent=True)
+        if status == "converged" and self.rows[-1].get(col.MODES):
+            self.warn([messages.UNSTABLE_END], silent=True)
+        self.warn(record.doubts(case, self.rows), silent=True)
+        return self._finish(rod, course, status, reason, touching)
+
+    def warn(self, lines: Sequence[str], silent: bool = False) -> None:
+        """Report each line once; `silent`: with the others at the end only."""
+        for text in lines:
+            if text not in self.warnings:
+                self.warnings.append(text)
+                if not silent:
+                    self.progress.message(text)
+
+    # --- the path ------------------------------------------------------------------------------
+
+    def _course(self, rod: Slender) -> Course:
+        case = self.case
+        turn = case.solver.max_turn or MODEL.turn
+        inflated = [n for n, ramp in enumerate(rod.ramps) if ramp.load == "pressure"]
+        limits = Limits(turn, case.solver.max_cutbacks)
+        first = min(inflated, default=0)
+        return Course(rod, convert.requests(case), limits, first, self._listen)
+
+    def _listen(self, point: Point, part: float) -> None:
+        row = self._rows.row(len(self.rows), point)
+        self._add(row)
+        step = (row[col.STEP], part, row[col.PRESSURE], row[col.ANGLE], point.iterations)
+        self.progress.step(*step)
+        signals.check()
+
+    def _add(self, row: dict[str, Any]) -> None:
+        col.check(row, self.model)
+        self.rows.append(row)
+
+    def _work(self) -> None:
+        """Fill in the work of the loads since rest."""
+        self._each = self._uncertainty = np.zeros(len(self.rows))
+        if len(self.rows) > 1:
+            self._each, self._uncertainty = work_of(*self._rows.loads(self.rows))
+        for row, value in zip(self.rows, np.cumsum(self._each), strict=True):
+            row[col.WORK] = float(value)
+
+    def _jumps(self) -> list[str]:
+        """Steps in which the energy changes by what no load has done: all have a potential."""
+        if len(self.rows) < 2 or not all("conjugate" in key for key in self._unpaired()):
+            return []
+        stored = np.array([row[col.STORED] for row in self.rows])
+        steps = departures(self._each, self._uncertainty, stored)
+        return [messages.jumped(self.rows[step - 1], self.rows[step]) for step in steps]
+
+    def _unpaired(self) -> list[str]:
+        """Columns of loads whose work no column tells."""
+        keys = self.rows[-1]
+        return [
+            key
+            for key in keys
+            if key.startswith("load_")
+            and not any(other.startswith(f"conjugate_{key[5:]}") for other in keys)
+        ]
+
+    def _ended(self, rod: Slender, course: Course) -> tuple[str, str]:
+        """Status of the run, and why it is not 'converged'."""
+        report, rows = course.report, self.rows
+        missed = not_reached(self.case, report, rows)
+        text = f"; {', '.join(missed)} not reached" if missed else ""
+        if report.status == "converged":
+            if not missed:
+                return "converged", ""
+            reason = f"{messages.course(rows)}: {', '.join(missed)} not reached"
+            stop = self.case.output.stop_at_angle
+            return "stopped", reason + messages.passed_before(rows, stop, report)
+        driven = rod.ramps[course.number]
+        row = rows[-1]
+        failure = (
+            f"{report.reason}; last converged state: {row[col.PRESSURE]:.4g} kPa, "
+            f"{row[col.ANGLE]:.4g}°"
+        )
+        if driven.drive == "control":
+            begin, target = (float(np.rad2deg(a)) for a in (course.begin, driven.target))
+            turned, reason = messages.angle_missed(rows, begin, target, failure)
+            return ("stopped" if turned else report.status), reason + text
+        if report.status == "stopped":
+            ramp = Ramp(driven.load, driven.target, driven.drive)
+            return "stopped", messages.stopped(report, ramp, BEYOND) + text
+        return "failed", failure + text
+
+    # --- what is left --------------------------------------------------------------------------
+
+    def _finish(
+        self, rod: Slender, course: Course, status: str, reason: str, touching: int | None
+    ) -> RunResult:
+        case, folder, progress = self.case, self.folder, self.progress
+        check: Check | None = None
+        if folder is not None:
+            progress.phase("crosscheck")
+            curve = self._section(rod)
+            check = crosscheck(case, self.model, self.rows, curve, read_measured(case))
+            self.warn(check.doubts(), silent=True)
+        progress.phase("output")
+        solid, shots = None, list[Snapshot]()
+        if self.states is not None and (folder is None or shows_states(case.output)):
+            solid = Solid(case, rod)
+            self.states.write(MESH, solid.model_mesh.mesh.save)
+            shots = self._shots(course, solid, touching)
+        rows = check.beside(self.rows) if check else self.rows
+        run = record.entries(
+            status,
+            reason,
+            self.model.name,
+            self._counted(rod, course),
+            self._wall(),
+            record.peak_memory_mb(),
+            self.ranks,
+            {"numpy": np.__version__},
+        )
+        run |= record.of_effects(case, self.rows) | record.beside(check) | self.own.entries
+        if folder is not None:
+            folder.write_history(rows)
+            folder.write_run(**run)
+            if solid is not None and folder.writes:
+                why = f"{status}: {reason}" if reason else None
+                shown = (solid.model_mesh, shots, rows, why, self._say)
+                draw(folder, case, *shown, check, self.model.name)
+                if case.output.report:
+                    progress.phase("report")
+                    write_page(folder, case, rows, run, self._say)
+            progress.close()
+            run |= {"wall_s": self._wall(), "warnings": list(self.warnings)}
+            folder.write_run(**run)
+        progress.answer(answer(case, rows, run))
+        return RunResult(status, reason, rows, run, folder.path if folder else None)
+
+    def _say(self, text: str) -> None:
+        self.warn([text])
+
+    def _wall(self) -> dict[str, float]:
+        return {name: round(value, 3) for name, value in self.progress.wall_s.items()}
+
+    def _section(self, rod: Slender) -> Curve | None:
+        """P(θ) of the section by itself, where that is what the law of the rod was made of."""
+        found, length = rod.section, self.case.actuator.length
+        if found.model != "section" or len(found.free) < 2:
+            return None
+        pressures = np.concatenate([[0.0], found.free[:, 0]])
+        angles = np.concatenate([[0.0], found.free[:, 2] * length])
+        if not np.all(np.diff(angles) > 0):
+            return None
+        return Curve(pressures, angles, np.zeros(len(angles)))
+
+    def _shots(self, course: Course, solid: Solid, touching: int | None) -> list[Snapshot]:
+        """The states that are asked for and the last one; all of them go to the folder."""
+        output = self.case.output
+        angles, pressures = angle_labels(output.at_angles), pressure_labels(output.at_pressures)
+        hits = dict(course.report.hits)
+        shots: list[Snapshot] = []
+        for step, point in enumerate(course.points):
+            if step == 0:
+                continue
+            pressure = point.values.get("pressure", 0.0)
+            taken = [shot.label for shot in shots]
+            asked = [
+                *([angles[hits[step]]] if step in hits else []),
+                *(
+                    label
+                    for goal, label in pressures.items()
+                    if abs(pressure - goal) <= SAME * abs(goal)
+                ),
+                *([LAST] if step == len(course.points) - 1 else []),
+            ]
+            label = unused(asked[0], taken) if asked else step_label(step)
+            remark = ""
+            if touching is not None and step >= touching:
+                remark = "passes through itself: not modelled"
+            shot = solid.snapshot(point, label, step, remark)
+            if asked:
+                shots.append(shot)
+            if self.states is not None:
+                write_snapshot(self.states, shot)
+        return shots
+
+    def _counted(self, rod: Slender, course: Course) -> dict[str, Any]:
+        """What the run has counted, and the law that it has."""
+        report, section = course.report, rod.section
+        return {
+            "unknowns": rod.rod.layout.at_rest().size,
+            "pieces": len(rod.rod.layout.lengths),
+            "load_steps": report.steps,
+            "newton_iterations": report.iterations,
+            "factorisations": report.factorisations,
+            "cutbacks": report.cutbacks,
+            "warnings": list(self.warnings),
+            "stability_checked": course.tells,
+            "critical_points": messages.critical_points(report, 1.0),
+            "section_law": {
+                "model": section.model,
+                "states": section.states,
+                "seconds": round(section.seconds, 3),
+                "error": section.error,
+            },
+        }

@@ -1,0 +1,1 @@
+"""Cases as rods: laws of sections and caps, masses, loads, and the path through them."""

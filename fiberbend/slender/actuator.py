@@ -1,0 +1,107 @@
+"""A case as a rod: pieces, laws, masses, and what acts on it."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+
+import numpy as np
+
+from fiberbend.case import convert
+from fiberbend.case.case import Case
+from fiberbend.effects.records import RodRamp, RodSite
+from fiberbend.slender.laws import SectionLaw, cap_law, masses, section_law
+from fiberbend.slender.moments import section_of
+from rod.functions import Floats
+from rod.inertia import spread
+from rod.law import Zones
+from rod.layout import Layout
+from rod.rod import Level, Rod
+from rod.shape import Shape
+
+PIECES, CAP_PIECES = 48, 4
+"""Of the chamber and of each cap. Under its weight the baseline's angle and tip are those of twice
+as many to 1e-4."""
+PLANE = ("stretch", "curvature")
+
+
+@dataclasses.dataclass(frozen=True)
+class Slender:
+    """An actuator as a rod.
+
+    Attributes:
+        rod: with all terms.
+        site: as its effects see it.
+        loads: the load whose value is the amount of each term; without a name it acts whole.
+        ramps: loads in the order of the case.
+        section: the law of the section between the caps.
+    """
+
+    rod: Rod
+    site: RodSite
+    loads: tuple[str, ...]
+    ramps: tuple[RodRamp, ...]
+    section: SectionLaw
+
+    @property
+    def chamber(self) -> slice:
+        """The pieces between the caps."""
+        return slice(CAP_PIECES, CAP_PIECES + PIECES)
+
+    def level(self, values: Mapping[str, float]) -> Level:
+        """What acts at given values of the loads."""
+        amounts = tuple(values.get(name, 0.0) if name else 1.0 for name in self.loads)
+        return Level(values.get("pressure", 0.0), amounts)
+
+    def weights(self, strain: str = "curvature") -> Floats:
+        """w with Σ w ε the turn of the line from z = 0 to L, (n, m): see `rod.layout`."""
+        out = np.zeros(self.rod.layout.shape)
+        if strain in self.rod.layout.strains:
+            out[self.chamber] = self.rod.layout.weights(strain)[self.chamber]
+        return out
+
+    def tip(self, shape: Shape) -> Floats:
+        """The centroid of the tip cap's outer face, (3,), mm."""
+        place: Floats = shape.places[-1] + shape.rotations[-1] @ np.array(self.site.tip)
+        return place
+
+
+def slender(case: Case) -> Slender:
+    """The rod of a case of model rod.
+
+    Raises:
+        fiberbend.schema.problems.CaseError: its section has no law as far as the case goes.
+    """
+    actuator, section = convert.dimensions(case.actuator), section_of(case)
+    length, cap = actuator.length, actuator.cap
+    lengths = np.repeat(
+        [cap / CAP_PIECES, length / PIECES, cap / CAP_PIECES], [CAP_PIECES, PIECES, CAP_PIECES]
+    )
+    layout = Layout(lengths, PLANE, place=np.array([0.0, section.height, -cap]))
+    hollow, solid = masses(case, section)
+    parts = [solid] * CAP_PIECES + [hollow] * PIECES + [solid] * CAP_PIECES
+    site = RodSite(
+        actuator=actuator,
+        layout=layout,
+        inertia=spread(layout, parts),
+        tip=(0.0, actuator.face_height - section.height, 0.0),
+        weight=convert.site(case).weight,
+    )
+    made = section_law(case)
+    law = Zones((made.law, cap_law(case, section, PLANE)), _places(len(lengths)))
+    found = [effect.on_rod(site) for effect in case.effects]
+    terms = [term for each in found for term in each.terms]
+    inertia = sum((e.inertia for e in found if e.inertia is not None), site.inertia)
+    return Slender(
+        rod=Rod(layout, law, inertia, [term for _, term in terms]),
+        site=site,
+        loads=tuple(name for name, _ in terms),
+        ramps=tuple(ramp for each in found for ramp in each.ramps),
+        section=made,
+    )
+
+
+def _places(pieces: int) -> list[int]:
+    """Which law each piece has: 0 between the caps, 1 in them."""
+    inside = range(CAP_PIECES, CAP_PIECES + PIECES)
+    return [int(number not in inside) for number in range(pieces)]
