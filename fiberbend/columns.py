@@ -52,7 +52,7 @@ POTENTIAL = "potential_mJ"
 AIR_WORK = "air_work_mJ"
 LOADS_WORK = "loads_work_mJ"
 DISSIPATED = "dissipated_mJ"
-DRIFT = "energy_drift_mJ"
+DRIFT = "balance_mJ"
 BALANCE_FORCE = "balance_force"
 BALANCE_MOMENT = "balance_moment"
 

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import Symmetry
-from fiberbend.columns import MIDDLE, SOLVED
+from fiberbend.columns import MIDDLE, SOLVED, TIMED
 from fiberbend.effects.effect import CHAMBER, SIDE, THREAD, TURNS, TWIST, WOUND
-from fiberbend.effects.records import LINE
+from fiberbend.effects.records import LINE, MOTION
 from fiberbend.models.ends import AT_ENDS
 from fiberbend.models.model import ModelKind, Objection
 
@@ -18,8 +18,8 @@ class Rod(ModelKind):
     """A geometrically exact rod: a uniform bend anew in every piece, under weights and loads."""
 
     name = "rod"
-    offers = frozenset({CHAMBER, WOUND, THREAD, TURNS, TWIST, SIDE, LINE})
-    fills = ModelKind.fills | {MIDDLE, SOLVED}
+    offers = frozenset({CHAMBER, WOUND, THREAD, TURNS, TWIST, SIDE, LINE, MOTION})
+    fills = ModelKind.fills | {MIDDLE, SOLVED, TIMED}
     slender = True
     agreement = 0.5
     start_s = 5.0
