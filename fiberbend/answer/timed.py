@@ -1,4 +1,4 @@
-"""What a run in time answers: the greatest angle, events, when it settles, and what damping took."""
+"""What a run in time answers: greatest angle, events, when it settles, what damping took."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from fiberbend import columns as col
 from fiberbend.answer.numbers import quantity
 
 BAND = 0.02
-"""Part of the change of the angle within which it has settled (2 %, as control engineers have it)."""
+"""Part of the change of the angle within which it has settled: 2 %, as control engineers have it."""
 ENTRY = "motion"
 """Of run.json."""
 

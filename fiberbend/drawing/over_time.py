@@ -64,14 +64,15 @@ def plot_over_time(
     ):
         axes.plot(time, values, color=BLUE, linewidth=1.8)
         axes.set_ylabel(name, fontsize=12)
+        axes.margins(y=0.16)
     greatest = int(np.argmax(np.abs(angle)))
     panels[1].plot(time[greatest], angle[greatest], "o", color=RED, markersize=6)
     panels[1].annotate(
         f"{angle[greatest]:.4g}° at {time[greatest]:.4g} s",
         (time[greatest], angle[greatest]),
-        xytext=(8, -4),
+        xytext=(8, 3),
         textcoords="offset points",
-        va="top",
+        va="bottom",
         fontsize=11,
         color=RED,
     )

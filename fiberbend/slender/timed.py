@@ -7,16 +7,15 @@ import math
 from collections.abc import Callable, Iterator
 from typing import Protocol, runtime_checkable
 
-from fiberbend.slender.actuator import Slender
-from fiberbend.slender.path import PRESSURE, Course, Limits, Point
-
 from analytic.control.controller import Valves
 from analytic.control.plant import PlantParameters
 from fiberbend.case.case import Case
 from fiberbend.case.timed.spec import PlantSpec, PressureSpec, TimeSpec
 from fiberbend.effects.records import Requests
 from fiberbend.schema.problems import CaseError, Problem
+from fiberbend.slender.actuator import Slender
 from fiberbend.slender.air import ValveAir
+from fiberbend.slender.path import PRESSURE, Course, Limits, Point
 from rod.motion import Motion
 from rod.motion.course import Course as Passage
 from rod.motion.course import Passed, Watch

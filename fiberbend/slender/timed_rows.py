@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from fiberbend.slender.path import PRESSURE, Point
-from fiberbend.slender.rows import Rows
 
 from fiberbend import columns as col
+from fiberbend.slender.path import PRESSURE, Point
+from fiberbend.slender.rows import Rows
 from fiberbend.slender.timed import Timed
 from rod.motion import Moving
 from rod.statics import State

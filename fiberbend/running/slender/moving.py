@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 import time as clock
 from collections.abc import Sequence
@@ -14,6 +13,7 @@ from fiberbend import columns as col
 from fiberbend.answer.answer import answer
 from fiberbend.answer.timed import ENTRY
 from fiberbend.case.case import Case
+from fiberbend.case.timed.frames import frame_time
 from fiberbend.models.model import ModelKind
 from fiberbend.models.result import RunResult
 from fiberbend.plan.doubts import doubts
@@ -36,23 +36,6 @@ from fiberbend.states.snapshot import Snapshot
 from rod.motion import Moving
 from rod.motion.course import Event
 from rod.statics import NoEquilibriumError
-
-FRAME = 0.04
-"""Seconds between the states that are kept and shown: 25 in a second, as a film has them."""
-_MOST_FRAMES = 500
-_FEWEST_FRAMES = 20
-_CENTI = 0.01
-"""A film tells the time of its frames in hundredths of a second."""
-
-
-def frame_time(duration: float) -> float:
-    """Seconds from one state that is shown to the next.
-
-    Args:
-        duration: of the motion, s.
-    """
-    wanted = min(max(FRAME, duration / _MOST_FRAMES), max(duration / _FEWEST_FRAMES, _CENTI))
-    return _CENTI * math.ceil(wanted / _CENTI - 1e-9)
 
 
 def run_moving(
@@ -292,5 +275,5 @@ class _MovingRun:
         with pictures(self._say):
             folder.write(
                 "pictures/over_time.png",
-                lambda file: functools.partial(plot_over_time, self.rows)(file, *more),
+                lambda file: plot_over_time(self.rows, file, *more),
             )
