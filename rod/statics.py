@@ -47,6 +47,7 @@ class State:
         iterations: of Newton's method.
         unstable: number of negative eigenvalues of the tangent; of one that is not symmetric, of
             eigenvalues with a negative real part.
+        tangent: there, (n m, n m).
     """
 
     shape: Shape
@@ -54,6 +55,13 @@ class State:
     share: float
     iterations: int
     unstable: int
+    tangent: Floats
+
+    @classmethod
+    def at(cls, rod: Rod, shape: Shape, level: Level, share: float, iterations: int) -> State:
+        """A state, its tangent and stability."""
+        tangent = rod.tangent(shape, level)
+        return cls(shape, level, share, iterations, unstable_modes(tangent), tangent)
 
     @property
     def strains(self) -> Floats:
@@ -205,7 +213,7 @@ def solve(
     outside = rod.law.outside(strains, level.pressure)
     if outside:
         raise NoEquilibriumError(outside)
-    return State(shape, level, at, iteration, unstable_modes(rod.tangent(shape, level)))
+    return State.at(rod, shape, level, at, iteration)
 
 
 class _Search:

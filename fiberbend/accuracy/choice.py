@@ -156,9 +156,10 @@ def problems(case: Case) -> Iterator[Objection]:
     named = MODELS.get(case.model)
     if named is not None and named.elements() is None:
         able = [name for name, model in MODELS.items() if model.elements() is not None]
+        what = "a closed form" if named.line else f"model {named.name}"
         yield (
             "accuracy",
-            f"{given}, but a closed form has no known error: expected model auto, "
+            f"{given}, but {what} has no known error: expected model auto, "
             f"{', '.join(able[:-1])} or {able[-1]}",
         )
 

@@ -12,7 +12,7 @@ from fiberbend import columns as col
 from fiberbend.answer.numbers import quantity
 
 BAND = 0.02
-"""Part of the change of the angle within which it has settled: 2 %, as control engineers have it."""
+"""Part of the change of the angle within which it has settled, as control engineers have it."""
 ENTRY = "motion"
 """Of run.json."""
 

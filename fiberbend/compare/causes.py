@@ -87,7 +87,7 @@ def find_causes(
     if other.name != "section":
         found = _of_closed_form(case, model, row, curves[other.line], curves)
         return [*_ends(model, row, other), *found]
-    if model.elements() is None:
+    if model.line:
         seen = {col.ANGLE: row[col.ANGLE], col.PRESSURE: value}
         found = _of_closed_form(case, model, seen, curves[lines.ZERO_FIT], curves)
         return [cause.reversed() for cause in found]

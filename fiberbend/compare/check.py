@@ -178,7 +178,7 @@ def crosscheck(
             index, percent = worst
             where = f"{at[index]:.1f}{' kPa' if blocked else '°'}"
             limit, causes = None, []
-            if not alone and not (other.line and model.elements() is None):
+            if not alone and not (other.line and model.line):
                 limit = _limit(case, model, other, blocked)
                 causes = find_causes(case, model, rows[index], other, float(values[index]))
             comparisons.append(

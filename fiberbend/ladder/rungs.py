@@ -235,6 +235,8 @@ def _rungs(
     model = MODELS[family.model]
     elements = model.elements()
     others = [rung.family for rung in before]
+    if model.slender() is not None:
+        raise _LeftOutError("a rod lacks what ends do, and no finer mesh of it shows how much")
     if elements is None:
         if any(other.model == family.model for other in others):
             raise _LeftOutError("a closed form has no turns: the same as the rung before")

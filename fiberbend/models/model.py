@@ -93,8 +93,6 @@ class ModelKind(ABC):
     """Groups of columns of history.csv, see `fiberbend.columns`; others are refused."""
     line: ClassVar[str] = ""
     """Where it has no elements: its name among `fiberbend.models.closed_form.analytic_curves`."""
-    slender: ClassVar[bool] = False
-    """It is a rod by the law of its section, without elements of its own."""
     ends: ClassVar[bool] = False
     """It has the caps, and the bend near them."""
     gives_blocked_force: ClassVar[bool] = False
@@ -110,7 +108,11 @@ class ModelKind(ABC):
     """Seconds to write the fields of a state."""
 
     def elements(self) -> MeshedModel | None:
-        """The model where it is one of finite elements; None for a closed form."""
+        """The model where it is one of finite elements; None for a closed form or a rod."""
+        return None
+
+    def slender(self) -> SlenderModel | None:
+        """The model where it is a rod by the law of its section; None of others."""
         return None
 
     # --- what it supports ----------------------------------------------------------------------
@@ -225,6 +227,31 @@ class ModelKind(ABC):
     def errors_of_zones(self) -> Iterator[str]:
         """How far zones beside each other are expected to be off, with the source."""
         yield from ()
+
+
+class SlenderModel(ModelKind):
+    """A model of a rod: pieces along a line, by laws of their sections."""
+
+    turn: ClassVar[float]
+    """Greatest change of the angle in a step, rad."""
+    pieces: ClassVar[int]
+    """Between the caps, of equal lengths."""
+    cap_pieces: ClassVar[int]
+    """In each cap."""
+    step_s: ClassVar[float]
+    """Seconds a step."""
+
+    def slender(self) -> SlenderModel:
+        """The model itself."""
+        return self
+
+    @abstractmethod
+    def unknowns(self, case: Case) -> int:
+        """Strains of all pieces."""
+
+    @abstractmethod
+    def law_seconds(self, case: Case) -> float:
+        """Seconds for the law of its section where no table of it is kept yet."""
 
 
 class MeshedModel(ModelKind):

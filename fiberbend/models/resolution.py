@@ -58,7 +58,7 @@ def _within(pitch: float) -> str:
 def lost_pressure(case: Case, model: ModelKind) -> Iterator[str]:
     """What a model does not see of the rubber between the turns, in words."""
     turns = case.turns
-    if turns is None or case.inflation is None or case.straight or not model.elements():
+    if turns is None or case.inflation is None or case.straight or model.line:
         return
     if turns.pitch is None:
         if model.resolved_bulging(case) < 1:

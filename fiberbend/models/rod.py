@@ -11,23 +11,34 @@ from fiberbend.columns import MIDDLE, SOLVED, TIMED
 from fiberbend.effects.effect import CHAMBER, SIDE, THREAD, TURNS, TWIST, WOUND
 from fiberbend.effects.records import LINE, MOTION
 from fiberbend.models.ends import AT_ENDS
-from fiberbend.models.model import ModelKind, Objection
+from fiberbend.models.model import ModelKind, Objection, SlenderModel
+
+_SECTION_S, _CELL_S = 25.0, 200.0
+"""Seconds for the table of a section and of a cell, of the baseline (`fiberbend table`)."""
 
 
-class Rod(ModelKind):
+class Rod(SlenderModel):
     """A geometrically exact rod: a uniform bend anew in every piece, under weights and loads."""
 
     name = "rod"
     offers = frozenset({CHAMBER, WOUND, THREAD, TURNS, TWIST, SIDE, LINE, MOTION})
     fills = ModelKind.fills | {MIDDLE, SOLVED, TIMED}
-    slender = True
+    ends = True
     agreement = 0.5
-    start_s = 5.0
+    start_s = 4.0
     pictures_s = (5.0, 1.0)
     turn = math.radians(10)
-    """Greatest change of the angle in a step, rad: a step takes milliseconds."""
-    law_s = 20.0
-    """Seconds that the law of a section takes where no table of it is kept yet; of a cell more."""
+    pieces, cap_pieces = 48, 4
+    step_s = 0.02
+
+    def unknowns(self, case: Case) -> int:
+        """A stretch and a curvature each."""
+        return 2 * (self.pieces + 2 * self.cap_pieces)
+
+    def law_seconds(self, case: Case) -> float:
+        """Of a cell more than of a section."""
+        turns = case.turns
+        return _CELL_S if turns is not None and turns.discrete else _SECTION_S
 
     def limits(self, case: Case) -> Iterator[Objection]:
         """No law of its section reaches there."""
@@ -42,19 +53,19 @@ class Rod(ModelKind):
                 yield f"{path}.volume", text
             if own is not None and ((own.to or 0.0) < 0 or (own.angle or 0.0) < 0):
                 yield path, "the law of a section is of pressures above zero, and no vacuum"
-        symmetry = Symmetry.of(case.acting)
-        if not symmetry.across and not self._wound_alike(case):
-            yield "effects", "its law is of stretch and curvature, and its winding twists it"
+        wound, symmetry = self._wound(case), Symmetry.of(case.acting)
+        if not wound.plane:
+            yield "effects", f"the law of its section is of stretch and curvature: {wound.words()}"
         elif symmetry.across:
             reasons = "; ".join(symmetry.across)
-            yield "effects", f"its law is of bending in the plane x = 0: {reasons}"
+            yield "effects", f"the law of its section is of bending in the plane x = 0: {reasons}"
         if case.output.fields and "fields" in case.output.model_fields_set:
             yield "output.fields", "a rod has no fields: its sections are known by their law alone"
 
-    def _wound_alike(self, case: Case) -> bool:
-        """Whether its section has both mirror planes."""
+    def _wound(self, case: Case) -> Symmetry:
+        """Symmetry of its section."""
         beside = (effect.beside() for effect in case.effects)
-        return Symmetry.of([effect for effect in beside if effect is not None]).plane
+        return Symmetry.of([effect for effect in beside if effect is not None])
 
     def leaves_out(self, case: Case) -> Iterator[Objection]:
         """How sections near the caps differ from others."""
@@ -75,6 +86,11 @@ class Rod(ModelKind):
             "mesh": case.mesh.model_fields_set,
             "solver": case.solver.model_fields_set - steps,
         }
+
+    def resolved_bulging(self, case: Case) -> float:
+        """That of the section or the cell whose law it has."""
+        turns = case.turns
+        return 1.0 if turns is not None and (turns.discrete or turns.bulges) else 0.0
 
     def errors(self, case: Case) -> Iterator[str]:
         """Ends, and the law."""

@@ -67,7 +67,7 @@ def _winding(case: Case, model: ModelKind) -> Iterator[str]:
             yield from (f"zone {place}: {line}" for line in _winding(zone, model))
         return
     turns = case.turns
-    if turns is None or model.elements() is None:
+    if turns is None or model.line:
         return
     remark = winding_remark(case)
     if remark is not None and remark.startswith("NOT"):

@@ -13,7 +13,7 @@ from fiberbend.case.section_beside import section_guides
 from fiberbend.case.symmetry import stays_straight
 from fiberbend.models import lines
 from fiberbend.models.costs.price import machine
-from fiberbend.models.model import MeshedModel, ModelKind, ProblemSize
+from fiberbend.models.model import MeshedModel, ModelKind, ProblemSize, SlenderModel
 from fiberbend.plan.memory import RANK_MB, Room, gigabytes, needed_mb, room
 from machine.folders import MachineError, cache_root
 
@@ -170,6 +170,18 @@ def steps_of(case: Case, model: MeshedModel) -> int | None:
         first, growth = case.solver.max_turn or model.guided_first, model.guided_growth
     counted = count_steps(min(turn, first), turn, goals, growth)
     return steps + max(least, counted + len(output.at_pressures))
+
+
+def steps_of_rod(case: Case, model: SlenderModel) -> int | None:
+    """Load steps of a rod, or None where the angle at its end cannot be predicted."""
+    end = expected_angle(case)
+    others = [effect.steps() for effect in case.effects]
+    if end is None or None in others:
+        return None
+    steps = sum(count for count in others if count is not None)
+    output, turn = case.output, case.solver.max_turn or model.turn
+    goals = [abs(angle) for angle in output.at_angles if 0 < angle / end < 1]
+    return steps + count_steps(turn, turn, [*goals, abs(end)]) + len(output.at_pressures)
 
 
 def count_steps(first: float, most: float, goals: list[float], growth: float = _GROWTH) -> int:

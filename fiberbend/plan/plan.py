@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import textwrap
 from collections.abc import Iterator
 
@@ -14,7 +15,7 @@ from fiberbend.case.case import Case
 from fiberbend.case.symmetry import twists
 from fiberbend.case.zones import words
 from fiberbend.models.choice import MODELS, choose_model, objection
-from fiberbend.models.model import MeshedModel, ModelKind
+from fiberbend.models.model import MeshedModel, ModelKind, SlenderModel
 from fiberbend.models.resolution import winding_remark
 from fiberbend.notebook import blocks
 from fiberbend.plan.doubts import doubts, errors
@@ -108,6 +109,9 @@ def make_plan(case: Case) -> Plan:
         tail["winding"] = found
     if found := doubts(case):
         tail["warnings"] = found
+    rod = model.slender()
+    if rod is not None:
+        return _rod(case, rod, head, tail)
     elements = model.elements()
     if elements is None:
         return Plan(model.name, _rows(head | _closed_form(case, model) | tail))
@@ -140,6 +144,41 @@ def _finite_elements(
         "" if short is None else f"memory: {short}",
         None if cost.iterative else cost.seconds(),
         cost.memory_mb,
+    )
+
+
+def _rod(
+    case: Case, model: SlenderModel, head: dict[str, list[str]], tail: dict[str, list[str]]
+) -> Plan:
+    from fiberbend.plan.estimate import drawing_seconds, steps_of_rod
+    from fiberbend.plan.memory import gigabytes, needed_mb
+
+    steps, unknowns = steps_of_rod(case, model), model.unknowns(case)
+    pieces = f"{model.pieces} between the caps, {model.cap_pieces} in each"
+    each = f"at most {math.degrees(case.solver.max_turn or model.turn):.3g}° each"
+    seconds = None if steps is None else model.start_s + steps * model.step_s
+    time = f"{1e3 * model.step_s:g} ms a step"
+    if seconds is not None:
+        time = f"about {seconds:.2g} s"
+    law = f"about {model.law_seconds(case):g} s more if the law of its section is not kept yet"
+    drawing = drawing_seconds(case, model)
+    memory = needed_mb(case)
+    body = {
+        "pieces": [pieces],
+        "unknowns": [str(unknowns)],
+        "steps": [each if steps is None else f"about {steps}, {each}"],
+        "time": [f"{time}; an estimate", law],
+        "memory": [f"about {gigabytes(memory)}"],
+    }
+    if drawing:
+        body["time"].append(f"about {drawing:.2g} s more for pictures")
+    return Plan(
+        model.name,
+        _rows(head | body | tail),
+        unknowns=unknowns,
+        steps=steps,
+        seconds=seconds,
+        memory_mb=memory,
     )
 
 

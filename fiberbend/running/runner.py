@@ -126,10 +126,11 @@ def _solve(
 ) -> RunResult:
     kind = choose_model(case)[0]
     model = kind.elements()
-    if kind.slender:
+    rod = kind.slender()
+    if rod is not None:
         from fiberbend.running.slender.run import run_rod
 
-        return run_rod(case, kind, folder, progress, comm, own, scratch)
+        return run_rod(case, rod, folder, progress, comm, own, scratch)
     if model is None:
         from fiberbend.running.analytic import run_analytic
 

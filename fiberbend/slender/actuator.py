@@ -10,6 +10,7 @@ import numpy as np
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.effects.records import RodRamp, RodSite
+from fiberbend.models.rod import MODEL
 from fiberbend.slender.laws import SectionLaw, cap_law, masses, section_law
 from fiberbend.slender.moments import section_of
 from rod.functions import Floats
@@ -19,7 +20,7 @@ from rod.layout import Layout
 from rod.rod import Level, Rod
 from rod.shape import Shape
 
-PIECES, CAP_PIECES = 48, 4
+PIECES, CAP_PIECES = MODEL.pieces, MODEL.cap_pieces
 """Of the chamber and of each cap. Under its weight the baseline's angle and tip are those of twice
 as many to 1e-4."""
 PLANE = ("stretch", "curvature")

@@ -12,7 +12,16 @@ from fem.march.records import Critical, Report
 from fiberbend.effects.records import Requests, RodRamp
 from fiberbend.slender.actuator import Slender
 from rod.functions import Floats
-from rod.statics import Angle, Held, NoEquilibriumError, Path, State, Volume, solve, way
+from rod.statics import (
+    Angle,
+    Held,
+    NoEquilibriumError,
+    Path,
+    State,
+    Volume,
+    solve,
+    way,
+)
 
 PRESSURE = "pressure"
 BEYOND = 4.0
@@ -99,9 +108,9 @@ class Course:
         self.tells = all(term.conservative for term in self._rod.terms)
         self.report = Report()
         self.number, self.begin = 0, 0.0
-        rest = self._rod.layout.at_rest()
-        state = solve(self._rod, rest, self._path({}, ""), 0.0)
-        self.points = [self._point(state, {})]
+        # as it is made, whatever its law says of that to its last digits
+        shape, level = self._rod.shape(self._rod.layout.at_rest()), slender.level({})
+        self.points = [self._point(State.at(self._rod, shape, level, 0.0, 0), {})]
 
     def run(self) -> Report:
         """Go through all loads; the report says how far it came."""
@@ -141,9 +150,6 @@ class Course:
 
     def _path(self, values: Mapping[str, float], load: str) -> Path:
         """By the value of a load as its share, others as they are."""
-        if not load:
-            level = self._slender.level(values)
-            return Path(level, level)
         none, one = ({**values, load: amount} for amount in (0.0, 1.0))
         return Path(self._slender.level(none), self._slender.level(one))
 
@@ -159,7 +165,8 @@ class Course:
         report.factorisations += point.iterations
         report.per_step.append(point.iterations)
         self.points.append(point)
-        for goal in self._requests.at_angles:
+        stop = self._requests.stop_at_angle
+        for goal in dict.fromkeys((*self._requests.at_angles, *([] if stop is None else [stop]))):
             if abs(point.angle - goal) <= _SAME * max(1.0, abs(goal)):
                 report.hits.append((report.steps, goal))
         count = len(self._slender.ramps)
@@ -178,6 +185,7 @@ class _Drive:
         self._path = course._path(self._base, ramp.load)
         self._size = math.inf
         self._s = begin
+        self._before: tuple[float, Floats] | None = None
         self._largest = math.inf
         if held is None and ramp.load == PRESSURE:
             largest, first = course._requests.largest, course._requests.first
@@ -203,7 +211,7 @@ class _Drive:
             step = math.copysign(size, goal - self._s)
             s = goal if size == left else self._s + step
             try:
-                new = self._solve(s, point.state.strains + step * ahead, share, step)
+                new = self._solve(s, self._foreseen(point, ahead, step), share, step)
             except NoEquilibriumError as error:
                 cutbacks += 1
                 self._course.report.cutbacks += 1
@@ -211,6 +219,7 @@ class _Drive:
                 if cutbacks > limits.cutbacks or self._size < 1e-9 * total:
                     return self._fail(str(error))
                 continue
+            self._before = self._s, ahead
             cutbacks, self._size = 0, max(_GROW * size, self._size if size == left else 0.0)
             self._accept(point, new, s)
         return True
@@ -224,7 +233,7 @@ class _Drive:
         shape = point.state.shape
         try:
             by_load = -np.linalg.solve(
-                rod.tangent(shape, level), rod.growth(shape, level, change).ravel()
+                point.state.tangent, rod.growth(shape, level, change).ravel()
             ).reshape(rod.layout.shape)
         except np.linalg.LinAlgError:
             raise NoEquilibriumError("the tangent is singular") from None
@@ -236,6 +245,14 @@ class _Drive:
             text = f"the {self._ramp.load} does not change what is given: {self._words()}"
             raise NoEquilibriumError(text)
         return by_load / rate, (q, 1.0 / rate)
+
+    def _foreseen(self, point: Point, ahead: Floats, step: float) -> Floats:
+        """Strains a step further, by the slope and how that has changed in the last step."""
+        strains: Floats = point.state.strains + step * ahead
+        if self._before is not None and self._s != self._before[0]:
+            last, slope = self._before
+            strains = strains + step**2 / 2 * (ahead - slope) / (self._s - last)
+        return strains
 
     def _words(self) -> str:
         return {"conjugate": "the volume", "control": "the angle"}.get(self._ramp.drive, "")

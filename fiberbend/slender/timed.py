@@ -89,7 +89,7 @@ def timed(case: Case, slender: Slender) -> Timed:
     if air is None:
         corners = _corners(time.pressure)
     begin = 0.0 if time.pressure.given is None else time.pressure.given.at(0.0)
-    start = _equilibrium(slender, begin)
+    start = equilibrium(slender, begin)
     level = _level(slender, time.pressure)
     motion = Motion(
         slender.rod,
@@ -156,8 +156,12 @@ def _air(plant: PlantSpec | None, slender: Slender) -> tuple[ValveAir | None, li
     return air, air.corners
 
 
-def _equilibrium(slender: Slender, pressure: float) -> Point:
+def equilibrium(slender: Slender, pressure: float) -> Point:
     """The state at rest under all loads and a pressure.
+
+    Args:
+        slender: the rod.
+        pressure: in MPa.
 
     Raises:
         fiberbend.schema.problems.CaseError: there is none.
@@ -184,7 +188,7 @@ def rest_angle(timed: Timed, pressure: float) -> float | None:
         pressure: in MPa.
     """
     try:
-        found = _equilibrium(timed.slender, pressure)
+        found = equilibrium(timed.slender, pressure)
     except CaseError:
         return None
     return math.degrees(found.angle)

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from fiberbend.case.case import Case
 from fiberbend.models.choice import choose_model
 from fiberbend.models.costs.price import machine
-from fiberbend.plan.estimate import cold, drawing_seconds, steps_of
+from fiberbend.plan.estimate import cold, drawing_seconds, steps_of, steps_of_rod
 from fiberbend.plan.memory import gigabytes, needed_mb, room
 from fiberbend.schema.units import show
 from fiberbend.sweep.fields import shown
@@ -19,6 +19,8 @@ from fiberbend.sweep.table import aligned
 IMPORTS_S = 0.6
 """Seconds of a model's start that a process spends once, on imports."""
 _CLOSED_FORM_S = 0.05
+_ROD_S = 0.3
+"""Beside its steps, where the law of its section is kept."""
 
 
 def lines(sweep: Sweep, store: Store, jobs: int) -> Iterator[str]:
@@ -84,6 +86,10 @@ def _seconds(case: Case) -> float | None:
     model = choose_model(case)[0]
     elements = model.elements()
     drawing = drawing_seconds(case, model)
+    rod = model.slender()
+    if rod is not None:
+        steps = steps_of_rod(case, rod)
+        return None if steps is None else _ROD_S + steps * rod.step_s + drawing
     if elements is None:
         return _CLOSED_FORM_S + drawing
     steps = steps_of(case, elements)

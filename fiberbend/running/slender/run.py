@@ -14,9 +14,8 @@ from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.measured import read_measured
 from fiberbend.compare.check import Check, crosscheck
-from fiberbend.models.model import ModelKind
+from fiberbend.models.model import SlenderModel
 from fiberbend.models.result import Curve, RunResult
-from fiberbend.models.rod import MODEL
 from fiberbend.plan.doubts import doubts
 from fiberbend.process import signals
 from fiberbend.process.signals import stop_of
@@ -40,7 +39,7 @@ from fiberbend.states.snapshot import Snapshot
 
 def run_rod(
     case: Case,
-    model: ModelKind,
+    model: SlenderModel,
     folder: RunFolder | None,
     progress: Progress,
     comm: Any,
@@ -86,7 +85,7 @@ class _RodRun:
     def __init__(
         self,
         case: Case,
-        model: ModelKind,
+        model: SlenderModel,
         folder: RunFolder | None,
         progress: Progress,
         ranks: int,
@@ -141,7 +140,7 @@ class _RodRun:
 
     def _course(self, rod: Slender) -> Course:
         case = self.case
-        turn = case.solver.max_turn or MODEL.turn
+        turn = case.solver.max_turn or self.model.turn
         inflated = [n for n, ramp in enumerate(rod.ramps) if ramp.load == "pressure"]
         limits = Limits(turn, case.solver.max_cutbacks)
         first = min(inflated, default=0)

@@ -1,0 +1,91 @@
+"""What a rod cannot have is refused by name, and nothing is left out in silence."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from fiberbend.case.case import Case
+from fiberbend.models.choice import MODELS, choose_model, objection
+from fiberbend.plan.plan import make_plan
+from fiberbend.reader.reader import parse_case
+from fiberbend.schema.problems import CaseError
+from tests.slender.rods import QUIET, RUBBER, WOUND, case, spec
+
+PRESSED = {"pressure": {"to": "20 kPa"}}
+
+
+@pytest.mark.parametrize(
+    ("effects", "changes", "line"),
+    [
+        ([PRESSED, {"straight": {}}], {}, "effects.1.straight: model rod does not support it"),
+        ([{"hold": {"bend": "10 deg"}}], {}, "effects.0.hold: model rod does not support it"),
+        ([PRESSED, {"blocked-tip": {}}], {}, "effects.1.blocked-tip: model rod does not"),
+        ([{"pressure": {"volume": "9 ml"}}], {}, "effects.0.pressure.volume: model rod does not"),
+        ([{"pressure": {"to": "-5 kPa"}}], {}, "of pressures above zero, and no vacuum"),
+        ([{"gravity": {"direction": "-y"}}], {}, "expected effect pressure with one"),
+        ([{"gravity": {"direction": "+x"}}, PRESSED], {}, "bending in the plane x = 0: gravity"),
+        (
+            [PRESSED, {"tip-load": {"moment": ["0 N mm", "1 N mm", "0 N mm"]}}],
+            {},
+            "bending in the plane x = 0: a tip moment about y or z",
+        ),
+        ([PRESSED], {"output": QUIET | {"fields": True}}, "output.fields: model rod does not"),
+        ([PRESSED], {"accuracy": "1 %"}, "but model rod has no known error"),
+        (
+            [PRESSED],
+            {"zones": [{"length": "50 mm", "floor": RUBBER}, {"length": "50 mm"}]},
+            "zones: model rod does not support it",
+        ),
+    ],
+)
+def test_what_it_cannot_have_is_refused_by_name(
+    effects: list[dict[str, Any]], changes: dict[str, Any], line: str
+) -> None:
+    with pytest.raises(CaseError) as refused:
+        case(*effects, **changes)
+    assert line in str(refused.value)
+
+
+def test_a_winding_with_a_hand_is_refused() -> None:
+    wound = WOUND | {"pattern": "single-helix-left"}
+    with pytest.raises(CaseError, match="is of stretch and curvature: half a turn about y"):
+        parse_case(spec() | {"effects": [PRESSED, {"winding": wound}]})
+
+
+def test_one_line_makes_a_body_of_it() -> None:
+    """Mesh and solver of the body are of no use to the rod, and `plan` says so."""
+    given = {
+        "mesh": {"axial": "8 mm", "section": 1},
+        "solver": {"tolerance": 1e-9, "max_turn": "5 deg"},
+    }
+    weight = {"gravity": {"direction": "-y"}}
+    rod, body = (case(weight, PRESSED, model=name, **given) for name in ("rod", "body"))
+    assert choose_model(rod)[0].name == "rod"
+    assert choose_model(body)[0].name == "body"
+    text = " ".join(make_plan(rod).lines())
+    assert "mesh.axial, mesh.section, solver.tolerance" in text
+    assert "solver.max_turn" not in text
+
+
+def test_the_plan_tells_steps_and_time() -> None:
+    plan = make_plan(case({"pressure": {"angle": "90 deg"}}))
+    assert plan.model == "rod"
+    assert plan.unknowns == 112
+    assert plan.steps == 9
+    assert plan.seconds is not None
+    assert plan.seconds < 10
+
+
+def auto(*effects: dict[str, Any]) -> Case:
+    return case(*effects, model="auto")
+
+
+def test_auto_does_not_take_it() -> None:
+    weighed = auto({"gravity": {"direction": "-y"}}, PRESSED)
+    assert choose_model(weighed)[0].name == "body"
+    found = objection(weighed, MODELS["rod"])
+    assert found is not None
+    assert found[0] == "actuator.cap"
+    assert list(MODELS["rod"].refuses(weighed)) == []
