@@ -45,8 +45,9 @@ def plot_modes(
     _frequencies(left, pressures, frequencies)
     ends = [0] if len(lines) == 1 else [0, len(lines) - 1]
     for number, end in enumerate(ends):
-        axes = page.add_axes((0.43 + 0.29 * number, 0.12, 0.26, 0.74))
+        axes = page.add_axes((0.43 + 0.29 * number, 0.12, 0.25, 0.74))
         _lines(axes, lines[end], moved[end][:_SHOWN], frequencies[end])
+        axes.set_ylabel("" if number else "y (mm)", fontsize=13)
         axes.set_title(f"at {pressures[end]:.4g} kPa", fontsize=13)
     save(page, target)
 
@@ -80,7 +81,6 @@ def _lines(axes: Any, line: Floats, moved: Floats, frequencies: Floats) -> None:
             )
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("z (mm)", fontsize=13)
-    axes.set_ylabel("y (mm)", fontsize=13)
     axes.legend(fontsize=11, framealpha=0.85, edgecolor="none", loc="best")
     _look(axes)
 

@@ -44,14 +44,14 @@ class ValveAir:
         """When the valves move, s."""
         return [time for time, _ in self._moves]
 
-    def command(self, time: float, valves: Valves) -> None:
-        """One more command, later than all others.
+    def move(self, time: float, valves: Valves) -> None:
+        """Move the valves now, whatever was commanded.
 
         Args:
-            time: at which they move, s; the dead time is over.
-            valves: from then on.
+            time: of now, s; the dead time is over.
+            valves: from now on.
         """
-        self._moves.append((time, valves))
+        self._moves = [(time, valves)]
 
     def valves(self, time: float) -> Valves:
         """Which one is open at a time in s."""
