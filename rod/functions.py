@@ -29,7 +29,7 @@ _TERMS = 13
 """Of the series of c_6 and c_7 at s = 4: the next one is below 1e-23."""
 _NEAR = ((1e-3, 6), (0.05, 8), (0.5, 11))
 """Greatest s, and terms of all series that leave less than 1e-18 of c_0 out."""
-_SERIES = np.array(
+_SERIES: Floats = np.array(
     [[(-1) ** j / math.factorial(2 * j + k) for j in range(_NEAR[-1][1])] for k in range(ORDER)]
 )
 _EYE = np.eye(3)
@@ -78,7 +78,8 @@ def stumpff(s: Floats) -> Floats:
         if greatest <= bound:
             # one product of matrices: numpy needs a microsecond for every call
             powers = np.vander(s.ravel(), terms, increasing=True).T
-            return (_SERIES[:, :terms] @ powers).reshape(ORDER, *s.shape)
+            out: Floats = np.matmul(_SERIES[:, :terms], powers).reshape(ORDER, *s.shape)
+            return out
     c = np.empty((ORDER, *s.shape))
     near = s if greatest <= _SMALL else np.minimum(s, _SMALL)
     for k in (ORDER - 2, ORDER - 1):

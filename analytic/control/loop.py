@@ -185,7 +185,7 @@ def simulate(
     controller: Controller,
     reference: Reference,
     sensor: Sensor,
-    moving: Controlled | None = None,
+    inert: Controlled | None = None,
 ) -> Trace:
     """Run the loop from rest at the reference's lower angle, as the filter sees it.
 
@@ -198,13 +198,13 @@ def simulate(
         controller: commands the valves.
         reference: θ_d over time.
         sensor: noise of the measured pressure.
-        moving: what is controlled in place of it: the same actuator with its inertia.
+        inert: what is controlled in place of it: the same actuator with its inertia.
 
     Raises:
         ValueError: what `check` refuses, or a pressure beyond the plant's curve.
     """
     check(plant, angle_filter, controller, reference)
-    controlled: Controlled = plant if moving is None else moving
+    controlled: Controlled = plant if inert is None else inert
     controlled.restart(angle_filter.pressure(reference.levels[0]))
     random = np.random.default_rng(sensor.seed)
     count = math.ceil(reference.duration * controller.rate - 1e-9)

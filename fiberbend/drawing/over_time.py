@@ -98,9 +98,9 @@ def plot_over_time(
 
 
 def _energies(axes: Any, rows: Sequence[Mapping[str, Any]], time: Floats) -> None:
-    known = [(whole_rows(rows, (key,))[0], *how) for key, *how in _ENERGIES]
-    most = max(float(np.abs(values).max()) for values, *_ in known)
-    for values, name, color, line in known:
+    known = [whole_rows(rows, (key,))[0] for key, *_ in _ENERGIES]
+    most = max(float(np.abs(values).max()) for values in known)
+    for values, (_, name, color, line) in zip(known, _ENERGIES, strict=True):
         if np.abs(values).max() > _SEEN * most:
             axes.plot(time, values, line, color=color, linewidth=1.5, label=name)
     axes.axhline(0.0, color=_GRAY, linewidth=0.8)

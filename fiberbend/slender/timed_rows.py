@@ -37,7 +37,9 @@ class TimedRows:
         pairs = zip(slender.loads, level.amounts, strict=True)
         values = {name: amount for name, amount in pairs if name} | {PRESSURE: moving.pressure}
         angle = float(np.sum(slender.weights() * moving.strains))
-        state = State(moving.shape, slender.level(values), 0.0, moving.iterations, 0)
+        state = State(
+            moving.shape, slender.level(values), 0.0, moving.iterations, 0, np.empty((0, 0))
+        )
         return Point(state, values, angle, moving.iterations)
 
     def row(self, step: int, moving: Moving) -> dict[str, Any]:
