@@ -110,6 +110,11 @@ class Actuator(abc.ABC):
         return self.closed_forms()
 
     @property
+    def alike_around(self) -> bool:
+        """Every line through the section's centre is an axis of its symmetry."""
+        return False
+
+    @property
     def wall_above_floor(self) -> float:
         """Thickness in mm of the wall between the chamber and a floor that is part of the wall."""
         return 0.0

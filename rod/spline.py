@@ -8,12 +8,18 @@ Practical Guide to Splines, doi 10.1007/978-1-4612-6333-3).
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
+from scipy.linalg import solve_triangular
 
 from rod.functions import Floats
+
+_SINGULAR = 1e-11
+"""Part of the greatest pivot below which a coefficient is not determined."""
 
 
 class Axis:
@@ -115,29 +121,37 @@ class Samples:
         points: x, (n, d).
         values: f, (n,).
         slopes: ∂f/∂x, (n, d).
+        second: ∂²f/∂x², (n, d, d); None: not known.
     """
 
     points: Floats
     values: Floats
     slopes: Floats
+    second: Floats | None = None
 
     def joined(self, more: Samples) -> Samples:
-        """With others behind."""
+        """With others behind; of none it is those."""
+        if not len(self.values):
+            return more
+        second = None
+        if self.second is not None and more.second is not None:
+            second = np.concatenate([self.second, more.second])
         return Samples(
             np.concatenate([self.points, more.points]),
             np.concatenate([self.values, more.values]),
             np.concatenate([self.slopes, more.slopes]),
+            second,
         )
 
 
 def fitted(axes: tuple[Axis, ...], samples: Samples) -> Floats:
-    """Coefficients of the product splines by least squares of values and slopes.
+    """Coefficients of the product splines by least squares of values, slopes, second derivatives.
 
-    Slopes count by the range of their axis, so that units do not matter.
+    Derivatives count by the ranges of their axes, so that units do not matter.
 
     Args:
         axes: of every variable.
-        samples: values and slopes.
+        samples: values and slopes, and what is known of second derivatives.
 
     Returns:
         Coefficients, (count, ...), an axis for each variable.
@@ -145,22 +159,77 @@ def fitted(axes: tuple[Axis, ...], samples: Samples) -> Floats:
     Raises:
         ValueError: the points do not determine them.
     """
-    n, shape = len(samples.points), tuple(axis.count for axis in axes)
-    found = [axis.basis(x) for axis, x in zip(axes, samples.points.T, strict=True)]
-    rows, aims = [], []
-    for slope in range(-1, len(axes)):
-        scale = 1.0 if slope < 0 else float(np.ptp(axes[slope].lines))
+    count, shape = len(axes), tuple(axis.count for axis in axes)
+    orders: list[tuple[int, ...]] = [(), *((i,) for i in range(count))]
+    aims = [samples.values, *samples.slopes.T]
+    if samples.second is not None:
+        pairs = list(itertools.combinations_with_replacement(range(count), 2))
+        orders += pairs
+        aims += [samples.second[:, i, j] for i, j in pairs]
+    spans = [float(np.ptp(axis.lines)) for axis in axes]
+    scales = [math.prod(spans[i] for i in order) for order in orders]
+    matrix = np.concatenate(
+        [
+            scale * rows
+            for scale, rows in zip(scales, _rows(axes, samples.points, orders), strict=True)
+        ]
+    )
+    aim = np.concatenate([scale * each for scale, each in zip(scales, aims, strict=True)])
+    return _solved(matrix, aim, len(samples.points)).reshape(shape)
+
+
+def fitted_values(axes: tuple[Axis, ...], points: Floats, values: Floats) -> Floats:
+    """Coefficients of the product splines by least squares of values alone.
+
+    Args:
+        axes: of every variable.
+        points: (n, d).
+        values: of several functions there, (n, k).
+
+    Returns:
+        Coefficients, (k, count, ...), an axis for each variable behind the functions.
+
+    Raises:
+        ValueError: the points do not determine them.
+    """
+    (rows,) = _rows(axes, points, [()])
+    found = _solved(rows, values, len(points))
+    return found.T.reshape(-1, *(axis.count for axis in axes))
+
+
+def _solved(matrix: Floats, aim: Floats, points: int) -> Floats:
+    """Least squares, whose columns are made equally long: splines at the ends reach few points."""
+    lengths = np.sqrt(np.sum(matrix**2, axis=0))
+    if len(matrix) >= len(lengths) and lengths.all():
+        q, r = np.linalg.qr(matrix / lengths)
+        pivots = np.abs(np.diag(r))
+        if pivots.min() > _SINGULAR * pivots.max():
+            found: Floats = (solve_triangular(r, q.T @ aim).T / lengths).T
+            return found
+    raise ValueError(f"{points} points do not determine {len(lengths)} coefficients")
+
+
+def _rows(
+    axes: tuple[Axis, ...], points: Floats, orders: Sequence[tuple[int, ...]]
+) -> Iterator[Floats]:
+    """Derivatives of all product splines at points, (n, coefficients), one by one.
+
+    Args:
+        axes: of every variable.
+        points: (n, d).
+        orders: numbers of the variables by which to derive.
+    """
+    n, found = len(points), []
+    for axis, x in zip(axes, points.T, strict=True):
+        first, basis = axis.basis(x)
+        full = np.zeros((3, n, axis.count))
+        places = first[:, None] + np.arange(axis.degree + 1)
+        for times in range(3):
+            np.put_along_axis(full[times], places, basis[times], axis=1)
+        found.append(full)
+    for order in orders:
         block = np.ones((n, 1))
-        for number, (axis, (first, basis)) in enumerate(zip(axes, found, strict=True)):
-            part = np.zeros((n, axis.count))
-            places = first[:, None] + np.arange(axis.degree + 1)
-            np.put_along_axis(part, places, basis[int(number == slope)], axis=1)
+        for number, full in enumerate(found):
+            part = full[order.count(number)]
             block = (block[:, :, None] * part[:, None, :]).reshape(n, -1)
-        rows.append(scale * block)
-        aims.append(samples.values if slope < 0 else scale * samples.slopes[:, slope])
-    matrix = np.concatenate(rows)
-    solution, _, rank, _ = np.linalg.lstsq(matrix, np.concatenate(aims), rcond=1e-12)
-    if rank < matrix.shape[1]:
-        raise ValueError(f"{n} points do not determine {matrix.shape[1]} coefficients")
-    out: Floats = solution.reshape(shape)
-    return out
+        yield block

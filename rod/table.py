@@ -16,10 +16,13 @@ import numpy as np
 from rod.functions import Floats
 from rod.spline import Axis, Samples, fitted
 
-Sample = Callable[[Floats], tuple[Floats, Floats]]
-"""Of points (ε, P), (n, m + 1), gives Φ, (n,), and ∂Φ by strains and pressure, (n, m + 1)."""
-DEGREE, PRESSURE_DEGREE = 4, 3
-"""Of the splines: three and two continuous derivatives."""
+Sample = Callable[[Floats], tuple[Floats, Floats] | tuple[Floats, Floats, Floats]]
+"""Of points (ε, P), (n, m + 1), gives Φ, (n,), ∂Φ by strains and pressure, (n, m + 1), and, where
+it is known, ∂²Φ, (n, m + 1, m + 1)."""
+Sizes = Callable[[Samples], Floats]
+"""Of samples gives what the errors of their slopes are measured by, (n, m + 1)."""
+DEGREE, PRESSURE_DEGREE, HIGH_DEGREE = 4, 3, 5
+"""Of the splines: three and two continuous derivatives; of all where ∂²Φ is known."""
 INTERVALS, PRESSURE_INTERVALS = 3, 1
 """At first: fewer would leave splines of these degrees undetermined."""
 _OUTSIDE = 1e-9
@@ -41,8 +44,8 @@ class Table:
         axes: of the strains and, last, of the pressure in MPa.
         coefficients: of the product splines, N.
         samples: what it is fitted to.
-        errors: greatest error of ∂Φ by each variable at these points and at others that are not
-            fitted, in parts of its range over the table, (m + 1,).
+        errors: greatest error of ∂Φ by each variable at points that are not fitted, in parts of its
+            size, (m + 1,); at those that are too where ∂²Φ is not known.
     """
 
     axes: tuple[Axis, ...]
@@ -149,18 +152,23 @@ def tabulate(
     ranges: Sequence[tuple[float, float]],
     error: float,
     most: int = 2000,
+    begin: Sequence[Floats] | None = None,
+    sizes: Sizes | None = None,
 ) -> Table:
     """A table whose forces are known to an error, by halving intervals where they are not.
 
-    It is fitted on a grid of the lines and of those halfway between them, and compared with the law
-    at scattered points, which are never fitted: they would pull it about unevenly. While it misses
-    one, the intervals are halved at whose ends its highest derivative jumps most.
+    It is fitted on a grid of the lines, with what lies halfway between them: all crossings of those
+    too, or the middles of the boxes alone where second derivatives are known. It is compared with
+    the law at scattered points, which are never fitted: they would pull it about unevenly. While it
+    misses one, the intervals are halved at whose ends its highest derivative jumps most.
 
     Args:
         sample: the law at points; it is asked in an order in which neighbours follow each other.
         ranges: of the strains and, last, of the pressure in MPa.
-        error: of each derivative of Φ in parts of its range over the table.
+        error: of each derivative of Φ in parts of its size.
         most: greatest number of points.
+        begin: lines at first, from 0 to 1 over each range.
+        sizes: of the derivatives; their ranges over the table unless given.
 
     Returns:
         The table.
@@ -169,17 +177,27 @@ def tabulate(
         NotReachedError: `most` points are not enough.
         ValueError: the law is not finite at a point.
     """
-    begin = [*[INTERVALS] * (len(ranges) - 1), PRESSURE_INTERVALS]
-    lines = [np.linspace(*pair, k + 1) for pair, k in zip(ranges, begin, strict=True)]
+    if begin is None:
+        counts = [*[INTERVALS] * (len(ranges) - 1), PRESSURE_INTERVALS]
+        begin = [np.linspace(0.0, 1.0, k + 1) for k in counts]
+    lines = [low + part * (high - low) for (low, high), part in zip(ranges, begin, strict=True)]
     empty = np.empty((0, len(lines)))
     samples = checks = Samples(empty, np.empty(0), empty)
-    missed = math.inf
+    missed, second = math.inf, False
     while True:
         halves = [(axis[1:] + axis[:-1]) / 2 for axis in lines]
-        grid = _grid([_merged(*pair) for pair in zip(lines, halves, strict=True)])
-        count = max(_LEAST, math.prod(len(half) for half in halves))
+        corners = _grid(lines)
+        if not len(samples.values):
+            samples = _asked(sample, corners[:1], samples)
+            second = samples.second is not None
+        if second:
+            grid = np.concatenate([corners, _grid(halves)])
+            count = _LEAST
+        else:
+            grid = _grid([_merged(*pair) for pair in zip(lines, halves, strict=True)])
+            count = max(_LEAST, math.prod(len(half) for half in halves))
         scattered = _scattered(lines, len(checks.values), count)
-        points = len(grid) + len(checks.values) + count
+        points = len(samples.values) + len(_new(grid, samples)) + len(checks.values) + count
         if points > most:
             raise NotReachedError(
                 f"forces of the table are off by {missed:.2g} of their range, {error:.2g} asked "
@@ -187,12 +205,13 @@ def tabulate(
             )
         samples = _asked(sample, grid, samples)
         checks = _asked(sample, scattered, checks)
-        axes = tuple(
-            Axis(axis, PRESSURE_DEGREE if number == len(lines) - 1 else DEGREE)
-            for number, axis in enumerate(lines)
-        )
+        degrees = [DEGREE] * (len(lines) - 1) + [PRESSURE_DEGREE]
+        if second:
+            degrees = [HIGH_DEGREE] * len(lines)
+        axes = tuple(Axis(*pair) for pair in zip(lines, degrees, strict=True))
         table = Table(axes, fitted(axes, samples), samples, np.empty(0))
-        errors = _errors(table, samples.joined(checks))
+        # with second derivatives a fit is close to its points without being exact between them
+        errors = _errors(table, checks if second else samples.joined(checks), sizes)
         missed = float(errors.max())
         if missed <= error:
             return dataclasses.replace(table, errors=errors)
@@ -252,25 +271,31 @@ def _asked(sample: Sample, points: Floats, samples: Samples) -> Samples:
     new = _new(points, samples)
     if not len(new):
         return samples
-    values, slopes = sample(new)
+    values, slopes, *rest = sample(new)
     broken = ~(np.isfinite(values) & np.isfinite(slopes).all(axis=1))
+    for second in rest:
+        broken |= ~np.isfinite(second).all(axis=(1, 2))
     if broken.any():
         raise ValueError(f"the law is not finite at {new[broken][0].tolist()}")
-    return samples.joined(Samples(new, values, slopes))
+    return samples.joined(Samples(new, values, slopes, *rest))
 
 
-def _errors(table: Table, samples: Samples) -> Floats:
-    """Of the derivatives at all points, in parts of their ranges, (m + 1,)."""
+def _errors(table: Table, samples: Samples, sizes: Sizes | None) -> Floats:
+    """Of the derivatives at all points, in parts of their sizes, (m + 1,)."""
     worst = np.zeros(len(table.axes))
-    ranges = np.ptp(samples.slopes, axis=0)
-    ranges[ranges == 0] = 1.0
+    if sizes is None:
+        ranges = np.ptp(samples.slopes, axis=0)
+        ranges[ranges == 0] = 1.0
+        by = np.broadcast_to(ranges, samples.slopes.shape)
+    else:
+        by = sizes(samples)
     for pressure in np.unique(samples.points[:, -1]):
         here = samples.points[:, -1] == pressure
         strains, slopes = samples.points[here, :-1], samples.slopes[here]
         found = np.column_stack(
             [table.gradient(strains, pressure), -table.chamber(strains, pressure)]
         )
-        worst = np.maximum(worst, np.abs((found - slopes) / ranges).max(axis=0))
+        worst = np.maximum(worst, np.abs((found - slopes) / by[here]).max(axis=0))
     return worst
 
 

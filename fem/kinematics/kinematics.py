@@ -194,7 +194,7 @@ class Kinematics:
     @property
     def span(self) -> float:
         """Greatest extent of what is modelled, mm."""
-        return float(np.ptp(self.domain.data.nodes, axis=0).max())
+        return float(self.domain.data.extent.max())
 
     def size_of(self, scalar: str) -> float:
         """A change of a natural scalar that strains like a stretch of one."""

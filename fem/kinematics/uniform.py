@@ -144,7 +144,7 @@ class Uniform(Kinematics):
 
     def size_of(self, scalar: str) -> float:
         """A change of a natural scalar that strains like a stretch of one."""
-        height = float(np.ptp(self.domain.data.nodes[:, :2], axis=0).max())
+        height = float(self.domain.data.extent[:2].max())
         return {STRETCH: 1.0}.get(scalar, 1 / height)
 
     def spin(self, scalars: Mapping[str, float]) -> Floats:

@@ -34,8 +34,8 @@ def table(
     Args:
         case: Case file of model section or cell that bends in its plane.
         settings: Changes to it.
-        error: Greatest error, of the range of force, moment and chamber, and of the free angle.
-        least: Least pressure; 15 % of the greatest unless given.
+        error: Greatest error, of strains by errors of forces, of the chamber and of the free angle.
+        least: Least pressure; zero unless given.
         out: Folder of table.npz, table.csv and table.png; tables/CASE unless given.
         overwrite: Replace files that are there.
         open_it: Show the picture.
@@ -59,7 +59,7 @@ def table(
     from fiberbend.sectionlaw.table import table_of
 
     store = Store()
-    made = table_of(checked, asked, start, store)
+    made = table_of(checked, asked, start, store, say)
     for line in (*words.lines(made), *(f"  note: {remark}" for remark in store.remarks)):
         say(line)
     try:

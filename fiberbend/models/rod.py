@@ -53,7 +53,8 @@ class Rod(SlenderModel):
                 yield f"{path}.volume", text
             if own is not None and ((own.to or 0.0) < 0 or (own.angle or 0.0) < 0):
                 yield path, "the law of a section is of pressures above zero, and no vacuum"
-        wound, symmetry = self._wound(case), Symmetry.of(case.acting)
+        known = [effect for effect in case.acting if self.offers.issuperset(effect.needs())]
+        wound, symmetry = self._wound(case), Symmetry.of(known)
         if not wound.plane:
             yield "effects", f"the law of its section is of stretch and curvature: {wound.words()}"
         elif symmetry.across:

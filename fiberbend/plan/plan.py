@@ -154,7 +154,8 @@ def _rod(
     from fiberbend.plan.memory import gigabytes, needed_mb
 
     steps, unknowns = steps_of_rod(case, model), model.unknowns(case)
-    pieces = f"{model.pieces} between the caps, {model.cap_pieces} in each"
+    number = model.pieces + 2 * model.cap_pieces
+    within = f"{model.pieces} between the caps, {model.cap_pieces} in each"
     each = f"at most {math.degrees(case.solver.max_turn or model.turn):.3g}° each"
     seconds = None if steps is None else model.start_s + steps * model.step_s
     time = f"{1e3 * model.step_s:g} ms a step"
@@ -164,7 +165,8 @@ def _rod(
     drawing = drawing_seconds(case, model)
     memory = needed_mb(case)
     body = {
-        "pieces": [pieces],
+        "half": ["full (a line has no halves)"],
+        "elements": [f"{number} pieces of a line: {within}"],
         "unknowns": [str(unknowns)],
         "steps": [each if steps is None else f"about {steps}, {each}"],
         "time": [f"{time}; an estimate", law],

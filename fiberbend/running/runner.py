@@ -124,9 +124,8 @@ def _solve(
     own: Own,
     scratch: RunFolder | None = None,
 ) -> RunResult:
-    kind = choose_model(case)[0]
-    model = kind.elements()
-    rod = kind.slender()
+    kind, _ = choose_model(case)
+    model, rod = kind.elements(), kind.slender()
     if rod is not None:
         from fiberbend.running.slender.run import run_rod
 
@@ -175,10 +174,9 @@ class _Run:
     ) -> None:
         self.case, self.model, self.folder = case, model, folder
         self.states, self.progress = folder or scratch, progress
-        self.comm, self.ranks = comm, ranks
-        self.own, self.may_leave = own or Own(), may_leave
+        self.comm, self.ranks, self.may_leave = comm, ranks, may_leave
+        self.own, self.solved = own or Own(), False
         self.recording: Recording | None = None
-        self.solved = False
         self.run: dict[str, Any] = {}
 
     def go(self, again: bool) -> RunResult:

@@ -1,4 +1,4 @@
-"""Coordinates in which the states that a rod takes fill a box: e, u and P for λ, k and P."""
+"""Coordinates in which the states that a rod takes fill a box."""
 
 from __future__ import annotations
 
@@ -6,69 +6,134 @@ import dataclasses
 
 import numpy as np
 
+from fiberbend.sectionlaw.polynomial import Polynomial
 from rod.functions import Floats
 
 
 @dataclasses.dataclass(frozen=True)
 class Chart:
-    """e = λ − s k, the stretch of a line that free bending hardly stretches; u = (k − k₀)/h(P).
+    """u = (z − z₀(P))/h(P), each from 0 to 1, of z = (λ − λ₀(c, P), c), c curvatures and twist.
 
-    h = a + b P grows with the curvature of the free section: bent far without pressure, which no
-    rod is, threads go slack, and a section has no smooth law.
+    λ₀ is about the stretch at which nothing pulls along the line: forces on a rod change it by
+    little, what bends and inflates it by much. z₀ = l + d P and h = a + b P follow the strains of
+    the free section: bent as far without pressure, a section buckles, and has no smooth law.
 
     Attributes:
-        lever: s, mm.
-        least: k₀, the least curvature, rad/mm.
-        width: a, rad/mm.
-        growth: b, rad/mm/MPa.
+        unpulled: λ₀ by y = (c, P).
+        least: l, the least of each, 1 and rad/mm.
+        drifts: d, 1/MPa and rad/mm/MPa.
+        widths: a, 1 and rad/mm.
+        growths: b, 1/MPa and rad/mm/MPa.
     """
 
-    lever: float
-    least: float
-    width: float
-    growth: float
+    unpulled: Polynomial
+    least: tuple[float, ...]
+    drifts: tuple[float, ...]
+    widths: tuple[float, ...]
+    growths: tuple[float, ...]
 
-    def place(self, strains: Floats, pressure: float) -> Floats:
-        """e and u, (n, 2), by λ and k."""
-        stretch, curvature = strains.T
-        share = (curvature - self.least) / (self.width + self.growth * pressure)
-        return np.column_stack([stretch - self.lever * curvature, share])
+    def sizes(self, pressure: Floats | float) -> Floats:
+        """h, (..., m), at pressures."""
+        grown = np.asarray(pressure)[..., None] * np.array(self.growths)
+        sizes: Floats = np.array(self.widths) + grown
+        return sizes
+
+    def place(self, strains: Floats, pressure: Floats | float) -> Floats:
+        """u, (n, m), by λ and c."""
+        return self._away(strains, pressure) / self.sizes(pressure)
+
+    def _away(self, strains: Floats, pressure: Floats | float) -> Floats:
+        """z − z₀, (n, m)."""
+        z = strains - self._least(pressure)
+        z[:, 0] -= self.unpulled.value(_beside(strains, pressure))
+        return z
+
+    def _least(self, pressure: Floats | float) -> Floats:
+        """z₀, (..., m)."""
+        moved = np.asarray(pressure)[..., None] * np.array(self.drifts)
+        least: Floats = np.array(self.least) + moved
+        return least
 
     def strains(self, points: Floats) -> Floats:
-        """λ and k, (n, 2), by e, u and P."""
-        e, u, pressure = points.T
-        curvature = self.least + u * (self.width + self.growth * pressure)
-        return np.column_stack([e + self.lever * curvature, curvature])
+        """λ and c, (n, m), by u and P."""
+        z: Floats = self._least(points[:, -1]) + points[:, :-1] * self.sizes(points[:, -1])
+        z[:, 0] += self.unpulled.value(_beside(z, points[:, -1]))
+        return z
 
-    def first(self, place: Floats, pressure: float) -> Floats:
-        """∂(e, u, P)/∂(λ, k, P), (n, 3, 3)."""
-        h = self.width + self.growth * pressure
-        out = np.zeros((len(place), 3, 3))
-        out[:, 0, 0] = out[:, 2, 2] = 1.0
-        out[:, 0, 1], out[:, 1, 1] = -self.lever, 1.0 / h
-        out[:, 1, 2] = -place[:, 1] * self.growth / h
+    def first(self, strains: Floats, pressure: float) -> Floats:
+        """∂(u, P)/∂(λ, c, P), (n, m + 1, m + 1), at strains, (n, m)."""
+        n, m = strains.shape
+        h = self.sizes(pressure)
+        out = np.zeros((n, m + 1, m + 1))
+        inner = np.arange(m)
+        out[:, inner, inner], out[:, m, m] = 1.0 / h, 1.0
+        out[:, 0, 1:] -= self.unpulled.first(_beside(strains, pressure)) / h[0]
+        away = self._away(strains, pressure)
+        out[:, :m, m] -= np.array(self.drifts) / h + away * np.array(self.growths) / h**2
         return out
 
-    def second(self, place: Floats, pressure: float) -> Floats:
-        """∂²u/∂(λ, k, P)², (n, 3, 3); e and P have none."""
-        h = self.width + self.growth * pressure
-        out = np.zeros((len(place), 3, 3))
-        out[:, 1, 2] = out[:, 2, 1] = -self.growth / h**2
-        out[:, 2, 2] = 2 * place[:, 1] * (self.growth / h) ** 2
+    def second(self, strains: Floats, slopes: Floats, pressure: float) -> Floats:
+        """Σ_j f_j ∂²u_j/∂(λ, c, P)², (n, m + 1, m + 1).
+
+        Args:
+            strains: λ and c, (n, m).
+            slopes: f, derivatives by u of what is carried over, (n, m).
+            pressure: P, MPa.
+        """
+        n, m = strains.shape
+        h, growths, y = self.sizes(pressure), np.array(self.growths), _beside(strains, pressure)
+        rise = self.unpulled.first(y)
+        out = np.zeros((n, m + 1, m + 1))
+        by_z = slopes / h
+        out[:, 1:, 1:] = -by_z[:, :1, None] * self.unpulled.second(y)
+        # z_j/h_j: a part in ∂z and ∂h, which hangs on P alone
+        mixed = -by_z * growths / h
+        out[:, np.arange(m), m] += mixed
+        out[:, m, np.arange(m)] += mixed
+        out[:, 1:, m] -= mixed[:, :1] * rise
+        out[:, m, 1:] -= mixed[:, :1] * rise
+        moved = np.array(self.drifts) + self._away(strains, pressure) * growths / h
+        out[:, m, m] += np.sum(2 * by_z * moved * growths / h, axis=1)
         return out
 
-    def slopes(self, points: Floats, forces: Floats) -> Floats:
-        """∂Φ by e, u and P, (n, 3), by N, M and the area of the chamber, (n, 3)."""
-        _, u, pressure = points.T
-        force, moment, area = forces.T
-        own = moment + self.lever * force
-        h = self.width + self.growth * pressure
-        return np.column_stack([force, own * h, own * u * self.growth - area])
+    def back(self, points: Floats) -> Floats:
+        """∂(λ, c, P)/∂(u, P), (n, m + 1, m + 1)."""
+        n, m = len(points), points.shape[1] - 1
+        out = np.zeros((n, m + 1, m + 1))
+        inner = np.arange(m)
+        out[:, inner, inner], out[:, m, m] = self.sizes(points[:, -1]), 1.0
+        out[:, :m, m] = np.array(self.drifts) + points[:, :m] * np.array(self.growths)
+        rise = self.unpulled.first(_beside(self.strains(points), points[:, -1]))
+        out[:, 0] += np.einsum("ni,nij->nj", rise, out[:, 1:])
+        return out
+
+    def carried(self, points: Floats, forces: Floats) -> Floats:
+        """∂Φ by u and P, (n, m + 1), by those by λ, c and P."""
+        found: Floats = np.einsum("ni,nij->nj", forces, self.back(points))
+        return found
 
     def forces(self, points: Floats, slopes: Floats) -> Floats:
-        """N, M and the area of the chamber, (n, 3), by ∂Φ by e, u and P: `slopes` undone."""
-        _, u, pressure = points.T
-        own = slopes[:, 1] / (self.width + self.growth * pressure)
-        force = slopes[:, 0]
-        area = own * u * self.growth - slopes[:, 2]
-        return np.column_stack([force, own - self.lever * force, area])
+        """∂Φ by λ, c and P, (n, m + 1), by those by u and P: `carried` undone."""
+        back = self.back(points).transpose(0, 2, 1)
+        found: Floats = np.linalg.solve(back, slopes[:, :, None])[:, :, 0]
+        return found
+
+    def bent(self, points: Floats, forces: Floats, second: Floats) -> Floats:
+        """∂²Φ by u and P, (n, m + 1, m + 1), by first and second ones by λ, c and P."""
+        back, m = self.back(points), points.shape[1] - 1
+        out: Floats = back.transpose(0, 2, 1) @ second @ back
+        y = _beside(self.strains(points), points[:, -1])
+        rise, inner = self.unpulled.first(y), back[:, 1:]
+        curved = inner.transpose(0, 2, 1) @ self.unpulled.second(y) @ inner
+        out += forces[:, :1, None] * curved
+        own = forces[:, :m].copy()
+        own[:, 1:] += forces[:, :1] * rise[:, :-1]
+        mixed = own * np.array(self.growths)
+        out[:, np.arange(m), m] += mixed
+        out[:, m, np.arange(m)] += mixed
+        return out
+
+
+def _beside(strains: Floats, pressure: Floats | float) -> Floats:
+    """y = (c, P), (n, m)."""
+    return np.column_stack([strains[:, 1:], np.broadcast_to(pressure, len(strains))])

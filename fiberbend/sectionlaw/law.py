@@ -11,11 +11,11 @@ from fiberbend.sectionlaw.chart import Chart
 from rod.functions import Floats
 from rod.table import Table
 
-STRAINS = ("stretch", "curvature")
+PLANE = ("stretch", "curvature")
 """Of the line of centroids: λ, and k in rad a mm of z at rest, as `rod.layout` names them."""
 _STEPS, _CLOSE = 50, 1e-10
-_FURTHEST = 0.2
-"""Part of the range by which a step to a free state may go."""
+_FURTHEST, _OUTSIDE = 0.2, 1e-9
+"""Parts of the range: by which a step to a free state may go, and beyond which it is another."""
 
 
 class Free(NamedTuple):
@@ -23,46 +23,85 @@ class Free(NamedTuple):
 
     Attributes:
         stretch: of the line of centroids.
-        curvature: rad/mm.
+        curvature: rad/mm, toward −y.
+        side_curvature: rad/mm, toward x.
+        twist: rad/mm.
     """
 
     stretch: float
     curvature: float
+    side_curvature: float = 0.0
+    twist: float = 0.0
+
+
+class Derived:
+    """A law by value, first and second derivatives by strains and pressure: a `rod.law.Law`."""
+
+    def first(self, strains: Floats, pressure: float) -> Floats:
+        """∂Φ by strains and P, (n, m + 1)."""
+        raise NotImplementedError
+
+    def second(self, strains: Floats, pressure: float) -> Floats:
+        """∂²Φ by strains and P, (n, m + 1, m + 1)."""
+        raise NotImplementedError
+
+    def gradient(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`: N in N, moments in N mm."""
+        return self.first(strains, pressure)[:, :-1]
+
+    def hessian(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return self.second(strains, pressure)[:, :-1, :-1]
+
+    def chamber(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return -self.first(strains, pressure)[:, -1]
+
+    def chamber_gradient(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return -self.second(strains, pressure)[:, :-1, -1]
+
+    def chamber_slope(self, strains: Floats, pressure: float) -> Floats:
+        """See `rod.law.Law`."""
+        return -self.second(strains, pressure)[:, -1, -1]
 
 
 @dataclasses.dataclass(frozen=True)
-class SectionLaw:
-    """Φ(λ, k; P) of the line of centroids; a `rod.law.Law`.
+class SectionLaw(Derived):
+    """Φ of the line of centroids by strains and pressure; a `rod.law.Law`.
 
     Attributes:
-        table: by e, u and P in MPa.
-        chart: what e and u are.
+        table: by u and P in MPa.
+        chart: what u are.
+        strains: names of λ and c, of `rod.layout.STRAINS`.
     """
 
     table: Table
     chart: Chart
+    strains: tuple[str, ...] = PLANE
 
     def _slopes(self, strains: Floats, pressure: float) -> tuple[Floats, Floats]:
-        """Places in the table, and ∂Φ there by its own variables, (n, 3)."""
+        """Places in the table, and ∂Φ there by its own variables, (n, m + 1)."""
         place = self.chart.place(strains, pressure)
         area = self.table.chamber(place, pressure)
         return place, np.column_stack([self.table.gradient(place, pressure), -area])
 
-    def _first(self, strains: Floats, pressure: float) -> Floats:
-        """∂Φ by λ, k and P, (n, 3)."""
-        place, slopes = self._slopes(strains, pressure)
-        found: Floats = np.einsum("ni,nij->nj", slopes, self.chart.first(place, pressure))
+    def first(self, strains: Floats, pressure: float) -> Floats:
+        """∂Φ by strains and P, (n, m + 1)."""
+        _, slopes = self._slopes(strains, pressure)
+        found: Floats = np.einsum("ni,nij->nj", slopes, self.chart.first(strains, pressure))
         return found
 
-    def _second(self, strains: Floats, pressure: float) -> Floats:
-        """∂²Φ by λ, k and P, (n, 3, 3)."""
+    def second(self, strains: Floats, pressure: float) -> Floats:
+        """∂²Φ by strains and P, (n, m + 1, m + 1)."""
         place, slopes = self._slopes(strains, pressure)
-        own = np.empty((len(place), 3, 3))
-        own[:, :2, :2] = self.table.hessian(place, pressure)
-        own[:, 2, :2] = own[:, :2, 2] = -self.table.chamber_gradient(place, pressure)
-        own[:, 2, 2] = -self.table.chamber_slope(place, pressure)
-        turn = self.chart.first(place, pressure)
-        bent = slopes[:, 1, None, None] * self.chart.second(place, pressure)
+        n, m = place.shape
+        own = np.empty((n, m + 1, m + 1))
+        own[:, :m, :m] = self.table.hessian(place, pressure)
+        own[:, m, :m] = own[:, :m, m] = -self.table.chamber_gradient(place, pressure)
+        own[:, m, m] = -self.table.chamber_slope(place, pressure)
+        turn = self.chart.first(strains, pressure)
+        bent = self.chart.second(strains, slopes[:, :m], pressure)
         found: Floats = turn.transpose(0, 2, 1) @ own @ turn + bent
         return found
 
@@ -70,37 +109,32 @@ class SectionLaw:
         """See `rod.law.Law`."""
         return self.table.value(self.chart.place(strains, pressure), pressure)
 
-    def gradient(self, strains: Floats, pressure: float) -> Floats:
-        """See `rod.law.Law`: N in N, M in N mm."""
-        return self._first(strains, pressure)[:, :2]
-
-    def hessian(self, strains: Floats, pressure: float) -> Floats:
-        """See `rod.law.Law`."""
-        return self._second(strains, pressure)[:, :2, :2]
-
-    def chamber(self, strains: Floats, pressure: float) -> Floats:
-        """See `rod.law.Law`."""
-        return -self._first(strains, pressure)[:, 2]
-
-    def chamber_gradient(self, strains: Floats, pressure: float) -> Floats:
-        """See `rod.law.Law`."""
-        return -self._second(strains, pressure)[:, :2, 2]
-
-    def chamber_slope(self, strains: Floats, pressure: float) -> Floats:
-        """See `rod.law.Law`."""
-        return -self._second(strains, pressure)[:, 2, 2]
-
     def outside(self, strains: Floats, pressure: float) -> str:
         """See `rod.law.Law`."""
-        found = self.table.outside(self.chart.place(strains, pressure), pressure)
-        if found.startswith("strain 1"):
-            return f"stretch {self.chart.lever:.3g} mm from the centroids:{found[8:]}"
-        if found.startswith("strain 2"):
-            return f"curvature, in parts of its range at this pressure:{found[8:]}"
-        return found
+        low, high = self.table.axes[-1].lines[[0, -1]].tolist()
+        slack = _OUTSIDE * (high - low)
+        if not low - slack <= pressure <= high + slack:
+            return f"{1e3 * pressure:.6g} kPa in a table from {1e3 * low:.6g} to {1e3 * high:.6g}"
+        place = self.chart.place(strains, pressure)
+        beyond = np.maximum(place - 1.0, -place)
+        worst = np.unravel_index(np.argmax(beyond), place.shape)
+        if not beyond[worst] > _OUTSIDE:
+            return ""
+        piece, number = (int(index) for index in worst)
+        ends = np.tile(place[piece], (2, 1))
+        ends[:, number] = 0.0, 1.0
+        pressures = np.full((2, 1), pressure)
+        reach = self.chart.strains(np.column_stack([ends, pressures]))[:, number].tolist()
+        value = float(strains[piece, number])
+        factor, unit = (1.0, "") if number == 0 else (1e3, " 1/m")
+        return (
+            f"{self.strains[number].replace('_', ' ')} {factor * value:.6g}{unit} at "
+            f"{1e3 * pressure:.6g} kPa, in a table from {factor * reach[0]:.6g} to "
+            f"{factor * reach[1]:.6g}{unit}"
+        )
 
     def free(self, pressure: float, near: Free) -> Free:
-        """Where no force acts, N = M = 0.
+        """Where no force acts.
 
         Args:
             pressure: MPa.
@@ -109,13 +143,11 @@ class SectionLaw:
         Raises:
             ValueError: no such state is in the table.
         """
-        at = np.array([near])
-        stretch, share, _ = self.table.axes
-        widths = np.array([np.ptp(stretch.lines), np.ptp(share.lines)])
+        at = np.array([[getattr(near, name) for name in self.strains]])
         for _ in range(_STEPS):
             step = np.linalg.solve(self.hessian(at, pressure)[0], self.gradient(at, pressure)[0])
-            turn = self.chart.first(self.chart.place(at, pressure), pressure)[0, :2, :2]
-            size = float(np.abs(turn @ step / widths).max())
+            turn = self.chart.first(at, pressure)[0, :-1, :-1]
+            size = float(np.abs(turn @ step).max())
             at = at - step * min(1.0, _FURTHEST / max(size, _CLOSE))
             if size < _CLOSE:
                 break
@@ -123,4 +155,4 @@ class SectionLaw:
             raise ValueError(f"no free state of the table at {1e3 * pressure:.6g} kPa")
         if beyond := self.outside(at, pressure):
             raise ValueError(f"the free state at {1e3 * pressure:.6g} kPa is outside: {beyond}")
-        return Free(float(at[0, 0]), float(at[0, 1]))
+        return Free(**dict(zip(self.strains, at[0].tolist(), strict=True)))

@@ -11,6 +11,9 @@ import numpy as np
 
 from fiberbend.sectionlaw.chart import Chart
 from fiberbend.sectionlaw.law import Free, SectionLaw
+from fiberbend.sectionlaw.polynomial import Polynomial
+from fiberbend.sectionlaw.side import Side
+from fiberbend.sectionlaw.space import Round, Space
 from machine.folders import DAMAGED
 from rod.functions import Floats
 from rod.spline import Axis, Samples
@@ -19,17 +22,17 @@ from rod.table import Table
 
 @dataclasses.dataclass(frozen=True)
 class Checked:
-    """Errors at states that are not fitted, in parts of the ranges over the table.
+    """Errors at states that are not fitted, as strains that they make in parts of their ranges.
 
     Attributes:
         states: number of those.
-        force: of N.
-        moment: of M.
-        area: of that of the chamber.
+        force: of N, as the stretch that it makes, in parts of all stretches.
+        moment: of moments, as curvature or twist, in parts of those at the same pressure.
+        area: of that of the chamber, in parts of its range.
         angle: of free states found by trials, in parts of the greatest curvature, or stretch.
         softest: least eigenvalue of ∂²Φ by the strains in parts of their ranges, N; below zero a
             rod may lose its stability by its section alone.
-        where: that is: stretch, curvature in rad/mm and pressure in MPa.
+        where: that is: the strains, curvatures in rad/mm, and pressure in MPa.
     """
 
     states: int
@@ -38,7 +41,7 @@ class Checked:
     area: float
     angle: float
     softest: float
-    where: tuple[float, float, float]
+    where: tuple[float, ...]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -46,7 +49,7 @@ class Made:
     """A table with where it comes from.
 
     Attributes:
-        law: the law.
+        section: the law by the table.
         checked: its errors.
         samples: all states that were asked for: Φ and its slopes by e, u and P.
         error: asked for.
@@ -58,9 +61,10 @@ class Made:
         solved: states that were solved, those on the way too.
         seconds: of processor time.
         remarks: what casts doubt on it, a line each.
+        side: what it does beside, where strains were asked for that are not in the table.
     """
 
-    law: SectionLaw
+    section: SectionLaw
     checked: Checked
     samples: Samples
     error: float
@@ -72,35 +76,45 @@ class Made:
     solved: int
     seconds: float
     remarks: tuple[str, ...] = ()
+    side: Side | None = None
+
+    @property
+    def law(self) -> SectionLaw | Round | Space:
+        """The law of a rod."""
+        return self.section if self.side is None else self.side.law(self.section)
 
     @property
     def strains(self) -> Floats:
-        """λ and k of all states, (n, 2)."""
-        return self.law.chart.strains(self.samples.points)
+        """Those of all states, (n, m)."""
+        return self.section.chart.strains(self.samples.points)
 
     @property
     def forces(self) -> Floats:
-        """N, M and the area of the chamber at all states, (n, 3)."""
-        return self.law.chart.forces(self.samples.points, self.samples.slopes)
+        """N, moments and the area of the chamber at all states, (n, m + 1)."""
+        found = self.section.chart.forces(self.samples.points, self.samples.slopes)
+        return found * np.array([1.0] * len(self.section.strains) + [-1.0])
 
     def packed(self) -> bytes:
         """As an npz file."""
-        table, about = self.law.table, dataclasses.asdict(self)
-        for name in ("law", "samples"):
+        table, about = self.section.table, dataclasses.asdict(self)
+        for name in ("section", "samples", "side"):
             del about[name]
-        about["chart"] = dataclasses.asdict(self.law.chart)
+        about["chart"] = dataclasses.asdict(self.section.chart)
+        about["strains"] = self.section.strains
+        beside: dict[str, Floats] = {}
+        if self.side is not None:
+            about["side"] = dataclasses.asdict(self.side)
+            beside["side_coefficients"] = about["side"].pop("coefficients")
         about["degrees"] = [axis.degree for axis in table.axes]
         arrays = {f"lines_{number}": axis.lines for number, axis in enumerate(table.axes)}
         fitted = {"fitted_" + f.name: getattr(table.samples, f.name) for f in _OF_SAMPLES}
         asked = {f.name: getattr(self.samples, f.name) for f in _OF_SAMPLES}
-        readable = {
-            "stretch": self.strains[:, 0],
-            "curvature_1_per_mm": self.strains[:, 1],
-            "pressure_MPa": self.samples.points[:, 2],
-            "force_N": self.forces[:, 0],
-            "moment_Nmm": self.forces[:, 1],
-            "chamber_area_mm2": self.forces[:, 2],
-        }
+        readable: dict[str, Floats] = {}
+        for number, name in enumerate(self.section.strains):
+            readable[name + UNITS[name][0]] = self.strains[:, number]
+            readable[UNITS[name][1]] = self.forces[:, number]
+        readable["pressure_MPa"] = self.samples.points[:, -1]
+        readable["chamber_area_mm2"] = self.forces[:, -1]
         file = io.BytesIO()
         np.savez_compressed(
             file,
@@ -108,6 +122,7 @@ class Made:
             coefficients=table.coefficients,
             errors=table.errors,
             **arrays,
+            **beside,
             **fitted,
             **asked,
             **readable,
@@ -116,6 +131,13 @@ class Made:
 
 
 _OF_SAMPLES = dataclasses.fields(Samples)
+UNITS = {
+    "stretch": ("", "force_N"),
+    "curvature": ("_1_per_mm", "moment_Nmm"),
+    "side_curvature": ("_1_per_mm", "side_moment_Nmm"),
+    "twist": ("_1_per_mm", "torque_Nmm"),
+}
+"""What ends the name of each strain in a file, and the name of its conjugate."""
 
 
 def unpacked(content: bytes) -> Made:
@@ -134,12 +156,34 @@ def unpacked(content: bytes) -> Made:
         )
         fitted = Samples(*(given["fitted_" + f.name] for f in _OF_SAMPLES))
         table = Table(axes, given["coefficients"], fitted, given["errors"])
-        law = SectionLaw(table, Chart(**about.pop("chart")))
+        law = SectionLaw(table, _chart(about.pop("chart")), tuple(about.pop("strains")))
         samples = Samples(*(given[f.name] for f in _OF_SAMPLES))
         free = tuple((pressure, Free(*state)) for pressure, state in about.pop("free"))
         known = about.pop("checked")
         checked = Checked(**known | {"where": tuple(known["where"])})
         remarks = tuple(about.pop("remarks"))
-        return Made(law=law, checked=checked, samples=samples, free=free, remarks=remarks, **about)
+        beside, side = about.pop("side", None), None
+        if beside is not None:
+            beside["pairs"] = tuple((i, j) for i, j in beside["pairs"])
+            beside["lines"] = tuple(tuple(line) for line in beside["lines"])
+            for name in ("small", "limits", "degrees"):
+                beside[name] = tuple(beside[name])
+            side = Side(coefficients=given["side_coefficients"], **beside)
+        return Made(
+            section=law,
+            checked=checked,
+            samples=samples,
+            free=free,
+            remarks=remarks,
+            side=side,
+            **about,
+        )
     except (*DAMAGED, TypeError, OSError) as error:
         raise ValueError(f"no table: {error}") from None
+
+
+def _chart(given: dict[str, Any]) -> Chart:
+    unpulled = given.pop("unpulled")
+    powers = tuple(tuple(row) for row in unpulled.pop("powers"))
+    polynomial = Polynomial(powers=powers, **{k: tuple(v) for k, v in unpulled.items()})
+    return Chart(polynomial, **{name: tuple(values) for name, values in given.items()})

@@ -32,7 +32,7 @@ def draw(made: Made, style: Style = STYLE) -> Figure:
     """
     import matplotlib as mpl
 
-    low, high = made.law.table.axes[-1].lines[[0, -1]].tolist()
+    low, high = made.section.table.axes[-1].lines[[0, -1]].tolist()
     free = [(pressure, state) for pressure, state in made.free if low <= pressure <= high]
     pressures = sorted({low, *(pressure for pressure, _ in free)})
     colors = mpl.colormaps["viridis"](np.linspace(_FROM, _TO, len(pressures)))
@@ -47,7 +47,7 @@ def draw(made: Made, style: Style = STYLE) -> Figure:
                 label = f"{1e3 * pressure:.3g} kPa"
                 axes.plot(1e3 * curve[:, 1], row, color=color, lw=1.6, label=label)
         for pressure, state in free:
-            here = np.array([state])
+            here = np.array([[state.stretch, state.curvature]])
             heights = (0.0, state.stretch, made.law.value(here, pressure)[0])
             for axes, height in zip(panels, heights, strict=True):
                 axes.plot(1e3 * state.curvature, height, "o", color="black", ms=4)
@@ -79,7 +79,7 @@ def _look(axes: Any, title: str, style: Style) -> None:
 
 def _without_force(made: Made, pressure: float) -> Floats:
     """λ and k of all curvatures at which N = 0 within the table, (n, 2)."""
-    law = made.law
+    law = made.section
     e = law.table.axes[0].lines
     found = []
     for u in np.linspace(0.0, 1.0, _POINTS).tolist():

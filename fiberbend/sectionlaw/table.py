@@ -3,31 +3,42 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 
 import numpy as np
 
 from fiberbend.calibration.calibrate import waits
+from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.case.symmetry import Symmetry
+from fiberbend.case.symmetry import Symmetry, stays_straight
 from fiberbend.columns import UNIFORM
 from fiberbend.models.choice import choose_model
 from fiberbend.schema.problems import CaseError, Problem
-from fiberbend.sectionlaw.law import SectionLaw
+from fiberbend.sectionlaw.errors import checked, sizes
+from fiberbend.sectionlaw.law import PLANE, SectionLaw
 from fiberbend.sectionlaw.made import Checked, Made
-from fiberbend.sectionlaw.range import Box, Reach, box_of, reach_of
+from fiberbend.sectionlaw.range import Reach, reach_of
+from fiberbend.sectionlaw.side import side_of
+from fiberbend.sectionlaw.states.box import Box, NoStateError, box_of
+from fiberbend.sectionlaw.states.held import Held
+from fiberbend.sectionlaw.states.walk import Walk
 from fiberbend.sectionlaw.store import Store, digest_of
-from fiberbend.sectionlaw.walk import NoStateError, Walk
 from fiberbend.trial.calibrations import Calibrations
+from rod.functions import Floats
 from rod.spline import Samples
 from rod.table import NotReachedError, tabulate
 
 ERROR = 1e-3
-"""Of forces in parts of their range, and of the angle of a free state in parts of the greatest."""
-_PARTS = (1.0, 0.5, 0.25, 0.1)
+"""Of forces by the strains that they make, and of the angle of a free state, see `Checked`."""
+_PARTS = (1.0, 0.75, 0.5, 0.25, 0.1)
 """Of the margins, tried in turn where a section has no state at a corner of the range."""
 _TIGHTER = 0.3
 _LEAST = 1e-3
 """Of the error that is asked for: no free state is off by more for want of states."""
+_PULL = np.linspace(0.0, 1.0, 3)
+_TURNS = np.linspace(0.0, 1.0, 7)
+_PRESSURES: Floats = np.array([0.0, 0.08, 0.22, 0.44, 0.7, 1.0])
+"""Lines of a table at first. Threads go taut and the floor arches in the first kilopascals."""
 
 
 def table_of(
@@ -35,33 +46,57 @@ def table_of(
     error: float = ERROR,
     least: float | None = None,
     store: Store | None = None,
-    wide: float = 1.0,
+    tell: Callable[[str], None] | None = None,
+) -> Made:
+    """The law of a section that bends in its plane; see `law_of`."""
+    return law_of(case, PLANE, error, least, store, tell)
+
+
+def law_of(
+    case: Case,
+    strains: tuple[str, ...],
+    error: float = ERROR,
+    least: float | None = None,
+    store: Store | None = None,
+    tell: Callable[[str], None] | None = None,
 ) -> Made:
     """The law of a section, from the store or anew.
 
+    Stretch and curvature, and the twist of a section that twists by itself, are tabulated; what
+    loads alone make of side curvature and twist is quadratic, from exact second derivatives.
+
     Args:
-        case: a checked case of model section or cell that bends in its plane.
+        case: a checked case of model section or cell.
+        strains: names of those of the rod, as `rod.layout.STRAINS` orders them.
         error: asked for, in parts.
-        least: pressure from which the table is, MPa; a part of the greatest unless given.
+        least: pressure from which the table is, MPa; zero unless given.
         store: of tables; that of the user unless given.
-        wide: times the usual margins of the range, of a rod whose loads bend it far.
+        tell: takes lines of progress while it is made.
 
     Raises:
         CaseError: the law cannot have what the case has, or the table does not reach the error.
     """
-    refuse(case)
+    refuse(case, strains)
     store = Store() if store is None else store
-    digest = digest_of(case, error, least, wide)
+    digest = digest_of(case, strains, error, least)
     found = store.find(digest)
     if found is not None:
         return found
-    made = _made(case, error, least, digest, wide)
-    store.keep(made)
+    with store.alone(digest):
+        # another process may have been quicker
+        made = store.find(digest)
+        if made is None:
+            made = _made(case, strains, error, least, digest, tell)
+            store.keep(made)
     return made
 
 
-def refuse(case: Case) -> None:
+def refuse(case: Case, strains: tuple[str, ...] = PLANE) -> None:
     """Say by name what the law of a section cannot have.
+
+    Args:
+        case: a checked case.
+        strains: of the rod.
 
     Raises:
         CaseError: the case has that.
@@ -80,14 +115,26 @@ def refuse(case: Case) -> None:
     if UNIFORM not in model.fills and not problems:
         problems.append(Problem("model", f"{model.name}, expected section or cell"))
     symmetry = Symmetry.of(case.acting)
-    if not symmetry.plane and not problems:
-        text = "a table is of stretch and curvature, expected a case that bends in its plane"
+    if strains[:2] != PLANE:
+        problems.append(Problem("strains", f"{', '.join(strains)}: expected stretch and curvature"))
+    if symmetry.sideways and not problems:
+        text = "a table is of a section that keeps to its plane but for a twist"
+        problems.append(Problem("effects", f"{text}; of this one: {symmetry.words()}"))
+    if symmetry.twists and "twist" not in strains and not problems:
+        text = f"a table of {' and '.join(strains)} is of a section that bends in its plane"
         problems.append(Problem("effects", f"{text}; of this one: {symmetry.words()}"))
     if problems:
         raise CaseError(problems)
 
 
-def _made(case: Case, error: float, least: float | None, digest: str, wide: float) -> Made:
+def _made(
+    case: Case,
+    strains: tuple[str, ...],
+    error: float,
+    least: float | None,
+    digest: str,
+    tell: Callable[[str], None] | None = None,
+) -> Made:
     began = time.process_time()
     reach = reach_of(case)
     ready = Calibrations().ready(case).case if waits(case) else case
@@ -95,12 +142,21 @@ def _made(case: Case, error: float, least: float | None, digest: str, wide: floa
     if least is not None and not 0 <= least < greatest:
         text = f"{1e3 * least:g} kPa, expected 0 or more, and less than {1e3 * greatest:.4g} kPa"
         raise CaseError([Problem("--from", text)])
+    twists = Symmetry.of(case.acting).twists
+    large = (*PLANE, "twist") if twists else PLANE
+    more = set(strains) - set(large)
+    alike = convert.dimensions(case.actuator).alike_around and stays_straight(case)
+    held = Held(ready, large)
+    all_held = Held(ready, strains) if more else held
     remarks, last = list(reach.remarks), ""
     for part in _PARTS:
-        box = box_of(reach, wide * part, least)
-        walk = Walk(ready, box)
         try:
-            law, checked = _fitted(case, walk, box, reach, error)
+            box = box_of(reach, held, large, part, least or 0.0)
+            walk = Walk(held, box, tell)
+            law, known = _fitted(large, walk, box, reach, error)
+            side = None
+            if more:
+                side = side_of(all_held, strains, law, box, reach.moment, alike, tell)
         except NoStateError as stop:
             last = str(stop)
             continue
@@ -109,8 +165,8 @@ def _made(case: Case, error: float, least: float | None, digest: str, wide: floa
         if last:
             remarks.append(f"{last}: the margins of the range are {100 * part:g} % of the usual")
         return Made(
-            law=law,
-            checked=checked,
+            section=law,
+            checked=known,
             samples=_samples(walk),
             error=error,
             digest=digest,
@@ -118,84 +174,35 @@ def _made(case: Case, error: float, least: float | None, digest: str, wide: floa
             model=choose_model(case)[0].name,
             length=case.actuator.length,
             free=reach.free,
-            solved=walk.solved,
+            solved=held.solved + (all_held.solved if more else 0),
             seconds=time.process_time() - began,
             remarks=tuple(remarks),
+            side=side,
         )
     raise CaseError([Problem("effects.pressure", f"{last}, expected a smaller one")])
 
 
 def _fitted(
-    case: Case, walk: Walk, box: Box, reach: Reach, error: float
+    strains: tuple[str, ...], walk: Walk, box: Box, reach: Reach, error: float
 ) -> tuple[SectionLaw, Checked]:
     """A law whose forces and free angles are as exact as asked for."""
     asked = error
+    begin = [_PULL, *[_TURNS] * (len(strains) - 1), _PRESSURES]
+    measure = sizes(box.chart)
     while True:
-        law = SectionLaw(tabulate(walk.sample, box.ranges, asked), box.chart)
-        checked = _checked(law, walk, reach, case.actuator.length)
-        worst = max(checked.force, checked.moment, checked.area, checked.angle)
+        table = tabulate(walk.sample, box.ranges, asked, begin=begin, sizes=measure)
+        law = SectionLaw(table, box.chart, strains)
+        known = checked(law, _samples(walk), reach)
+        worst = max(known.force, known.moment, known.area, known.angle)
         if worst <= error or asked < _LEAST * error:
             break
         asked *= _TIGHTER
     if worst > error:
         text = f"free angles of the table are off by {worst:.2g}, {error:.2g} asked for"
         raise NotReachedError(text)
-    return law, checked
+    return law, known
 
 
 def _samples(walk: Walk) -> Samples:
     points = np.array(list(walk.known))
-    values = np.array([value for value, _ in walk.known.values()])
-    return Samples(points, values, np.array([slopes for _, slopes in walk.known.values()]))
-
-
-def _checked(law: SectionLaw, walk: Walk, reach: Reach, length: float) -> Checked:
-    """Errors at states that are not fitted."""
-    samples = _samples(walk)
-    fitted = {tuple(point) for point in law.table.samples.points.tolist()}
-    held_out = np.array([tuple(point) not in fitted for point in samples.points.tolist()])
-    strains, told = law.chart.strains(samples.points), np.empty((len(samples.points), 3))
-    for number, pressure in enumerate(samples.points[:, 2].tolist()):
-        here = strains[number : number + 1]
-        told[number] = [*law.gradient(here, pressure)[0], law.chamber(here, pressure)[0]]
-    exact = law.chart.forces(samples.points, samples.slopes)
-    off = np.abs(told - exact)[held_out].max(axis=0) / np.ptp(exact, axis=0)
-    softest, place, pressure = min(
-        ((*law.table.softest(pressure), pressure) for pressure in _fine(law)),
-        key=lambda found: found[0],
-    )
-    return Checked(
-        states=int(held_out.sum()),
-        force=float(off[0]),
-        moment=float(off[1]),
-        area=float(off[2]),
-        angle=_angle_error(law, reach),
-        softest=softest,
-        where=(*law.chart.strains(np.array([[*place, pressure]]))[0].tolist(), pressure),
-    )
-
-
-def _fine(law: SectionLaw) -> list[float]:
-    """Pressures at which convexity is looked at."""
-    lines = law.table.axes[-1].lines
-    found: list[float] = np.linspace(lines[0], lines[-1], 4 * len(lines)).tolist()
-    return found
-
-
-def _angle_error(law: SectionLaw, reach: Reach) -> float:
-    """Of the free states, in parts of the greatest curvature, or of the stretch without one."""
-    worst = 0.0
-    stretches = [abs(state.stretch - 1.0) for _, state in reach.free]
-    curvatures = [abs(state.curvature) for _, state in reach.free]
-    bends = max(curvatures) * reach.height > 1e-6
-    low, high = law.table.axes[-1].lines[[0, -1]].tolist()
-    for pressure, state in reach.free:
-        if not low <= pressure <= high:
-            continue
-        found = law.free(pressure, state)
-        if bends:
-            off = abs(found.curvature - state.curvature) / max(curvatures)
-        else:
-            off = abs(found.stretch - state.stretch) / max(stretches)
-        worst = max(worst, off)
-    return worst
+    return Samples(points, *walk.sample(points))

@@ -9,74 +9,96 @@ from collections.abc import Iterator
 import numpy as np
 
 from fiberbend.sectionlaw.made import Made
+from rod.functions import Floats
 
-COLUMNS = (
-    *("stretch", "curvature_1_per_m", "pressure_kPa", "energy_Nmm_per_mm"),
-    *("force_N", "moment_Nmm", "chamber_area_mm2", "fitted"),
-)
-"""Of the CSV; energy is that of section and air, whose slopes the next three are."""
+_NAMES = {
+    "stretch": ("stretch", "force_N"),
+    "curvature": ("curvature_1_per_m", "moment_Nmm"),
+    "side_curvature": ("side_curvature_1_per_m", "side_moment_Nmm"),
+    "twist": ("twist_1_per_m", "torque_Nmm"),
+}
+"""Columns of a strain and of its conjugate."""
+
+
+def columns(made: Made) -> tuple[str, ...]:
+    """Of the CSV; energy is that of section and air, whose slopes are forces and chamber."""
+    names = [_NAMES[name] for name in made.section.strains]
+    return (
+        *(strain for strain, _ in names),
+        *("pressure_kPa", "energy_Nmm_per_mm"),
+        *(force for _, force in names),
+        *("chamber_area_mm2", "fitted"),
+    )
 
 
 def lines(made: Made) -> Iterator[str]:
     """What a table is: range, states, errors, seconds."""
-    law, checked = made.law, made.checked
+    law, known = made.section, made.checked
     low, high = law.table.axes[-1].lines[[0, -1]].tolist()
-    ends = [
-        law.chart.strains(np.array([[e, u, pressure]]))[0, 1]
-        for pressure in (low, high)
-        for e in law.table.axes[0].lines[:1]
-        for u in (0.0, 1.0)
-    ]
+    variables = ", ".join(name.replace("_", " ") for name in law.strains)
     yield f"Law of the section by a table: {made.title or made.model}"
-    yield f"  energy per length Φ(stretch, curvature; pressure), by model {made.model}"
+    yield f"  energy per length Φ({variables}; pressure), by model {made.model}"
     yield f"  pressure   {1e3 * low:.4g} to {1e3 * high:.4g} kPa"
-    for pressure, (least, most) in ((low, ends[:2]), (high, ends[2:])):
-        angles = [np.degrees(k * made.length) for k in (least, most)]
-        yield (
-            f"  curvature  {1e3 * least:.4g} to {1e3 * most:.4g} 1/m at {1e3 * pressure:.4g} kPa: "
-            f"{angles[0]:.4g} to {angles[1]:.4g}° over {made.length:g} mm"
-        )
-    stretch = law.table.axes[0].lines[[0, -1]]
+    for pressure in (low, high):
+        ends = _ends(made, pressure)
+        for number, name in enumerate(law.strains[1:], 1):
+            least, most = ends[:, number].tolist()
+            angles = [np.degrees(k * made.length) for k in (least, most)]
+            yield (
+                f"  {name.replace('_', ' '):<10} {1e3 * least:.4g} to {1e3 * most:.4g} 1/m at "
+                f"{1e3 * pressure:.4g} kPa: {angles[0]:.4g} to {angles[1]:.4g}° over "
+                f"{made.length:g} mm"
+            )
+    pulls = [law.chart.sizes(pressure)[0] / 2 for pressure in (low, high)]
     yield (
-        f"  stretch    {stretch[0]:.4g} to {stretch[1]:.4g}, "
-        f"{law.chart.lever:.3g} mm below the line of centroids"
-        if abs(law.chart.lever) > 1e-6
-        else f"  stretch    {stretch[0]:.4g} to {stretch[1]:.4g}"
+        f"  stretch    ±{pulls[0]:.3g} at {1e3 * low:.4g} kPa, ±{pulls[1]:.3g} at "
+        f"{1e3 * high:.4g} kPa, about that without a force"
     )
     yield (
-        f"  states     {len(made.samples.values)}, {checked.states} of them not fitted; "
+        f"  states     {len(made.samples.values)}, {known.states} of them not fitted; "
         f"{made.seconds:.1f} s of processor time"
     )
+    turns = "curvature" if len(law.strains) == 2 else "curvatures and twist"
     yield (
-        f"  errors     at those, of the range: force {_percent(checked.force)}, moment "
-        f"{_percent(checked.moment)}, chamber {_percent(checked.area)}; asked for "
-        f"{_percent(made.error)}"
+        f"  errors     at those, by what they make of the strains of a rod: stretch "
+        f"{_percent(known.force)}, {turns} {_percent(known.moment)}; chamber "
+        f"{_percent(known.area)}; asked for {_percent(made.error)}"
     )
-    yield f"  free       beside trials, of the greatest: {_percent(checked.angle)}"
-    if checked.softest > 0:
-        yield "  convex     in stretch and curvature, everywhere in the range"
+    yield f"  free       beside trials, of the greatest: {_percent(known.angle)}"
+    if known.softest > 0:
+        yield f"  convex     in {variables}, everywhere in the range"
     else:
-        where, curvature, pressure = checked.where
+        *where, pressure = known.where
+        turned = ", ".join(
+            f"{name.replace('_', ' ')} {1e3 * value:.4g} 1/m"
+            for name, value in zip(law.strains[1:], where[1:], strict=True)
+        )
         yield (
-            f"  not convex at stretch {where:.4g}, curvature {1e3 * curvature:.4g} 1/m, "
-            f"{1e3 * pressure:.4g} kPa and about it: a rod may lose its stability there"
+            f"  not convex at stretch {where[0]:.4g}, {turned}, {1e3 * pressure:.4g} kPa and "
+            "about it: a rod may lose its stability there"
         )
     for remark in made.remarks:
         yield f"  note: {remark}"
 
 
+def _ends(made: Made, pressure: float) -> Floats:
+    """Least and greatest strains at a pressure, (2, m)."""
+    ends = np.array([[0.0], [1.0]]) * np.ones(len(made.section.strains))
+    return made.section.chart.strains(np.column_stack([ends, [pressure, pressure]]))
+
+
 def text(made: Made) -> str:
     """All states as CSV, by pressure, curvature and stretch."""
     points, strains, forces = made.samples.points, made.strains, made.forces
-    fitted = {tuple(point) for point in made.law.table.samples.points.tolist()}
+    fitted = {tuple(point) for point in made.section.table.samples.points.tolist()}
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    for row in np.lexsort((strains[:, 0], strains[:, 1], points[:, 2])).tolist():
+    writer.writerow(columns(made))
+    for row in np.lexsort((*strains.T, points[:, -1])).tolist():
         numbers = [
             strains[row, 0],
-            1e3 * strains[row, 1],
-            1e3 * points[row, 2],
+            *(1e3 * strains[row, 1:]),
+            1e3 * points[row, -1],
             made.samples.values[row],
             *forces[row],
         ]

@@ -204,7 +204,7 @@ class _Drive:
                 return self._fail(str(error))
             most = limits.turn / max(way(self._rod, ahead), 1e-12 / total)
             size = min(most, self._size, self._largest)
-            if size < _LEAST * total and self._held is None:
+            if most < _LEAST * total and self._held is None:
                 return self._limit_before(point)
             left = abs(goal - self._s)
             size = left if left <= (1 + _NEAR) * size else size

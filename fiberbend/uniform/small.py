@@ -8,10 +8,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from mpi4py import MPI
 
 from fem.effects.effect import Discrete
-from fem.effects.sums.hold import HOLD, Hold
+from fem.effects.sums.hold import HOLD, Held
 from fem.kinematics.domain import Domain
 from fem.kinematics.uniform import CURVATURE, STRETCH, Uniform
 from fem.march.hooks import AfterStep
@@ -19,7 +20,7 @@ from fem.march.march import March
 from fem.march.records import Report, Rules, State, measure
 from fem.results.diagnosis import Diagnosis
 from fem.scene import Scene
-from fem.solver.bordered import SideCondition
+from fem.solver.bordered import BorderedSystem, SideCondition
 from fem.solver.newton import Newton, Outcome, Settings
 from fem.solver.side_conditions import Functional, GivenFunctional, Stationary
 from fiberbend.case import convert
@@ -101,6 +102,7 @@ class Small:
     """
 
     _stage: _Stage
+    _system: BorderedSystem
 
     def __init__(self, case: Case, *likes: Small, mesh: MeshData | None = None) -> None:
         model = meshed(case)
@@ -272,26 +274,53 @@ class Small:
             self._newton.factorise(unknown, conditions)
         return new if equilibrium.modes() == 0 else None
 
-    def held(self, state: State, holding: Hold, pressure: float) -> State | None:
-        """A stable state near another one, whose stretch and bend are held; None: none found.
+    def held(self, state: State, targets: Mapping[str, float], pressure: float) -> State | None:
+        """A stable state near another one, whose strains are held; None: none found.
+
+        The tangent at the state itself is left factorised, for `responses`.
 
         Args:
             state: of this case, which holds the same motions.
-            holding: at what.
+            targets: by name, as `Hold` has them.
             pressure: MPa.
         """
         scene, equilibrium = self.scene, self._march.equilibrium
-        scene.exchange({holding.key: holding.discrete(scene.body)})
+        holding = {key: item for key, item in scene.discrete.items() if isinstance(item, Held)}
+        for item in holding.values():
+            item.aim(targets)
+        scene.exchange(holding)
         unknown, conditions = self.conditions(state, "value", pressure)
         scene.set_scalar(HOLD, 1.0)
         outcome = self._newton.solve(state.w, unknown, conditions)
         if not outcome.converged or not equilibrium.tells_stability:
             return None
         new = equilibrium.capture()
-        if not outcome.factorisations:
-            self._newton.assemble()
-            self._newton.factorise(unknown, conditions)
+        scene.predict(None)
+        scene.residual()  # whose forces scale the conditions
+        self._newton.assemble()
+        self._system = self._newton.factorise(unknown, conditions)
         return new if equilibrium.modes() == 0 else None
+
+    def responses(
+        self, held: Sequence[str], scalar: str
+    ) -> list[tuple[npt.NDArray[np.float64], dict[str, float]]]:
+        """Rates of the fields and of all scalars that are found, at the state of `held`.
+
+        Args:
+            held: names of what is held: the rates are with its value, over the whole length.
+            scalar: a load, with whose value the last rates are.
+        """
+        scene, names = self.scene, list(self.scene.natural)
+        conditions = [Stationary(scene, name) for name in names]
+        part, found = 1 / scene.body.symmetry_factor, []
+        for name in held:
+            sides = np.zeros(len(names))
+            sides[names.index(name)] = part / scene.equation_scale(name)
+            found.append(self._system.eliminate(np.zeros(len(scene.w)), sides))
+        column = self._newton.solve_linear(scene.load(scalar))
+        sides = np.array([condition.slope(scalar) for condition in conditions])
+        found.append(self._system.eliminate(column, sides))
+        return [(-w, dict(zip(names, (-q).tolist(), strict=True))) for w, q in found]
 
     def keeps_symmetry(self, state: State) -> bool:
         """Whether half of what is modelled does not buckle out of its symmetry at a state."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import json
 from pathlib import Path
 from typing import IO
@@ -108,6 +109,12 @@ class MeshData:
     facets: dict[str, Ints]
     half: bool = False
     points: dict[str, int] = dataclasses.field(default_factory=dict)
+
+    @functools.cached_property
+    def extent(self) -> Floats:
+        """Of the nodes along each axis, mm."""
+        extent: Floats = np.ptp(self.nodes, axis=0)
+        return extent
 
     def facet_nodes(self, name: str) -> Ints:
         """Node numbers of every facet of a named surface, (k, nodes per facet)."""

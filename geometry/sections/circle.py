@@ -51,6 +51,11 @@ class CircleActuator(ShapedActuator):
             yield "floor", f"{floor:g} mm, expected at most the wall, {wall:g} mm"
 
     @property
+    def alike_around(self) -> bool:
+        """A plain tube."""
+        return self.floor is None
+
+    @property
     def wall_above_floor(self) -> float:
         """Thickness in mm of the wall between chamber and floor; 0 where the floor is all of it."""
         above = self.wall - self.floor if self.floor is not None else 0.0

@@ -231,7 +231,7 @@ def test_a_model(tmp_path: Path) -> None:
 from fiberbend.columns import table
 from fiberbend.models.choice import MODELS, choose_model
 
-assert list(MODELS) == ["analytic", "section", "fine-section", "cell", "body"]
+assert list(MODELS) == ["analytic", "section", "fine-section", "cell", "rod", "body"]
 # the dearer of two that support everything is not chosen, but can be asked for
 chosen = read_case("fine.yaml", ["model=auto", "effects.1.winding.as=smeared"])
 assert choose_model(chosen)[0].name == "section"

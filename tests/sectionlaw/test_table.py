@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,14 +16,15 @@ from fiberbend.reader.reader import parse_case
 from fiberbend.schema.problems import CaseError
 from fiberbend.sectionlaw import words
 from fiberbend.sectionlaw.chart import Chart
-from fiberbend.sectionlaw.law import Free
+from fiberbend.sectionlaw.law import PLANE, Free
 from fiberbend.sectionlaw.made import Made, unpacked
-from fiberbend.sectionlaw.range import box_of, reach_of
+from fiberbend.sectionlaw.polynomial import fit
+from fiberbend.sectionlaw.states.held import Held, HeldState
 from fiberbend.sectionlaw.store import Store, digest_of
 from fiberbend.sectionlaw.table import refuse, table_of
-from fiberbend.sectionlaw.walk import Walk
 from fiberbend.trial.solve import solve
 from fiberbend.trial.wanted import Wanted
+from rod.functions import Floats
 from rod.layout import Layout
 from rod.loads import TipMoment
 from rod.rod import Level, Rod
@@ -32,6 +34,7 @@ from tests.trial.cases import Data, checked, shipped, under, wound
 
 BENT: Data = under(shipped("section"), angle="120 deg")
 ERROR = 1e-3
+SPACE = ("stretch", "curvature", "side_curvature", "twist")
 TUBE: Data = wound(
     under(shipped("extending", model="section"), to="40 kPa"),
     **{"fiber": "kevlar", "as": "smeared"},
@@ -52,33 +55,74 @@ def made(store: Store) -> Made:
 def places(made: Made, count: int) -> list[tuple[np.ndarray[Any, Any], float]]:
     """Strains and pressures inside the table, away from its edges."""
     random = np.random.default_rng(5)
-    low, high = np.array([axis.lines[[0, -1]] for axis in made.law.table.axes]).T
+    low, high = np.array([axis.lines[[0, -1]] for axis in made.section.table.axes]).T
     points = low + random.uniform(0.1, 0.9, (count, 3)) * (high - low)
-    strains = made.law.chart.strains(points)
+    strains = made.section.chart.strains(points)
     return [(strains[i : i + 1], float(points[i, 2])) for i in range(count)]
 
 
-def test_the_chart_has_exact_derivatives() -> None:
-    chart, at, pressure, step = Chart(5.0, -0.01, 0.02, 0.3), np.array([1.1, 0.02]), 0.07, 1e-6
-    moved = []
-    for number in range(3):
-        sides = []
-        for sign in (1, -1):
-            x = np.array([*at, pressure])
-            x[number] += sign * step
-            sides.append(
-                (chart.place(x[None, :2], x[2]), chart.first(chart.place(x[None, :2], x[2]), x[2]))
-            )
-        moved.append([(a - b) / (2 * step) for a, b in zip(*sides, strict=True)])
-    place = chart.place(at[None, :], pressure)
-    first = np.column_stack([row[0][0] for row in moved])
-    assert chart.first(place, pressure)[0, :2] == pytest.approx(first, rel=1e-7, abs=1e-7)
-    second = np.column_stack([row[1][0][1] for row in moved])
-    assert chart.second(place, pressure)[0] == pytest.approx(second, rel=1e-6, abs=1e-4)
-    points = np.array([[*place[0], pressure]])
-    assert chart.strains(points)[0] == pytest.approx(at, rel=1e-12)
-    forces = np.array([[3.0, -20.0, 110.0]])
-    assert chart.forces(points, chart.slopes(points, forces)) == pytest.approx(forces, rel=1e-12)
+def chart_of(turns: int) -> Chart:
+    """A chart of a stretch and so many curvatures, all of whose numbers are in use."""
+    random = np.random.default_rng(turns)
+    y = random.normal(size=(60, turns + 1)) / 10
+    noise = random.normal(size=60) / 10
+    unpulled = fit(y, 1.0 + y.sum(axis=1) + (y**2).sum(axis=1) + noise, np.ones(60), 3, 1.0)
+    number = np.arange(turns + 1)
+    rows = (-0.1 * (number + 1), 0.3 * (number + 1), 0.3 + 0.1 * number, 0.5 + 0.2 * number)
+    return Chart(unpulled, *(tuple(row.tolist()) for row in rows))
+
+
+def to(held: Held, *ways: Floats) -> HeldState:
+    """The state at the end of some places that are gone to one after another."""
+    state = held.rest
+    for at in ways:
+        found = held.near(state, at)
+        assert found is not None, at
+        state = found
+    return state
+
+
+def slopes_by_differences(of: Callable[[Floats], Floats], at: Floats, step: float = 1e-5) -> Floats:
+    """∂/∂x of a vector by central differences, a column for each x."""
+    sides = [(of(at + step * e) - of(at - step * e)) / (2 * step) for e in np.eye(len(at))]
+    return np.array(sides).T
+
+
+@pytest.mark.parametrize("turns", [1, 2])
+def test_the_chart_has_exact_derivatives(turns: int) -> None:
+    chart, m = chart_of(turns), turns + 1
+    at = np.array([1.1, *(0.05 * np.arange(1, m)), 0.07])
+    strains, pressure = at[None, :m], 0.07
+
+    def place(x: Floats) -> Floats:
+        return np.array([*chart.place(x[None, :m], x[m])[0], x[m]])
+
+    point = place(at)
+    assert chart.strains(point[None, :])[0] == pytest.approx(at[:m], rel=1e-12)
+    first = chart.first(strains, pressure)[0]
+    assert first == pytest.approx(slopes_by_differences(place, at), rel=1e-7, abs=1e-7)
+    assert chart.back(point[None, :])[0] @ first == pytest.approx(np.eye(m + 1), abs=1e-12)
+    weights = np.linspace(1.0, -2.0, m)
+
+    def weighed(x: Floats) -> Floats:
+        return weights @ chart.first(x[None, :m], float(x[m]))[0, :m]
+
+    second = chart.second(strains, weights[None, :], pressure)[0]
+    assert second == pytest.approx(slopes_by_differences(weighed, at), rel=1e-6, abs=1e-5)
+    random = np.random.default_rng(3)
+    stiff = random.normal(size=(m + 1, m + 1))
+    stiff, force = stiff + stiff.T, random.normal(size=m + 1)
+
+    def carried(u: Floats) -> Floats:
+        """Slopes by the chart of force · x + x · stiff x/2."""
+        x = np.array([*chart.strains(u[None, :])[0], u[m]])
+        return chart.carried(u[None, :], (force + stiff @ x)[None, :])[0]
+
+    here = (force + stiff @ at)[None, :]
+    bent = chart.bent(point[None, :], here, stiff[None, :])[0]
+    assert bent == pytest.approx(slopes_by_differences(carried, point), rel=1e-5, abs=1e-4)
+    again = chart.forces(point[None, :], chart.carried(point[None, :], here))
+    assert again == pytest.approx(here, rel=1e-12)
 
 
 def test_the_law_has_exact_derivatives(made: Made) -> None:
@@ -106,25 +150,30 @@ def test_the_law_has_exact_derivatives(made: Made) -> None:
         assert made.law.chamber_slope(strains, pressure)[0] == pytest.approx(rate, rel=1e-4)
 
 
-@pytest.mark.parametrize("data", [BENT, TUBE], ids=["hemicircle", "tube"])
-def test_solved_forces_are_slopes_of_the_solved_energy(data: Data) -> None:
-    """Of states of the section, without a spline: N, M and the area of the chamber."""
-    case = checked(data)
-    box = box_of(reach_of(case))
-    walk = Walk(case, box)
-    low, high = np.array(box.ranges).T
-    for part in ((0.4, 0.3, 0.6), (0.7, 0.6, 0.2)):
-        point = low + np.array(part) * (high - low)
-        _, slopes = walk.sample(point[None, :])
-        steps = 3e-3 * (high - low)
-        for number, step in enumerate(steps):
-            away = np.zeros(3)
-            away[number] = step
-            near = point + np.outer([-2, -1, 1, 2], away)
-            weights = np.array([1, -8, 8, -1]) / (12 * step)
-            found = weights @ walk.sample(near)[0]
-            span = np.abs(slopes[0, number]) + 1e-3 * np.abs(slopes[0] * steps).max() / step
-            assert slopes[0, number] == pytest.approx(found, abs=1e-5 * span)
+@pytest.mark.parametrize(
+    ("data", "strains"),
+    [(BENT, PLANE), (TUBE, PLANE), (BENT, SPACE), (TUBE, SPACE)],
+    ids=["hemicircle", "tube", "hemicircle in space", "tube in space"],
+)
+def test_forces_and_stiffnesses_are_slopes_of_the_solved_energy(
+    data: Data, strains: tuple[str, ...]
+) -> None:
+    """Of states of the section, without a spline: energy, forces and area, second derivatives."""
+    held = Held(checked(data), strains)
+    m = len(strains)
+    at = np.zeros(m + 1)
+    at[:2], at[2:m], at[m] = (1.02, 0.003), 1e-3, 0.02
+    state = to(held, (held.rest.at + at) / 2, at)
+    steps = np.array([1e-4, *[1e-5] * (m - 1), 1e-4])
+    for number, step in enumerate(steps):
+        away = step * np.eye(m + 1)[number]
+        ahead, behind = (to(held, (held.rest.at + at) / 2, at, at + d) for d in (away, -away))
+        slope = (ahead.energy - behind.energy) / (2 * step)
+        size = np.abs(state.slopes * steps).max() / step
+        assert state.slopes[number] == pytest.approx(slope, abs=1e-4 * size)
+        rates = (ahead.slopes - behind.slopes) / (2 * step)
+        sizes = np.sqrt(np.abs(state.second[number, number] * np.diag(state.second)))
+        assert np.all(np.abs(state.second[number] - rates) < 1e-5 * sizes)
 
 
 def test_a_rod_takes_it(made: Made) -> None:
@@ -147,17 +196,17 @@ def test_a_rod_takes_it(made: Made) -> None:
 
 def test_free_states_are_those_of_trials(made: Made) -> None:
     """At pressures at which no table was compared while it was made."""
-    greatest = made.law.table.axes[-1].lines[-1] / 1.05
+    greatest = made.section.table.axes[-1].lines[-1] / 1.05
     pressures = tuple(float(greatest * part) for part in (0.2, 0.45, 0.9))
     answer = solve(checked(BENT), Wanted(pressures=pressures))
     assert answer.converged
     angle = max(point.angle for point in answer.free)
     for point in answer.free:
         near = Free(1.0 + 0.9 * (point.stretch - 1), 0.9 * point.angle / made.length)
-        found = made.law.free(point.pressure, near)
+        found = made.section.free(point.pressure, near)
         assert found.curvature * made.length == pytest.approx(point.angle, abs=1e-3 * angle)
         assert found.stretch == pytest.approx(point.stretch, abs=1e-4)
-        area = made.law.chamber(np.array([found]), point.pressure)[0]
+        area = made.law.chamber(np.array([found[:2]]), point.pressure)[0]
         assert area * made.length == pytest.approx(point.volume, rel=2e-3)
 
 
@@ -172,27 +221,26 @@ def test_errors_are_those_asked_for(made: Made) -> None:
 
 def test_a_straight_tube_is_its_own_mirror_image(store: Store) -> None:
     made = table_of(checked(TUBE), 1e-2, store=store)
-    axes = made.law.table.axes
-    pressure, most = float(axes[-1].lines.mean()), float(-made.law.chart.least)
-    stretch = float(axes[0].lines.mean())
+    axes = made.section.table.axes
+    pressure, most = float(axes[-1].lines.mean()), -made.section.chart.least[1]
+    stretch = 1.02
     for part in (0.3, 0.8):
         sides = [np.array([[stretch, sign * part * most]]) for sign in (1, -1)]
         left, right = (made.law.gradient(side, pressure)[0] for side in sides)
         scale = np.abs(left).max()
         assert left[0] == pytest.approx(right[0], abs=1e-2 * scale)
         assert left[1] == pytest.approx(-right[1], rel=2e-2)
-    exact = made.forces
-    points = {tuple(p): row for p, row in zip(made.samples.points.tolist(), exact, strict=True)}
-    pairs = [
-        (row, points[(e, 1 - u, p)])
-        for (e, u, p), row in points.items()
-        if (e, 1 - u, p) in points and u < 0.5
-    ]
-    assert len(pairs) >= 9
-    for one, other in pairs:
-        assert one == pytest.approx(other * [1, -1, 1], rel=1e-6, abs=1e-5)
+    held = Held(checked(TUBE), PLANE)
+    sign = np.array([1.0, -1.0, 1.0])
+    for part in (0.3, 0.8):
+        at = np.array([stretch, part * most, pressure])
+        half = (held.rest.at + at) / 2
+        one, other = (to(held, s * half, s * at) for s in (np.ones(3), sign))
+        assert one.slopes == pytest.approx(other.slopes * sign, rel=1e-6, abs=1e-5)
+        image = other.second * np.outer(sign, sign)
+        assert one.second == pytest.approx(image, rel=1e-6, abs=1e-6 * np.abs(image).max())
     free = solve(checked(TUBE), Wanted(pressures=(pressure,))).free[0]
-    found = made.law.free(pressure, Free(stretch, 0.0))
+    found = made.section.free(pressure, Free(stretch, 0.0))
     assert found.stretch == pytest.approx(free.stretch, abs=2e-4)
     assert found.curvature * made.length == pytest.approx(0.0, abs=1e-3)
 
@@ -209,16 +257,19 @@ def test_the_cache_gives_the_same(made: Made, store: Store) -> None:
 
 
 def test_what_enters_has_another_digest() -> None:
-    digest = digest_of(checked(BENT), ERROR, None)
-    assert digest == digest_of(checked(BENT | {"title": "another"}), ERROR, None)
+    digest = digest_of(checked(BENT), PLANE, ERROR, None)
+    assert digest == digest_of(checked(BENT | {"title": "another"}), PLANE, ERROR, None)
     thick = {**BENT, "actuator": BENT["actuator"] | {"wall": "3 mm"}}
     soft = {**BENT, "materials": BENT["materials"] | {"wall": "ecoflex-0030"}}
     others = [thick, soft, under(BENT, angle="90 deg")]
     others.append(
         wound(BENT, pattern="double-helix", pitch="4 mm", fiber="kevlar", **{"as": "smeared"})
     )
-    found = {digest_of(checked(other), ERROR, None) for other in others}
-    found |= {digest_of(checked(BENT), 1e-2, None), digest_of(checked(BENT), ERROR, 0.01)}
+    found = {digest_of(checked(other), PLANE, ERROR, None) for other in others}
+    found |= {
+        digest_of(checked(BENT), PLANE, 1e-2, None),
+        digest_of(checked(BENT), PLANE, ERROR, 0.01),
+    }
     assert len(found | {digest}) == 7
 
 
@@ -242,7 +293,7 @@ def test_a_damaged_table_is_no_table(made: Made, tmp_path: Path) -> None:
 def test_the_csv_has_units_and_all_states(made: Made) -> None:
     rows = list(csv.DictReader(io.StringIO(words.text(made))))
     assert len(rows) == len(made.samples.values)
-    assert set(rows[0]) == set(words.COLUMNS)
+    assert set(rows[0]) == set(words.columns(made))
     row = rows[len(rows) // 2]
     strains = np.array([[float(row["stretch"]), 1e-3 * float(row["curvature_1_per_m"])]])
     pressure = 1e-3 * float(row["pressure_kPa"])

@@ -58,7 +58,7 @@ def test_moments_are_those_of_the_closed_forms() -> None:
     actuator, section = convert.dimensions(given.actuator), section_of(given)
     for name, area in actuator.region_areas().items():
         assert section.hollow[name][2, 2] == pytest.approx(area, rel=1e-6)
-    whole = sum(section.filled.values())
+    whole = np.sum(list(section.filled.values()), axis=0)
     assert whole[2, 2] == pytest.approx(actuator.profile.outer_area, rel=1e-6)
     height = section.height + whole[1, 2] / whole[2, 2]
     assert height == pytest.approx(actuator.face_height, rel=1e-6)

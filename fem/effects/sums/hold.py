@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import dataclasses
+import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from analytic.path import centre_line
-from fem.effects.effect import Discrete, Effect, Natural
+from fem.effects.effect import Effect, Natural
 from fem.effects.sums.functionals import Functionals, Linked
 from fem.kinematics.kinematics import Kinematics
 from fem.kinematics.uniform import AXES, STRETCH, Uniform
@@ -48,22 +48,13 @@ class Hold(Effect):
     def __init__(self, targets: Mapping[str, float]) -> None:
         self.targets = dict(targets)
 
-    def discrete(self, body: Kinematics) -> Discrete:
+    def discrete(self, body: Kinematics) -> Held:
         """The potential of the forces that hold it."""
         assert isinstance(body, Uniform), "only uniform bending is held"
-        return _Held(body, self.targets)
+        return Held(body, self.targets)
 
 
-@dataclasses.dataclass(frozen=True)
-class _Derivatives:
-    """G of what is held, (n,), with its derivatives in the variables, (n, v) and (n, v, v)."""
-
-    value: Floats
-    first: Floats
-    second: Floats
-
-
-class _Held(Linked):
+class Held(Linked):
     """The potential of `Hold` on what is modelled, a part of the whole."""
 
     def __init__(self, body: Uniform, targets: Mapping[str, float]) -> None:
@@ -83,8 +74,7 @@ class _Held(Linked):
             raise ValueError(f"{', '.join(away)}: the kinematics has no such turn")
         length = body.length
         self._from = np.array([length * (name == LENGTHENED) for name in self.names])
-        ends = [targets[n] * (length if n == LENGTHENED else 1.0) for n in self.names]
-        self._way = np.array(ends) - self._from
+        self.aim(targets)
         levers = {n: self._part * (length if n == LENGTHENED else 1.0) for n in self.names}
         more = {name: Natural(0.0, lever, False, True) for name, lever in levers.items()}
         number = np.array([k for k, _ in self._places])
@@ -92,14 +82,27 @@ class _Held(Linked):
         moments = np.where(number > 0, body.span, 1.0)
         super().__init__(body, functionals, "hold section", lengths, moments, more)
         self._variables = [*body.natural, *self.at]
+        self._plane = self._places == [(0, 1)] and not (body.twisted or body.sideways)
         height = 1 / body.size_of(body.natural[0])
         kinds = {STRETCH: 1.0} | dict.fromkeys(AXES, 1 / height)
         kinds |= {n: 1.0 if k else height for n, k in zip(self.at, number, strict=True)}
         self._steps = np.array([_DIFFERENCE * kinds[name] for name in self._variables])
-        self._known: tuple[tuple[float, ...], _Derivatives] | None = None
+        self._known_at: tuple[float, ...] = ()
+        self._first_known: Floats | None = None
+        self._second_known: Floats | None = None
         body.scalar(HOLD)
         self.pair_units = {n: ("N", "mm") if n == LENGTHENED else ("Nmm", "rad") for n in targets}
         self._targets = dict(targets)
+
+    def aim(self, targets: Mapping[str, float]) -> None:
+        """Hold the same at other values.
+
+        Args:
+            targets: by name, as `Hold` has them.
+        """
+        length = self._uniform.length
+        ends = [targets[n] * (length if n == LENGTHENED else 1.0) for n in self.names]
+        self._way: Floats = np.array(ends) - self._from
 
     @staticmethod
     def _axes(body: Uniform) -> set[int]:
@@ -109,7 +112,11 @@ class _Held(Linked):
     # --- the line -------------------------------------------------------------------------------
 
     def _line(self, values: Any) -> Any:
-        """G of all variables, (n,); analytic."""
+        """G of all variables, (n,); analytic. In a plane |g| = λ + k c."""
+        if self._plane:
+            k, stretch, y = values
+            found = {LENGTHENED: abs(stretch + k * y), BEND: k}
+            return self._uniform.length * np.array([found[name] for name in self.names])
         spin, section = np.zeros(3, dtype=values.dtype), self._start.astype(values.dtype)
         stretch = values[self._variables.index(STRETCH)]
         for name, value in zip(self._variables, values, strict=True):
@@ -124,7 +131,12 @@ class _Held(Linked):
         )
 
     def _gradient(self, values: Floats) -> Floats:
-        """∂G/∂(variables), (n, v), by complex steps."""
+        """∂G/∂(variables), (n, v), by complex steps; of a bend in its plane by hand."""
+        if self._plane:
+            k, stretch, y = values
+            sign = math.copysign(1.0, stretch + k * y)
+            rows = {LENGTHENED: [sign * y, sign, sign * k], BEND: [1.0, 0.0, 0.0]}
+            return self._uniform.length * np.array([rows[name] for name in self.names])
         columns = []
         for number in range(len(values)):
             moved = values.astype(complex)
@@ -132,11 +144,27 @@ class _Held(Linked):
             columns.append(self._line(moved).imag / _PUSH)
         return np.array(columns).T
 
+    def _at(self) -> tuple[float, ...]:
+        """Values of all variables; what was found at others is forgotten."""
+        values = tuple(self.own(self._variables).tolist())
+        if values != self._known_at:
+            self._known_at = values
+            self._first_known = self._second_known = None
+        return values
+
     @property
-    def _now(self) -> _Derivatives:
-        values = self.own(self._variables)
-        key = tuple(values.tolist())
-        if self._known is None or self._known[0] != key:
+    def _first(self) -> Floats:
+        """∂G/∂(variables) at the present state, (n, v)."""
+        values = np.array(self._at())
+        if self._first_known is None:
+            self._first_known = self._gradient(values)
+        return self._first_known
+
+    @property
+    def _second(self) -> Floats:
+        """∂²G/∂(variables)² at the present state, (n, v, v)."""
+        values = np.array(self._at())
+        if self._second_known is None:
             second = np.zeros((len(self.names), len(values), len(values)))
             for number, step in enumerate(self._steps):
                 ahead, behind = values.copy(), values.copy()
@@ -144,10 +172,8 @@ class _Held(Linked):
                 behind[number] -= step
                 change = self._gradient(ahead) - self._gradient(behind)
                 second[:, :, number] = change / (2 * step)
-            second = (second + second.transpose(0, 2, 1)) / 2
-            found = _Derivatives(self._line(values), self._gradient(values), second)
-            self._known = key, found
-        return self._known[1]
+            self._second_known = (second + second.transpose(0, 2, 1)) / 2
+        return self._second_known
 
     def _goals(self) -> Floats:
         """Ḡ at the present share."""
@@ -167,7 +193,7 @@ class _Held(Linked):
 
     def law(self) -> Floats:
         """Σ μ_i ∂G_i/∂b."""
-        slopes = self._now.first[:, len(self._uniform.natural) :]
+        slopes = self._first[:, len(self._uniform.natural) :]
         found: Floats = self._part * (self.own(self.names) @ slopes)
         return found
 
@@ -175,9 +201,9 @@ class _Held(Linked):
         """By places and scalars, and by μ."""
         first = len(self._uniform.natural)
         if name in self.names:
-            return self._part * self._now.first[self.names.index(name), first:]
+            return self._part * self._first[self.names.index(name), first:]
         if name in self._variables:
-            column = self._now.second[:, first:, self._variables.index(name)]
+            column = self._second[:, first:, self._variables.index(name)]
             found: Floats = self._part * (self.own(self.names) @ column)
             return found
         return np.zeros(len(self.at))
@@ -186,9 +212,11 @@ class _Held(Linked):
         """Of μ G − Ḡ; of a scalar Σ μ_i ∂G_i/∂q; none of the share, whose work is in pairs."""
         if name in self.names:
             number = self.names.index(name)
-            return self._part * float(self._now.value[number] - self._goals()[number])
+            return self._part * float(
+                self._line(self.own(self._variables))[number] - self._goals()[number]
+            )
         if name in self._uniform.natural:
-            column = self._now.first[:, self._variables.index(name)]
+            column = self._first[:, self._variables.index(name)]
             return self._part * float(self.own(self.names) @ column)
         return 0.0
 
@@ -201,10 +229,10 @@ class _Held(Linked):
             if second == HOLD:
                 return self._part * float(self._way[number])
             if second in self._variables:
-                slope = self._now.first[number, self._variables.index(second)]
+                slope = self._first[number, self._variables.index(second)]
                 return -self._part * float(slope)
             return 0.0
         if first in self._variables and second in self._variables:
             i, j = self._variables.index(first), self._variables.index(second)
-            return -self._part * float(self.own(self.names) @ self._now.second[:, i, j])
+            return -self._part * float(self.own(self.names) @ self._second[:, i, j])
         return 0.0
