@@ -62,7 +62,7 @@ def section_law(case: Case) -> SectionLaw:
     from fiberbend.slender.beside import section_case
 
     store = Store()
-    made = table_of(section_case(case), ERROR, 0.0, store, WIDE)
+    made = table_of(section_case(case), ERROR, 0.0, store)
     known = made.checked
     return SectionLaw(
         law=made.law,
