@@ -58,21 +58,22 @@ class Table:
         *axes, last = self.axes
         first, basis = last.basis(np.array([pressure]))
         reach = slice(int(first[0]), int(first[0]) + last.degree + 1)
-        at_pressure = self.coefficients[..., reach] @ np.moveaxis(basis[:, 0], 0, -1)
+        at_pressure = self.coefficients[..., reach] @ basis[:, 0].T
         found = [axis.basis(x) for axis, x in zip(axes, strains.T, strict=True)]
         places = []
         for number, (axis, (start, _)) in enumerate(zip(axes, found, strict=True)):
             shape = [len(strains)] + [1] * len(axes)
             shape[1 + number] = axis.degree + 1
             places.append((start[:, None] + np.arange(axis.degree + 1)).reshape(shape))
-        near = at_pressure[tuple(places)]
-        out = np.empty((len(orders), len(strains)))
-        for row, order in enumerate(orders):
-            part = near[..., order[-1]]
-            for number in reversed(range(len(axes))):
-                part = np.einsum("n...b,nb->n...", part, found[number][1][order[number]])
-            out[row] = part
-        return out
+        # all derivatives by one variable after the other: (n, splines…, 3) to (n, …, 3 each)
+        part = at_pressure[tuple(places)]
+        for axis, (_, values) in zip(axes, found, strict=True):
+            n = len(strains)
+            flat = part.reshape(n, axis.degree + 1, -1)
+            turned = (values.transpose(1, 0, 2) @ flat).reshape(n, 3, *part.shape[2:])
+            part = np.moveaxis(turned, 1, -1)
+        # now (n, 3 by the pressure, 3 by each strain): moved to the end one after the other
+        return np.stack([part[(slice(None), order[-1], *order[:-1])] for order in orders])
 
     def _unit(self, *strains: int, pressure: int = 0) -> tuple[int, ...]:
         order = [0] * len(self.axes)
@@ -80,6 +81,25 @@ class Table:
             order[number] += 1
         order[-1] = pressure
         return tuple(order)
+
+    def first(self, strains: Floats, pressure: float) -> Floats:
+        """∂Φ by strains and pressure, (n, m + 1)."""
+        m = strains.shape[1]
+        orders = [*(self._unit(i) for i in range(m)), self._unit(pressure=1)]
+        return self._at(strains, pressure, orders).T
+
+    def both(self, strains: Floats, pressure: float) -> tuple[Floats, Floats]:
+        """∂Φ and ∂²Φ by strains and pressure, (n, m + 1) and (n, m + 1, m + 1)."""
+        m = strains.shape[1]
+        orders = [self._unit(i) for i in range(m)]
+        orders += [self._unit(pressure=1)]
+        pairs = list(itertools.combinations_with_replacement(range(m + 1), 2))
+        orders += [self._unit(*(i for i in p if i < m), pressure=p.count(m)) for p in pairs]
+        found = self._at(strains, pressure, orders)
+        second = np.empty((len(strains), m + 1, m + 1))
+        for (i, j), values in zip(pairs, found[m + 1 :], strict=True):
+            second[:, i, j] = second[:, j, i] = values
+        return found[: m + 1].T, second
 
     def value(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""

@@ -80,28 +80,17 @@ class SectionLaw(Derived):
     chart: Chart
     strains: tuple[str, ...] = PLANE
 
-    def _slopes(self, strains: Floats, pressure: float) -> tuple[Floats, Floats]:
-        """Places in the table, and ∂Φ there by its own variables, (n, m + 1)."""
-        place = self.chart.place(strains, pressure)
-        area = self.table.chamber(place, pressure)
-        return place, np.column_stack([self.table.gradient(place, pressure), -area])
-
     def first(self, strains: Floats, pressure: float) -> Floats:
         """∂Φ by strains and P, (n, m + 1)."""
-        _, slopes = self._slopes(strains, pressure)
-        found: Floats = np.einsum("ni,nij->nj", slopes, self.chart.first(strains, pressure))
+        slopes = self.table.first(self.chart.place(strains, pressure), pressure)
+        found: Floats = (slopes[:, None] @ self.chart.first(strains, pressure))[:, 0]
         return found
 
     def second(self, strains: Floats, pressure: float) -> Floats:
         """∂²Φ by strains and P, (n, m + 1, m + 1)."""
-        place, slopes = self._slopes(strains, pressure)
-        n, m = place.shape
-        own = np.empty((n, m + 1, m + 1))
-        own[:, :m, :m] = self.table.hessian(place, pressure)
-        own[:, m, :m] = own[:, :m, m] = -self.table.chamber_gradient(place, pressure)
-        own[:, m, m] = -self.table.chamber_slope(place, pressure)
+        slopes, own = self.table.both(self.chart.place(strains, pressure), pressure)
         turn = self.chart.first(strains, pressure)
-        bent = self.chart.second(strains, slopes[:, :m], pressure)
+        bent = self.chart.second(strains, slopes[:, :-1], pressure)
         found: Floats = turn.transpose(0, 2, 1) @ own @ turn + bent
         return found
 
