@@ -83,20 +83,21 @@ class Table:
         return tuple(order)
 
     def first(self, strains: Floats, pressure: float) -> Floats:
-        """∂Φ by strains and pressure, (n, m + 1)."""
+        """∂Φ by the strains and the pressure, (n, m + 1)."""
         m = strains.shape[1]
         orders = [*(self._unit(i) for i in range(m)), self._unit(pressure=1)]
         return self._at(strains, pressure, orders).T
 
     def both(self, strains: Floats, pressure: float) -> tuple[Floats, Floats]:
-        """∂Φ and ∂²Φ by strains and pressure, (n, m + 1) and (n, m + 1, m + 1)."""
+        """∂Φ, (n, m + 1), and ∂²Φ by the strains and the pressure, (n, m + 1, m + 1), at once."""
         m = strains.shape[1]
-        orders = [self._unit(i) for i in range(m)]
-        orders += [self._unit(pressure=1)]
-        pairs = list(itertools.combinations_with_replacement(range(m + 1), 2))
-        orders += [self._unit(*(i for i in p if i < m), pressure=p.count(m)) for p in pairs]
-        found = self._at(strains, pressure, orders)
+        pairs = list(itertools.combinations_with_replacement(range(m), 2))
+        orders = [*(self._unit(i) for i in range(m)), self._unit(pressure=1)]
+        orders += [self._unit(*pair) for pair in pairs]
+        orders += [self._unit(i, pressure=1) for i in range(m)]
+        found = self._at(strains, pressure, [*orders, self._unit(pressure=2)])
         second = np.empty((len(strains), m + 1, m + 1))
+        pairs += [(i, m) for i in range(m + 1)]
         for (i, j), values in zip(pairs, found[m + 1 :], strict=True):
             second[:, i, j] = second[:, j, i] = values
         return found[: m + 1].T, second

@@ -83,7 +83,7 @@ class SectionLaw(Derived):
     def first(self, strains: Floats, pressure: float) -> Floats:
         """∂Φ by strains and P, (n, m + 1)."""
         slopes = self.table.first(self.chart.place(strains, pressure), pressure)
-        found: Floats = (slopes[:, None] @ self.chart.first(strains, pressure))[:, 0]
+        found: Floats = np.einsum("ni,nij->nj", slopes, self.chart.first(strains, pressure))
         return found
 
     def second(self, strains: Floats, pressure: float) -> Floats:

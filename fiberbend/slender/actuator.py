@@ -88,7 +88,7 @@ def slender(case: Case) -> Slender:
         tip=(0.0, actuator.face_height - section.height, 0.0),
         weight=convert.site(case).weight,
     )
-    made = section_law(case)
+    made = section_law(case, PLANE)
     law = Zones((made.law, cap_law(case, section, PLANE)), _places(len(lengths)))
     found = [effect.on_rod(site) for effect in case.effects]
     terms = [term for each in found for term in each.terms]

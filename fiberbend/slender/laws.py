@@ -16,12 +16,7 @@ from rod.law import Law, Linear
 from rod.layout import AT_REST, STRAINS
 
 ERROR = 1e-3
-"""Of the table of a section, as `fiberbend.sectionlaw.table.table_of` has it."""
-
-
-WIDE = 3.0
-"""Times the usual margins of its range: the weight of the baseline bends its root two and a half
-times as far as it bends the whole."""
+"""Of the table of a section, as `fiberbend.sectionlaw.table.law_of` has it."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -48,25 +43,26 @@ class SectionLaw:
     remarks: tuple[str, ...]
 
 
-def section_law(case: Case) -> SectionLaw:
+def section_law(case: Case, strains: tuple[str, ...]) -> SectionLaw:
     """The law of the section of a rod, from the tables that are kept or anew.
 
     Args:
         case: of model rod.
+        strains: of the rod.
 
     Raises:
         fiberbend.schema.problems.CaseError: the section has no law that reaches as far as the case.
     """
     from fiberbend.sectionlaw.store import Store
-    from fiberbend.sectionlaw.table import table_of
+    from fiberbend.sectionlaw.table import law_of
     from fiberbend.slender.beside import section_case
 
     store = Store()
-    made = table_of(section_case(case), ERROR, 0.0, store)
+    made = law_of(section_case(case), strains, ERROR, store=store)
     known = made.checked
     return SectionLaw(
         law=made.law,
-        free=np.array([(pressure, *state) for pressure, state in made.free]),
+        free=np.array([(p, state.stretch, state.curvature) for p, state in made.free]),
         model=made.model,
         states=made.solved,
         seconds=made.seconds,

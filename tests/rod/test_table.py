@@ -248,3 +248,15 @@ def test_a_table_of_another_number_of_strains() -> None:
     rod = Rod(layout, table)
     state = march(rod, layout.at_rest(), Path(Level(), Level(pressure=0.1)), [1.0])[0]
     np.testing.assert_allclose(state.strains, np.tile([0.05, 0.0], (3, 1)), atol=1e-9)
+
+
+def test_first_and_second_derivatives_at_once_are_those_one_by_one() -> None:
+    table, strains, pressure = tabulate(Counted(), RANGES, 1e-2), inside(5), 0.03
+    first, second = table.both(strains, pressure)
+    np.testing.assert_array_equal(table.first(strains, pressure), first)
+    np.testing.assert_array_equal(first[:, :2], table.gradient(strains, pressure))
+    np.testing.assert_array_equal(-first[:, 2], table.chamber(strains, pressure))
+    np.testing.assert_array_equal(second[:, :2, :2], table.hessian(strains, pressure))
+    np.testing.assert_array_equal(-second[:, 2, :2], table.chamber_gradient(strains, pressure))
+    np.testing.assert_array_equal(-second[:, :2, 2], table.chamber_gradient(strains, pressure))
+    np.testing.assert_array_equal(-second[:, 2, 2], table.chamber_slope(strains, pressure))
