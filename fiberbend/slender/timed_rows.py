@@ -26,7 +26,7 @@ class TimedRows:
         rod = timed.slender.rod
         rest = rod.shape(rod.layout.at_rest())
         amounts = timed.motion.level(0.0).amounts
-        self._elastic = timed.motion.stored(rest.strains, 0.0)
+        self._elastic, _ = timed.motion.stored(rest.strains, 0.0)
         self._potential = timed.motion.held(rest, amounts)
         self._first: float | None = None
 

@@ -33,12 +33,17 @@ class Equations:
         self._motion, self._rod, self._before, self._step = motion, motion.rod, before, step
         self._level = motion.level(before.time + step / 2)
         acting = self._rod.acting(self._level)
-        self._kept = [pair for pair in acting if pair[0].conservative]
+        dead = motion.dead
+        self._kept = [p for p in acting if p[0].conservative and id(p[0]) not in dead]
+        self._dead = sum(
+            (amount * dead[id(term)] for term, amount in acting if id(term) in dead),
+            start=np.zeros_like(before.velocity),
+        )
         self._others = [pair for pair in acting if not pair[0].conservative]
         self._lengths = self._rod.layout.lengths[:, None]
         # A = weight ΔX P + start
         self._weight = 2 / step**2 + motion.drag / step
-        self._start = -2 / step * before.velocity @ motion.inertia
+        self._start = -2 / step * before.velocity @ motion.inertia - self._dead
         self.pressure = self._level.pressure
         """In the step, MPa."""
         if motion.air is None:
@@ -50,7 +55,11 @@ class Equations:
             lengths = self._rod.layout.lengths
             self._compliance = float(lengths @ self._rod.law.chamber_slope(*first))
         self._terms = self._potential(before.shape)
-        self._elastic = self._rod.elastic(before.strains, self.pressure)
+        self._elastic = (
+            before.energy.elastic - self.pressure * before.energy.volume
+            if self.pressure == before.pressure
+            else self._rod.elastic(before.strains, self.pressure)
+        )
 
     def _potential(self, shape: Shape) -> float:
         """Of the terms that have one, N mm."""
@@ -154,6 +163,12 @@ class Equations:
             out += term.tangent(middle, amount) / 2
         return out
 
+    def _free(self, energy: Energy, shape: Shape) -> float:
+        """∫ Φ ds after the step, under the pressure in it."""
+        if self._end == self.pressure:
+            return energy.elastic - self._end * energy.volume
+        return self._rod.elastic(shape.strains, self.pressure)
+
     # --- what it leads to ------------------------------------------------------------------------
 
     def moved(self, change: Floats, iterations: int) -> Moving:
@@ -171,16 +186,16 @@ class Equations:
             velocity = shape.moved(motion.rates_of(shape, velocity))
             kinetic, dropped = motion.kinetic(velocity), kinetic - motion.kinetic(velocity)
         amounts = motion.level(time).amounts
-        energy = Energy(
-            kinetic, motion.stored(shape.strains, self._end), motion.held(shape, amounts)
-        )
+        stored, volume = motion.stored(shape.strains, self._end)
+        energy = Energy(kinetic, stored, motion.held(shape, amounts), volume)
         # along held, moving and held strains the air does ∫ P dV = Δ(Φ + P V) − ΔΦ(P in the step)
-        changed = rod.elastic(shape.strains, self.pressure) - self._elastic
+        changed = self._free(energy, shape) - self._elastic
         loads = -sum(
             float(np.vdot(term.residual(self._middle, amount), change))
             for term, amount in self._others
         )
-        loads += energy.potential - before.energy.potential - self._potential(shape) + self._terms
+        held = self._potential(shape) - self._terms - float(np.vdot(self._dead, moved))
+        loads += energy.potential - before.energy.potential - held
         work = Work(
             air=energy.elastic - before.energy.elastic - changed,
             loads=loads,

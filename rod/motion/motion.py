@@ -30,8 +30,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 import numpy as np
-from scipy.linalg import solve
-from scipy.linalg.lapack import dgetrf, dgetrs
+from scipy.linalg.lapack import dgetrf, dgetrs, dposv
 
 from rod.functions import Floats
 from rod.motion.air import Air
@@ -40,6 +39,7 @@ from rod.motion.moving import Energy, Moving, Work
 from rod.rod import Level, Rod
 from rod.shape import Shape
 from rod.statics import NoEquilibriumError, size
+from rod.term import Dead
 
 _CLOSE = 1e-12
 _LOOSE = 1e-7
@@ -71,6 +71,7 @@ class Motion:
         drag: as given.
         air: as given.
         damped: anything takes energy.
+        dead: loads of terms that never change, by the terms' identities.
         inertia: of the rod.
         sizes: changes of strains that count as one, (n, m).
         weights: W of the discrete gradient, (n, m).
@@ -97,6 +98,7 @@ class Motion:
         self.viscous = rod.layout.lengths[:, None, None] * matrices
         self.viscid = bool(np.any(matrices))
         self.damped = bool(drag) or self.viscid
+        self.dead = {id(term): term.loads for term in rod.terms if isinstance(term, Dead)}
         self.inertia = rod.inertia
         self.sizes = size(rod)
         # any positive weights: by those of lengths and of sizes a stretch and an angle count alike
@@ -121,9 +123,8 @@ class Motion:
         rates = np.zeros_like(strains) if rates is None else rates
         velocity, level = shape.moved(rates), self.level(time)
         pressure = level.pressure if pressure is None else pressure
-        energy = Energy(
-            self.kinetic(velocity), self.stored(strains, pressure), self.held(shape, level.amounts)
-        )
+        stored, volume = self.stored(strains, pressure)
+        energy = Energy(self.kinetic(velocity), stored, self.held(shape, level.amounts), volume)
         return Moving(time, shape, velocity, rates, rates, pressure, energy, Work())
 
     # --- energy ----------------------------------------------------------------------------------
@@ -132,10 +133,14 @@ class Motion:
         """Of the frames' velocity, N mm."""
         return float(np.vdot(velocity @ self.inertia, velocity)) / 2
 
-    def stored(self, strains: Floats, pressure: float) -> float:
-        """Elastic energy of the sections without the work of the air, ∫ Φ ds + P V, N mm."""
-        rod = self.rod
-        return rod.elastic(strains, pressure) + pressure * rod.volume(strains, pressure)
+    def stored(self, strains: Floats, pressure: float) -> tuple[float, float]:
+        """Elastic energy of the sections without the work of the air, and the chamber's volume.
+
+        Returns:
+            ∫ Φ ds + P V, N mm, and V, mm³.
+        """
+        volume = self.rod.volume(strains, pressure)
+        return self.rod.elastic(strains, pressure) + pressure * volume, volume
 
     def held(self, shape: Shape, amounts: tuple[float, ...]) -> float:
         """Potential of the terms, N mm."""
@@ -144,8 +149,7 @@ class Motion:
 
     def energy(self, moving: Moving) -> float:
         """Of motion, sections with their air, and all terms that have a potential, N mm."""
-        air = moving.pressure * self.rod.volume(moving.strains, moving.pressure)
-        return moving.energy.total - air
+        return moving.energy.total - moving.pressure * moving.energy.volume
 
     # --- steps -----------------------------------------------------------------------------------
 
@@ -156,9 +160,7 @@ class Motion:
     def rates_of(self, shape: Shape, velocity: Floats) -> Floats:
         """ε̇ with the momentum of a velocity of the frames, (n, m), 1/s and 1/(mm s)."""
         momentum = shape.pulled(velocity @ self.inertia).ravel()
-        rates: Floats = solve(
-            shape.mass(self.inertia), momentum, assume_a="pos", check_finite=False
-        )
+        rates: Floats = dposv(shape.mass(self.inertia), momentum)[1]
         return rates.reshape(shape.strains.shape)
 
     def run(self, moving: Moving, step: float, count: int) -> Iterator[Moving]:

@@ -50,11 +50,13 @@ class Energy:
         kinetic: of all masses.
         elastic: of the sections, without the work of the air.
         potential: of the terms that have one, such as weight and contact.
+        volume: of the chamber, mm³: what its pressure does work on.
     """
 
     kinetic: float
     elastic: float
     potential: float
+    volume: float
 
     @property
     def total(self) -> float:
