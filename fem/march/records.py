@@ -148,7 +148,8 @@ class Critical:
         before: unstable modes before it.
         after: unstable modes beyond it.
         side: of a bifurcation whose other branch was taken, what chose its side: 'by the loads',
-            or 'chosen' where both are alike; empty where the path was not left.
+            or 'chosen' where both are alike; empty where the path was not left, and of a rod 'not
+            looked for'.
         wrinkle: of a bifurcation, the mode's waves span less than three elements.
     """
 

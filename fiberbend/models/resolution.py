@@ -88,7 +88,7 @@ def lost_pressure(case: Case, model: ModelKind) -> Iterator[str]:
             f"winding: P too low by about {low:.1f} % at 90° to {high:.1f} % at 360°: the rubber "
             f"between turns {turns.pitch:g} mm apart bulges (docs/crosscheck.md{scaled})"
         )
-    elif model.ends:
+    elif model.ends and model.elements():
         yield "winding: resolved; against a cell within 1.5 % (docs/evidence/winding.md)"
 
 

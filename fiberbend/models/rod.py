@@ -13,7 +13,7 @@ from fiberbend.effects.records import LINE, MOTION
 from fiberbend.models.ends import AT_ENDS
 from fiberbend.models.model import ModelKind, Objection, SlenderModel
 
-_SECTION_S, _CELL_S = 25.0, 200.0
+_SECTION_S, _CELL_S = 8.0, 15.0
 """Seconds for the table of a section and of a cell, of the baseline (`fiberbend table`)."""
 
 

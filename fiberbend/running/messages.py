@@ -34,6 +34,7 @@ _SAME = 1e-9
 _LEFT = {
     "by the loads": "the run goes on along it, to the side that the loads or the mesh favour",
     "chosen": "the run goes on along it, to one of two sides that are alike",
+    "not looked for": "a rod does not look for it and goes on along the old one",
     "": "no state is found along it on which the body rests",
 }
 """What a run does at a bifurcation, by the side that it takes."""

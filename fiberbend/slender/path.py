@@ -330,15 +330,17 @@ class _Drive:
             low, high = (middle, high) if middle.state.unstable == before else (low, middle)
         slopes = [self._ahead_or_none(each) for each in (old, new)]
         turned = None not in slopes and slopes[0] * slopes[1] < 0  # type: ignore[operator]
+        limit = turned and self._held is not None
         self._course.report.critical.append(
             Critical(
-                kind="limit" if turned and self._held is not None else "bifurcation",
+                kind="limit" if limit else "bifurcation",
                 scalar=self._ramp.load,
                 value=high.values[self._ramp.load],
                 conjugate=self._rod.volume(high.state.strains, high.values.get(PRESSURE, 0.0)),
                 control=high.angle,
                 before=before,
                 after=after,
+                side="" if limit or after < before else "not looked for",
             )
         )
 

@@ -272,3 +272,20 @@ def test_a_pressure_beyond_the_greatest_one_stops_there(by_law: Put) -> None:
     assert result.status == "stopped"
     assert "25 kPa is not reached: limit point at 20 kPa" in result.reason
     assert max(row[col.PRESSURE] for row in result.rows) == pytest.approx(20.0, rel=1e-3)
+
+
+def test_it_buckles_at_eulers_load(by_law: Put) -> None:
+    """Pressed along its axis by a dead force; caps as stiff as the chamber would be, nearly."""
+    by_law(linear())
+    force = {"tip-load": {"force": ["0 N", "0 N", "-0.4 N"]}}
+    result = solve(case(TINY, force, **ROUND))
+    (point,) = result.run["critical_points"]
+    assert point["kind"] == "bifurcation"
+    assert point["side"] == "not looked for"
+    length = 120.0
+    euler = math.pi**2 * STIFFNESS[1, 1] / (4 * length**2)
+    # caps of 10 mm are 13 % stiffer, and it is shorter by P/EA
+    assert 0.4 * point["value"] == pytest.approx(euler, rel=0.05)
+    assert 0.4 * point["value"] > euler
+    assert any("goes on along the old one" in line for line in result.run["warnings"])
+    assert result.rows[-1][col.MODES] == 1

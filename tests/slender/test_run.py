@@ -110,8 +110,25 @@ def test_two_ranks_have_the_history_of_one(mpirun: MpiRun, tmp_path: Path) -> No
         assert float(row["tip_y_mm"]) == pytest.approx(exact[col.TIP_Y], rel=1e-9)
 
 
-def test_what_is_not_reached_ends_with_two(tmp_path: Path) -> None:
-    settings = ["--set", "output.at_angles=[170 deg]"]
+@pytest.mark.parametrize(
+    ("setting", "code", "why"),
+    [
+        ("output.at_angles=[170 deg]", 0, "170° not reached"),
+        (
+            "effects.3={tip-load: {moment: [400 N mm, 0 N mm, 0 N mm]}}",
+            2,
+            "in a table from",
+        ),
+    ],
+)
+def test_a_run_that_fails_ends_with_two(
+    setting: str, code: int, why: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Stopped, it has an answer up to there; beyond the range of its law there is none."""
     quiet = ["--set", "output.pictures=false", "--set", "output.report=false"]
-    arguments = ["run", str(SHIPPED), *settings, *quiet, "--out", str(tmp_path / "run")]
-    assert main(arguments) == 2
+    arguments = ["run", str(SHIPPED), "--set", setting, *quiet, "--out", str(tmp_path / "run")]
+    assert main(arguments) == code
+    run = json.loads((tmp_path / "run" / "run.json").read_text(encoding="utf-8"))
+    assert run["status"] == ("failed" if code else "stopped")
+    assert why in run["reason"]
+    assert why in capfd.readouterr().err
