@@ -262,13 +262,10 @@ def test_what_it_leaves_and_answers(tmp_path: Path, by_law: Put) -> None:
     entry = json.loads((folder / "run.json").read_text(encoding="utf-8"))["motion"]
     assert entry["time_s"] == pytest.approx(0.4)
     assert (folder / "pictures" / "over_time.png").stat().st_size > 10_000
-    from PIL import Image
+    from PIL import Image, ImageSequence
 
     with Image.open(folder / "pictures" / "animation.gif") as film:
-        durations = []
-        for number in range(film.n_frames):
-            film.seek(number)
-            durations.append(film.info["duration"])
+        durations = [frame.info["duration"] for frame in ImageSequence.Iterator(film)]
     # 20 ms from frame to frame of 0.4 s, in real time but for the first and the last one
     assert set(durations[1:-1]) == {20}
     text = "\n".join(lines(answer(given, found.rows, found.run)))
@@ -335,3 +332,31 @@ def test_the_command_writes_table_and_picture(tmp_path: Path, by_law: Put, capsy
     assert main(command) == 1
     assert main([*command[:2], "--at", "30 kPa", "--out", str(tmp_path / "b")]) == 1
     assert "--at: 30 kPa, expected from 0 to 20 kPa" in capsys.readouterr().err
+
+
+# --- control --------------------------------------------------------------------------------------
+
+
+def test_a_plant_with_inertia_swings_about_the_plant_at_rest(by_law: Put) -> None:
+    """Filled, then shut and damped: it comes to the angle that its curve has at its pressure."""
+    from analytic.control.controller import Valves
+    from analytic.control.plant import PlantParameters
+    from fiberbend.control.rod_plant import Damping, RodPlant, rod_curve, rod_of
+
+    by_law(BENT)
+    rod = rod_of(timed(), math.radians(20))
+    curve, ended = rod_curve(rod)
+    assert not ended
+    parameters = PlantParameters(supply=0.02, dead_volume=1000.0)
+    plant = RodPlant(rod, parameters, Damping(0.02, 20.0))
+    assert plant.angle == pytest.approx(curve.angle[0], abs=1e-9)
+    plant.advance(Valves.FILL, 0.03)
+    swings = []
+    for _ in range(100):
+        plant.advance(Valves.HOLD, 0.01)
+        swings.append(plant.angle)
+    at_rest = np.interp(plant.pressure, curve.pressure, curve.angle)
+    assert plant.angle == pytest.approx(at_rest, abs=2e-3)
+    assert max(swings) > 1.02 * plant.angle
+    with pytest.raises(ValueError, match="lag: no effect beside the rod's inertia"):
+        RodPlant(rod, PlantParameters(lag=0.1), Damping())

@@ -21,7 +21,7 @@ from fiberbend.process import signals
 from fiberbend.process.signals import stop_of
 from fiberbend.results.folder import MESH, RunFolder
 from fiberbend.results.states import LAST, step_label, write_snapshot
-from fiberbend.running import messages, record
+from fiberbend.running import record
 from fiberbend.running.calibrated import Own
 from fiberbend.running.hooks import shows_states
 from fiberbend.running.launch import on_rank_0
@@ -63,11 +63,13 @@ def run_moving(
         return on_rank_0(comm, run.go)
     except KeyboardInterrupt as error:
         stop = stop_of(error)
-        stop.reason = messages.interrupted(run.rows, 0, False)
+        at = f"{run.rows[-1][col.TIME]:.4g} s" if run.rows else "its begin"
+        stop.reason = f"stopped at {at}; the rows up to there are kept, --resume begins anew"
         stop.together = comm.size == 1 or None
         if folder is not None and folder.writes:
             # a motion is not gone on with: what is known of it stays
-            folder.write_history(run.rows)
+            if run.rows:
+                folder.write_history(run.rows)
             known = (run.rows, progress.wall_s, comm.size)
             folder.write_run(**record.unfinished("interrupted", stop.reason, model.name, *known))
         raise stop from None
