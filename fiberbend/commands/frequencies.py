@@ -68,7 +68,7 @@ def frequencies(
     launch.start_mpi()
     import numpy as np
 
-    from fiberbend.drawing.modes import plot_modes
+    from fiberbend.drawing.moving.modes import plot_modes
     from fiberbend.drawing.page import own_style
     from fiberbend.slender.frequencies import vibrations
 

@@ -267,7 +267,7 @@ class _MovingRun:
         }
 
     def _draw_over_time(self, folder: RunFolder, why: str | None, entry: dict[str, Any]) -> None:
-        from fiberbend.drawing.over_time import plot_over_time
+        from fiberbend.drawing.moving.over_time import plot_over_time
 
         events = [
             (e["time_s"], f"{'touches' if e['touch'] else 'leaves'} {e['name']}")
