@@ -69,6 +69,9 @@ _LOADED = {
     "fiberbend.commands.export:export": (
         "Write an actuator as a rod for PyElastica, MuJoCo or SOFA, with a script that runs."
     ),
+    "fiberbend.commands.frequencies:frequencies": (
+        "Write natural frequencies and modes of an actuator at pressures, as a rod."
+    ),
     "fiberbend.commands.report:report": "Write report.html of a run, a sweep or a design again.",
 }
 for _place, _text in _LOADED.items():
