@@ -155,7 +155,8 @@ def refuse(case: Case, strains: tuple[str, ...] = PLANE) -> None:
     if symmetry.sideways and not problems:
         text = "a table is of a section that keeps to its plane but for a twist"
         problems.append(Problem("effects", f"{text}; of this one: {symmetry.words()}"))
-    if symmetry.twists and "twist" not in strains and not problems:
+    if symmetry.twists and not problems:
+        # a table over twist too has not been made and compared yet: `_TWISTED_LINES`
         text = f"a table of {' and '.join(strains)} is of a section that bends in its plane"
         problems.append(Problem("effects", f"{text}; of this one: {symmetry.words()}"))
     if problems:
