@@ -32,6 +32,15 @@ class Term(Protocol):
         """Derivative of the residual by the amount, (n, m)."""
 
 
+@runtime_checkable
+class Dead(Term, Protocol):
+    """A term whose potential is −amount Σ A : X of loads A that never change."""
+
+    @property
+    def loads(self) -> Floats:
+        """A on the frames, (n + 1, 3, 4); see `Shape.pulled`."""
+
+
 class Iterate(Term, Protocol):
     """A term within one search by Newton's method, of which it remembers something."""
 

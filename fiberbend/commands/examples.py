@@ -54,10 +54,19 @@ EXAMPLES = {
   fiberbend design cases/designs/bend_at_pressure.yaml
   fiberbend design cases/designs/blocked_force.yaml --set actuator.length="80 mm"
 """,
+    "frequencies": """Examples:
+  fiberbend frequencies cases/swing.yaml
+  fiberbend frequencies cases/swing.yaml --at "0 kPa" --at "25 kPa" --modes 5
+""",
     "table": """Examples:
   fiberbend table cases/section.yaml
   fiberbend table cases/section.yaml --error 0.5% --from "10 kPa" --out law
   fiberbend table cases/circle.yaml --set actuator.wall="3 mm"
+""",
+    "export": """Examples:
+  fiberbend export runs/section --to mujoco
+  fiberbend export cases/section.yaml --to pyelastica --density floor="1.3 g/cm^3"
+  fiberbend export runs/section --to json --out rods/section --overwrite
 """,
     "report": """Examples:
   fiberbend report runs/section --open

@@ -46,10 +46,14 @@ THREAD = "thread"
 """A winding has its pitch and its thread stretches."""
 TURNS = "turns"
 """Every turn of a winding lies where it is wound."""
+OUTLINE = "outline"
+"""A model has a winding as the outline of its section alone, alike all along."""
 HOOPS = "hoops"
 """A circumference can be fixed."""
 ZONES = "zones"
 """Winding and materials may differ along the length."""
+MOTION = "motion"
+"""A model moves in time, with its mass."""
 
 
 @dataclasses.dataclass(frozen=True)

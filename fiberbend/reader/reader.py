@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -17,6 +18,7 @@ from fiberbend.case.case import (
     Output,
     Solver,
 )
+from fiberbend.case.timed.spec import TimeSpec
 from fiberbend.effects.table import EffectEntry, unwrap
 from fiberbend.models import choice
 from fiberbend.reader.checks import ValidParts, check, mesh_problems
@@ -188,6 +190,9 @@ def _valid_parts(data: Mapping[str, Any]) -> ValidParts:
             valid[name] = part.model_validate(data.get(name, {}))
         except ValidationError:
             continue
+    if data.get("time") is not None:
+        with contextlib.suppress(ValidationError):
+            valid["time"] = TimeSpec.model_validate(data["time"])
     entries: Any = data.get("effects")
     broken, effects = not isinstance(entries, list), {}
     for index, entry in enumerate([] if broken else entries):

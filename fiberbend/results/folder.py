@@ -81,6 +81,7 @@ _OF_A_RUN = (
     *("pictures/rest.png", "pictures/animation.gif", "pictures/animation.mp4"),
     *("pictures/undeformed.png", "pictures/cut.png", "pictures/montage.png", "pictures/bent*.png"),
     *("pictures/pressure_*.png", "pictures/tip_*.png", "pictures/contact_*.png"),
+    *("pictures/over_time.png", "pictures/modes.png"),
     *("pictures/section_*.png", "pictures/cell_*.png", "pictures/fiber_*.png"),
 )
 _OF_A_SWEEP = (TABLE, ABOUT_SWEEP, TRENDS, "maps/*.png", REPORT)

@@ -52,6 +52,7 @@ class Animation:
         target: Target,
         strained: Iterable[tuple[Snapshot, Floats]],
         again: Callable[[], Iterable[Snapshot]],
+        frame: float | None = None,
     ) -> None:
         """Write the GIF.
 
@@ -60,6 +61,8 @@ class Animation:
             strained: every state in space, rest first, and its maximum principal logarithmic
                 strain at the nodes of every cell, (m, k).
             again: gives the same states once more.
+            frame: seconds from one state to the next where they are a motion; else all of them
+                take the same time together.
 
         Raises:
             ValueError: no state.
@@ -90,7 +93,7 @@ class Animation:
                 write_forces(panel, obstacles, self._surfaces.points(state), state, 10)
                 yield page.pixels()
 
-        _save(target, frames(), len(values))
+        _save(target, frames(), len(values), frame)
 
     def _image(
         self,
@@ -114,7 +117,7 @@ def _extremes(points: Floats) -> Floats:
     return extremes
 
 
-def _save(target: Target, frames: Iterable[Image], number: int) -> None:
+def _save(target: Target, frames: Iterable[Image], number: int, frame: float | None) -> None:
     from PIL import Image as Pillow
 
     palette = _palette()
@@ -123,6 +126,8 @@ def _save(target: Target, frames: Iterable[Image], number: int) -> None:
         for frame in frames
     ]
     pace = int(np.clip(1000 * _SECONDS / number, _QUICK, _SLOW))
+    if frame is not None:
+        pace = round(1000 * frame)
     times = [pace] * number
     times[0] = times[-1] = max(_REST * pace, _STAYS)
     pages[0].save(

@@ -57,6 +57,10 @@ def run_rod(
         own: what the run has of itself beside its case.
         scratch: where states go without a folder, or None.
     """
+    if case.time is not None:
+        from fiberbend.running.slender.moving import run_moving
+
+        return run_moving(case, model, folder, progress, comm, own, scratch)
     run = _RodRun(case, model, folder, progress, comm.size, own or Own(), scratch)
     try:
         return on_rank_0(comm, run.go)
