@@ -60,6 +60,13 @@ class Rod(SlenderModel):
         if case.output.fields and "fields" in case.output.model_fields_set:
             yield "output.fields", "a rod has no fields: its sections are known by their law alone"
 
+    def limits_of_zones(self, case: Case) -> Iterator[Objection]:
+        """What no law of one zone knows of the whole."""
+        load = case.inflation
+        if load is not None and load.angle is not None:
+            text = "zones have a pressure in common and no angle, expected to"
+            yield "effects.pressure.angle", text
+
     def leaves_out(self, case: Case) -> Iterator[Objection]:
         """How sections near the caps differ from others."""
         yield from super().leaves_out(case)
