@@ -62,10 +62,11 @@ class Rod(SlenderModel):
 
     def limits_of_zones(self, case: Case) -> Iterator[Objection]:
         """What no law of one zone knows of the whole."""
-        load = case.inflation
-        if load is not None and load.angle is not None:
-            text = "zones have a pressure in common and no angle, expected to"
-            yield "effects.pressure.angle", text
+        for index, effect in enumerate(case.effects):
+            own = effect.inflation()
+            if own is not None and own.angle is not None:
+                text = "zones have a pressure in common and no angle, expected to"
+                yield f"effects.{index}.{effect.name}.angle", text
 
     def leaves_out(self, case: Case) -> Iterator[Objection]:
         """How sections near the caps differ from others."""
