@@ -174,3 +174,16 @@ def test_zones_follow_one_another(monkeypatch: pytest.MonkeyPatch) -> None:
         assert row[f"zone_{number}_stretch"] == pytest.approx(1.0, rel=1e-9)
     assert row[col.ANGLE] == pytest.approx(math.degrees(sum(parts)), rel=1e-9)
     assert result.run["section_law"]["states"] == 2
+
+
+def test_on_a_table_mirrored_loads_have_mirrored_answers(by_law: Put) -> None:
+    by_law(in_space(500.0))
+    on = {"contact": {"plane": {"point": ["0 mm", "-20 mm", "0 mm"], "normal": [0, 1, 0]}}}
+    pulled = (case(PRESSED, on, force(x)) for x in (0.02, -0.02))
+    one, other = (solve(each).rows[-1] for each in pulled)
+    press, gap = (col.contact("plane", name) for name in ("y_N", "gap_mm"))
+    assert one[press] > 0.01
+    for key in (press, gap, col.ANGLE, col.TIP_Y, col.TIP_Z):
+        assert one[key] == pytest.approx(other[key], rel=1e-8), key
+    for key in (col.SIDE_ANGLE, col.TWIST, col.TIP_X):
+        assert one[key] == pytest.approx(-other[key], rel=1e-8), key
