@@ -21,6 +21,7 @@ from fiberbend.case.case import (
 from fiberbend.case.timed.spec import TimeSpec
 from fiberbend.effects.table import EffectEntry, unwrap
 from fiberbend.models import choice
+from fiberbend.reader.base_case import refuse_hand
 from fiberbend.reader.checks import ValidParts, check, mesh_problems
 from fiberbend.reader.defaults import complete
 from fiberbend.reader.own_files import inlined, root_paths
@@ -67,6 +68,7 @@ def read_case(path: Path | str, settings: Iterable[str] | Mapping[str, Any] = ()
     source = read_yaml(Path(path))
     settings = settings if isinstance(settings, Mapping) else list(settings)
     data = source.data
+    refuse_hand(data, path)
     if "case" in data and not _DESIGN.isdisjoint(data):
         raise CaseError([Problem(str(path), f"this is a design: fiberbend design {path}")])
     if "case" in data and not _SWEEP.isdisjoint(data):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
@@ -93,7 +94,7 @@ class Animation:
                 write_forces(panel, obstacles, self._surfaces.points(state), state, 10)
                 yield page.pixels()
 
-        _save(target, frames(), len(values), frame)
+        save_gif(target, frames(), len(values), _palette(), frame)
 
     def _image(
         self,
@@ -117,10 +118,28 @@ def _extremes(points: Floats) -> Floats:
     return extremes
 
 
-def _save(target: Target, frames: Iterable[Image], number: int, frame: float | None) -> None:
+def save_gif(
+    target: Target,
+    frames: Iterable[Image],
+    number: int,
+    palette: Any = None,
+    frame: float | None = None,
+) -> None:
+    """Write frames as an animation; the first and the last one stay.
+
+    Args:
+        target: a path, or a file open for writing bytes.
+        frames: pixels of each.
+        number: of frames.
+        palette: a Pillow image that has the colours of all; by default those of the first frame.
+        frame: seconds of each where they are a motion.
+    """
     from PIL import Image as Pillow
 
-    palette = _palette()
+    if palette is None:
+        first = next(frames := iter(frames))
+        frames = itertools.chain([first], frames)
+        palette = Pillow.fromarray(first).quantize(256, dither=Pillow.Dither.NONE)
     pages = [
         Pillow.fromarray(frame).quantize(palette=palette, dither=Pillow.Dither.NONE)
         for frame in frames

@@ -124,7 +124,7 @@ class _MovingRun:
         self._spent = clock.process_time() - began
         self.warn([*self.own.remarks, *rod.section.remarks], silent=True)
         self.warn(known)
-        touching = passes_itself(rod, [rows.point(moving) for _, moving in self._kept])
+        touching = passes_itself(rod, [moving.shape for _, moving in self._kept])
         if touching is not None:
             step = self._kept[touching][0]
             text = f"at {self.rows[step][col.TIME]:.4g} s it passes through itself: not modelled"

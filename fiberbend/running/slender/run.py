@@ -114,7 +114,7 @@ class _RodRun:
         self.warn([*self.own.remarks, *rod.section.remarks], silent=True)
         self.warn(known)
         self.warn(messages.remarks(report))
-        touching = passes_itself(rod, course.points)
+        touching = passes_itself(rod, [point.state.shape for point in course.points])
         if touching is not None:
             at = course.points[touching]
             measures = {"control": at.angle, "value pressure": at.values.get("pressure", 0.0)}
