@@ -66,5 +66,6 @@ def problems(case: Case) -> Iterator[Objection]:
 
 
 def objection(case: Case, model: ModelKind) -> Objection | None:
-    """The first reason why a model does not support a case in full, or None where it does."""
-    return next(itertools.chain(model.leaves_out(case), model.refuses(case)), None)
+    """The first reason why a model is not known to support a case in full; None where it is."""
+    against = (model.leaves_out(case), model.refuses(case), model.unproven(case))
+    return next(itertools.chain.from_iterable(against), None)

@@ -170,6 +170,10 @@ class ModelKind(ABC):
                 if what not in self.offers:
                     yield f"effects.{index}.{effect.name}", text
 
+    def unproven(self, case: Case) -> Iterator[Objection]:
+        """Where nobody has put it beside a dearer model: a reason not to choose it, no doubt."""
+        yield from ()
+
     # --- what it makes of a case ---------------------------------------------------------------
 
     def origin(self, case: Case) -> float:
@@ -246,6 +250,10 @@ class SlenderModel(ModelKind):
     @abstractmethod
     def unknowns(self, case: Case) -> int:
         """Strains of all pieces."""
+
+    @abstractmethod
+    def strains(self, case: Case) -> tuple[str, ...]:
+        """Names of the strains of a piece, as `rod.layout.STRAINS` orders them."""
 
     @abstractmethod
     def law_seconds(self, case: Case) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -69,8 +69,12 @@ class Slender:
         return place
 
 
-def slender(case: Case) -> Slender:
+def slender(case: Case, tell: Callable[[str], None] | None = None) -> Slender:
     """The rod of a case of model rod.
+
+    Args:
+        case: the case.
+        tell: takes lines of progress while the law of its section is made.
 
     Raises:
         fiberbend.schema.problems.CaseError: its section has no law as far as the case goes.
@@ -91,7 +95,7 @@ def slender(case: Case) -> Slender:
         weight=convert.site(case).weight,
         body=convert.site(case),
     )
-    made = section_law(case, PLANE)
+    made = section_law(case, PLANE, tell)
     chamber = slice(CAP_PIECES, CAP_PIECES + PIECES)
     law = along(case, made, cap_law(case, section, PLANE), layout, chamber)
     found = [effect.on_rod(site) for effect in case.effects]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import numpy as np
 
@@ -48,12 +49,15 @@ class SectionLaw:
     remarks: tuple[str, ...]
 
 
-def section_law(case: Case, strains: tuple[str, ...]) -> SectionLaw:
+def section_law(
+    case: Case, strains: tuple[str, ...], tell: Callable[[str], None] | None = None
+) -> SectionLaw:
     """The law of the section of a rod, from the tables that are kept or anew.
 
     Args:
         case: of model rod.
         strains: of the rod.
+        tell: takes lines of progress while a table is made.
 
     Raises:
         fiberbend.schema.problems.CaseError: the section has no law that reaches as far as the case.
@@ -63,7 +67,7 @@ def section_law(case: Case, strains: tuple[str, ...]) -> SectionLaw:
     from fiberbend.slender.beside import section_case
 
     store = Store()
-    made = law_of(section_case(case), strains, ERROR, store=store)
+    made = law_of(section_case(case), strains, ERROR, store=store, tell=tell)
     known = made.checked
     return SectionLaw(
         law=made.law,
