@@ -14,7 +14,7 @@ export PRTE_MCA_rmaps_default_mapping_policy := :oversubscribe
 
 .DEFAULT_GOAL := help
 .PHONY: help setup tools demo sweep test browser notebook verify hard survive tables speed accuracy \
-    calibration knowledge growth times validate peers check format docs pictures schema clean \
+    calibration knowledge growth times validate peers robots check format docs pictures schema clean \
     test-fast test-wheel test-debian13 test-image platforms paper
 
 help: ## list the commands
@@ -107,6 +107,10 @@ validate: setup ## figures beside those that no one here wrote, docs/validation.
 paper: setup ## figures and tables of the paper with verdicts, runs/paper/index.html; FULL=1: bodies too; ASSUME=1: what it leaves open, anew
 	$(if $(ASSUME),OPENBLAS_NUM_THREADS=1 $(BIN)/python -m bench.paper.assumed)
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m bench.paper $(if $(FULL),--full)
+
+robots: setup ## PyElastica and MuJoCo in build/, and the tests of what they make of an export
+	bench/peers/robots.sh
+	$(BIN)/python -m pytest tests/export
 
 peers: setup ## bend the same actuator in CalculiX, felupe and plain dolfinx; half an hour
 	bench/peers/setup.sh

@@ -15,6 +15,7 @@ from bench.fig11 import KPA, LEVER, MOMENT, Fig11
 from bench.tables import ROOT, table
 
 PAGE = ROOT / "docs" / "contact.md"
+ROD = "## On a rod\n"
 ACTUATORS = ((8, 160), (8, 130), (6, 160))
 SHORT: dict[str, Any] = {"length": "24 mm", "cap": "6 mm"}
 LEVEL: dict[str, Any] = {"section": "rectangle", "width": "16 mm", "height": "8 mm"}
@@ -274,7 +275,9 @@ def main() -> None:
     contact_pictures.forces(actuators, LEVER, PRESSURES, images / "contact_force.png")
     contact_pictures.blocked(actuators[0].contact, images / "contact_blocked.png")
     contact_pictures.grasps(bar, plane, images / "contact_grasp.png")
-    PAGE.write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
+    # what is said of the rod is written by hand
+    _, _, rod = PAGE.read_text(encoding="utf-8").partition(ROD)
+    PAGE.write_text("\n".join(lines).rstrip() + f"\n\n{ROD}{rod}", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -22,6 +22,7 @@ from fiberbend.trial.fields import number, with_number
 from fiberbend.trial.loads import bent, straight
 from fiberbend.trial.solve import Trials
 from fiberbend.trial.wanted import Wanted
+from materials.bedding import Bedding
 from materials.bulging import Bulging
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -155,7 +156,7 @@ def calibrations() -> Iterator[str]:
             yield f"| {name} | {path} | {factor:g} | {told} | {rate:.1f} |"
 
 
-def _told(trials: Trials, case: Case, taken: Sequence[Bulging]) -> list[float]:
+def _told(trials: Trials, case: Case, taken: Sequence[Bulging | Bedding]) -> list[float]:
     """Pressures and the moment, by a case's own calibrations, or by those of another one."""
     free, kept = (with_bulging(case, b) for b in taken) if taken else (case, case)
     pressures = [point.pressure for point in trials.solve(free, Wanted(ANGLES)).free]

@@ -66,6 +66,9 @@ _LOADED = {
     "fiberbend.commands.table:table": (
         "Write the law of a section as a table: energy, force and moment, for rods."
     ),
+    "fiberbend.commands.export:export": (
+        "Write an actuator as a rod for PyElastica, MuJoCo or SOFA, with a script that runs."
+    ),
     "fiberbend.commands.report:report": "Write report.html of a run, a sweep or a design again.",
 }
 for _place, _text in _LOADED.items():

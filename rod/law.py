@@ -62,8 +62,9 @@ class Linear:
 
     def __post_init__(self) -> None:
         count = len(self.rest)
+        largest = float(np.abs(self.stiffness).max())
         if self.stiffness.shape != (count, count) or not np.allclose(
-            self.stiffness, self.stiffness.T, rtol=1e-12, atol=0.0
+            self.stiffness, self.stiffness.T, rtol=1e-12, atol=1e-12 * largest
         ):
             raise ValueError(f"stiffness: a symmetric matrix of {count} × {count} expected")
         if self.thrust is not None and np.shape(self.thrust) != (count,):

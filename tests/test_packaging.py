@@ -27,6 +27,8 @@ DEBIAN = {"basix", "cffi", "dolfinx", "ffcx", "gmsh", "mpi4py", "petsc4py", "ufl
 """Comes with FEniCSx: pip cannot install it."""
 OPTIONAL = {"IPython"}
 """Is there where a notebook is."""
+HANDED_OVER = {"Sofa", "elastica", "mujoco"}
+"""Is imported by scripts that `fiberbend export` writes for other programs."""
 PART_OF = {"pydantic-core": "pydantic"}
 
 
@@ -52,7 +54,7 @@ def imported(file: Path) -> set[str]:
 
 def test_dependencies_are_what_is_imported() -> None:
     used = set().union(*(imported(file) for file in files() if file.suffix == ".py"))
-    used -= {*sys.stdlib_module_names, *PACKAGES, *DEBIAN, *OPTIONAL}
+    used -= {*sys.stdlib_module_names, *PACKAGES, *DEBIAN, *OPTIONAL, *HANDED_OVER}
     found_in = importlib.metadata.packages_distributions()
     # Debian's packages need not say what modules they have
     needed = {found_in.get(name, [name])[0].lower() for name in used}

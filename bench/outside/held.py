@@ -35,8 +35,8 @@ ASKED = {48.0: (0.2, 0.2), -48.0: (0.2, 0.2), -85.0: (0.25, None)}
 UNKNOWN = {
     48.0: "wall, thread count, end fittings",
     -48.0: "wall, thread count, end fittings",
-    -85.0: "the wound angle as made (−79° would have the measured M/P), wall, thread count, end "
-    "fittings",
+    -85.0: "the wound angle as made (−79° would have the measured M/P and an F/P of +72 mm²), "
+    "wall, thread count, end fittings",
 }
 
 

@@ -6,12 +6,14 @@ from collections.abc import Hashable
 
 import numpy as np
 
+from fem.effects.bedded_fibers import BeddedPotential, Run
 from fem.effects.bulging_fibers import BulgingPotential
 from fem.effects.effect import Effect
 from fem.effects.embedded_fibers import FiberPotential
 from fem.kinematics.kinematics import Kinematics
 from geometry.mesh.data import Floats
 from geometry.winding.segments import EmbeddedFibers, SmearedFibers
+from materials.bedding import Bedding
 from materials.bulging import Bulging
 
 
@@ -88,3 +90,30 @@ class CalibratedWinding(_Fibers):
     def discrete(self, body: Kinematics) -> BulgingPotential:
         """The potential of fibers and bulge on this body."""
         return BulgingPotential(body, self.segments, self.whole, self.bulging, self.tension_only)
+
+
+class BeddedWinding(_Fibers):
+    """Families of fibers as membranes, each on rubber that yields under it.
+
+    Args:
+        segments: smeared pieces of fiber on the winding's outline of a section.
+        stiffness: axial stiffness EA of a fiber, N; of several the one of every segment, (n,).
+        bedding: stiffness of the rubber.
+        run: how they run.
+
+    Raises:
+        ValueError: a stiffness that is not positive.
+    """
+
+    segments: SmearedFibers
+
+    def __init__(
+        self, segments: SmearedFibers, stiffness: float | Floats, bedding: Bedding, run: Run
+    ) -> None:
+        super().__init__(segments, stiffness)
+        self.bedding = bedding
+        self.run = run
+
+    def discrete(self, body: Kinematics) -> BeddedPotential:
+        """The potential of fibers, bulges and slip on this body."""
+        return BeddedPotential(body, self.segments, self.stiffness, self.bedding, self.run)

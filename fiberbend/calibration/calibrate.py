@@ -5,17 +5,19 @@ from __future__ import annotations
 import dataclasses
 import time
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fiberbend.calibration import reach as classes
+from fiberbend.calibration import ways
 from fiberbend.calibration.digest import content, digest
 from fiberbend.calibration.reach import Reach
-from fiberbend.calibration.record import DOUBTFUL, Calibrated, Calibration
+from fiberbend.calibration.record import DOUBTFUL, DOUBTFUL_FAMILIES, Calibrated, Calibration
 from fiberbend.calibration.store import Store
 from fiberbend.case.case import Case
 from fiberbend.schema.problems import CaseError, Problem
 
 if TYPE_CHECKING:
+    from materials.bedding import Bedding
     from materials.bulging import Bulging
 
 
@@ -24,7 +26,7 @@ def waits(case: Case) -> bool:
     return any(effect.uncalibrated() for effect in case.effects)
 
 
-def with_bulging(case: Case, bulging: Bulging) -> Case:
+def with_bulging(case: Case, bulging: Bulging | Bedding) -> Case:
     """The case with the numbers that it waits for.
 
     Args:
@@ -75,7 +77,7 @@ def calibrate(
                 if found is None:
                     tell("winding: its cell is solved to calibrate it")
                     found, kept = _solve(case, reach), False
-                    store.keep(mark, found, content(case, reach))
+                    store.keep(mark, found, _content(case, reach))
         if last or not found.whole or not classes.short_of(case, found):
             return _result(case, found, mark, kept, tuple(store.remarks))
     raise AssertionError("the last class ends the loop")
@@ -83,9 +85,16 @@ def calibrate(
 
 def _classes(case: Case) -> Iterator[tuple[Reach, str, bool]]:
     """Classes of curvature from the first that holds a case's angles on, with their digests."""
+    if ways.of_families(case):
+        yield Reach.of(0), digest(ways.content(case)), True
+        return
     for number in range(classes.first(case).number, classes.CLASSES):
         reach = Reach.of(number)
         yield reach, digest(content(case, reach)), number == classes.CLASSES - 1
+
+
+def _content(case: Case, reach: Reach) -> dict[str, Any]:
+    return ways.content(case) if ways.of_families(case) else content(case, reach)
 
 
 def _solve(case: Case, reach: Reach) -> Calibration:
@@ -93,6 +102,10 @@ def _solve(case: Case, reach: Reach) -> Calibration:
 
     began = time.perf_counter()
     try:
+        if ways.of_families(case):
+            from fiberbend.calibration.families import calibrated
+
+            return calibrated(case)
         return fit(case, reach, cell_states(case, reach), began)
     except CalibrationError as error:
         index = next(n for n, effect in enumerate(case.effects) if effect.uncalibrated())
@@ -111,11 +124,17 @@ def _result(
 
 def _doubts(case: Case, result: Calibrated) -> Iterator[str]:
     """What makes a calibration doubtful for a case."""
-    if result.left_percent > DOUBTFUL:
+    most = DOUBTFUL_FAMILIES if ways.of_families(case) else DOUBTFUL
+    if result.left_percent > most:
         yield (
             f"winding: its calibration leaves {result.left_percent:.1f} % between section and "
-            f"cell, more than {DOUBTFUL:g} %"
+            f"cell, more than {most:g} %"
         )
+    if ways.of_families(case):
+        if not result.found.whole:
+            up_to = 1e3 * result.found.pressure
+            yield f"winding: its cell came to {up_to:.4g} kPa; beyond, nothing is known of it"
+        return
     if beyond := classes.short_of(case, result.found):
         yield f"winding: {beyond} nothing is known of its calibration"
     load = case.inflation

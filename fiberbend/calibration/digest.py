@@ -37,6 +37,20 @@ def content(case: Case, reach: Reach) -> dict[str, Any]:
         case: a case with a winding.
         reach: how far its cell is bent.
     """
+    return common(case) | {
+        "winding": [
+            effect.model_dump(exclude={"representation", "bulging", "bedding"})
+            for effect in case.effects
+            if effect.winds()
+        ],
+        "reach": dataclasses.asdict(reach),
+        "straight": case.straight,
+        "mesh": [CELL, LAYERS, SECTION, TOLERANCE],
+    }
+
+
+def common(case: Case) -> dict[str, Any]:
+    """What enters the calibration of any winding."""
     given = convert.site(case)
     return {
         "section": {
@@ -48,14 +62,6 @@ def content(case: Case, reach: Reach) -> dict[str, Any]:
             part: {"law": item.law, "bulk": item.bulk, **dict(item.parameters)}
             for part, item in given.materials.items()
         },
-        "winding": [
-            effect.model_dump(exclude={"representation", "bulging"})
-            for effect in case.effects
-            if effect.winds()
-        ],
-        "reach": dataclasses.asdict(reach),
-        "straight": case.straight,
-        "mesh": [CELL, LAYERS, SECTION, TOLERANCE],
         "code": _code(),
     }
 

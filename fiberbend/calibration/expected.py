@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from fiberbend.calibration import cases, reach
+from fiberbend.calibration import cases, reach, ways
 from fiberbend.calibration.calibrate import known, waits
 from fiberbend.calibration.record import words
 from fiberbend.case.case import Case
@@ -28,6 +28,9 @@ def expected(case: Case) -> Iterator[str]:
             yield f"spread, bulging as the case says ({words(numbers)})"
     if not waits(case):
         return
+    if ways.of_families(case) and (reason := ways.objection(case)):
+        yield f"NOT to be calibrated: {reason}"
+        return
     kept = known(case)
     if kept is not None:
         yield f"calibrated before ({words(kept.found.bulging())}; left {kept.left_percent:.2f} %)"
@@ -41,6 +44,10 @@ def expected(case: Case) -> Iterator[str]:
 
 def seconds(case: Case) -> float:
     """Seconds to calibrate a case whose winding waits for its numbers, kernels compiled."""
+    if ways.of_families(case):
+        cell = ways.small(case, "cell")
+        model = meshed(cell)
+        return _FIT_S + len(ways.PARTS) * model.step_seconds(cell, model.size(cell))
     cell = cases.bent_cell(case, reach.first(case))
     model = meshed(cell)
     steps = _STEPS[0] if case.turns is not None and case.turns.twists else sum(_STEPS)

@@ -13,7 +13,7 @@ from fem.effects.effect import Discrete
 from fem.march.records import State
 from fiberbend.calibration import cases
 from fiberbend.calibration.reach import Reach, height
-from fiberbend.calibration.record import Calibration
+from fiberbend.calibration.record import OfPattern
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.uniform.small import Reading, Small
@@ -100,7 +100,7 @@ def _bent(case: Case, reach: Reach, sign: float) -> tuple[Small, tuple[Reading, 
     return small, tuple(small.read(state) for state in states), whole, report.reason
 
 
-def fit(case: Case, reach: Reach, cell: CellStates, began: float) -> Calibration:
+def fit(case: Case, reach: Reach, cell: CellStates, began: float) -> OfPattern:
     """The three numbers of a case, by least squares over the states of its cell.
 
     Args:
@@ -120,7 +120,7 @@ def fit(case: Case, reach: Reach, cell: CellStates, began: float) -> Calibration
     rest = convert.dimensions(case.actuator).chamber_volume / case.actuator.length
     bent = cell.bent
     length = cases.bent_cell(case, reach).actuator.length
-    return Calibration(
+    return OfPattern(
         stiffness=numbers.stiffness,
         linear=numbers.linear,
         quadratic=numbers.quadratic,

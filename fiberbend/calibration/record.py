@@ -8,21 +8,22 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from materials.bedding import Bedding
     from materials.bulging import Bulging
 
 DOUBTFUL = 0.5
 """Percent left between calibrated section and cell that a user is told of."""
+DOUBTFUL_FAMILIES = 1.5
+"""The same of families."""
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, kw_only=True)
 class Calibration:
-    """Three numbers with which a section gives what its cell gives, and how well.
+    """Numbers with which a section gives what its cell gives, and how well.
 
     Attributes:
-        stiffness: K0, MPa/mm.
-        linear: a1.
-        quadratic: a2.
-        bent_percent: greatest difference between section and cell in the pressure for an angle.
+        bent_percent: greatest difference between section and cell in the pressure for an angle; of
+            families in any turn, in the lengthening and in the pressure.
         straight_percent: the same in the moment that keeps them straight; 0 where that is not
             looked at.
         states: number of states of the cell.
@@ -33,9 +34,6 @@ class Calibration:
         seconds: that cell and fit have taken.
     """
 
-    stiffness: float
-    linear: float
-    quadratic: float
     bent_percent: float
     straight_percent: float
     states: int
@@ -50,41 +48,103 @@ class Calibration:
             if not isinstance(value, int | float) or not math.isfinite(value):
                 raise ValueError(f"{name} = {value!r}, expected a finite number")
 
-    def bulging(self) -> Bulging:
-        """The three numbers as the finite-element code takes them."""
-        from materials.bulging import Bulging
-
-        return Bulging(self.stiffness, self.linear, self.quadratic)
+    def bulging(self) -> Bulging | Bedding:
+        """The numbers as the finite-element code takes them."""
+        raise NotImplementedError
 
     def entries(self) -> dict[str, Any]:
         """As a mapping of plain values."""
         return dataclasses.asdict(self)
 
-    @classmethod
-    def read(cls, entries: Mapping[str, Any]) -> Calibration:
-        """From such a mapping.
 
-        Raises:
-            ValueError: it is none.
-        """
-        try:
-            return cls(**entries)
-        except TypeError as error:
-            raise ValueError(str(error)) from None
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class OfPattern(Calibration):
+    """Of a pattern of one pitch.
+
+    Attributes:
+        stiffness: K0, MPa/mm.
+        linear: a1.
+        quadratic: a2.
+    """
+
+    stiffness: float
+    linear: float
+    quadratic: float
+
+    def bulging(self) -> Bulging:
+        """The three numbers."""
+        from materials.bulging import Bulging
+
+        return Bulging(self.stiffness, self.linear, self.quadratic)
 
 
-def named(numbers: Bulging) -> dict[str, float]:
-    """Three numbers as run.json names them."""
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class OfFamilies(Calibration):
+    """Of families of threads.
+
+    Attributes:
+        normal: k0, MPa.
+        along: k_s, MPa.
+        across: a.
+        by_pressure: c.
+    """
+
+    normal: float
+    along: float
+    across: float
+    by_pressure: float
+
+    def bulging(self) -> Bedding:
+        """The four numbers."""
+        from materials.bedding import Bedding
+
+        return Bedding(self.normal, self.along, self.across, self.by_pressure)
+
+
+def read(entries: Mapping[str, Any]) -> Calibration:
+    """A calibration from its entries.
+
+    Raises:
+        ValueError: they are of none.
+    """
+    kind = OfFamilies if "normal" in entries else OfPattern
+    try:
+        return kind(**entries)
+    except TypeError as error:
+        raise ValueError(str(error)) from None
+
+
+def named(numbers: Bulging | Bedding) -> dict[str, float]:
+    """Numbers as run.json names them."""
+    from materials.bulging import Bulging
+
+    if isinstance(numbers, Bulging):
+        return {
+            "stiffness_MPa_per_mm": numbers.stiffness,
+            "linear": numbers.linear,
+            "quadratic": numbers.quadratic,
+        }
     return {
-        "stiffness_MPa_per_mm": numbers.stiffness,
-        "linear": numbers.linear,
-        "quadratic": numbers.quadratic,
+        "normal_MPa": numbers.normal,
+        "along_MPa": numbers.along,
+        "across": numbers.across,
+        "pressure": numbers.pressure,
     }
 
 
-def words(numbers: Bulging) -> str:
-    """Three numbers with their names and units."""
-    return f"K0 {numbers.stiffness:.3g} MPa/mm, a1 {numbers.linear:.3g}, a2 {numbers.quadratic:.3g}"
+def words(numbers: Bulging | Bedding) -> str:
+    """Numbers with their names and units."""
+    from materials.bulging import Bulging
+
+    if isinstance(numbers, Bulging):
+        return (
+            f"K0 {numbers.stiffness:.3g} MPa/mm, a1 {numbers.linear:.3g}, "
+            f"a2 {numbers.quadratic:.3g}"
+        )
+    return (
+        f"k0 {numbers.normal:.3g} MPa, k_s {numbers.along:.3g} MPa, a {numbers.across:.3g}, "
+        f"c {numbers.pressure:.3g}"
+    )
 
 
 @dataclasses.dataclass(frozen=True)

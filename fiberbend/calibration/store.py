@@ -7,6 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+from fiberbend.calibration import record
 from fiberbend.calibration.record import Calibration
 from fiberbend.process.kept import Kept
 
@@ -49,7 +50,7 @@ def _read(entry: Any, digest: str) -> Calibration:
         raise ValueError("its content is not what was written")
     if entry["digest"] != digest:
         raise ValueError("it is of another section")
-    return Calibration.read(entry["found"])
+    return record.read(entry["found"])
 
 
 def _sum(entry: dict[str, Any]) -> str:

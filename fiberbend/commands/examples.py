@@ -59,6 +59,11 @@ EXAMPLES = {
   fiberbend table cases/section.yaml --error 0.5% --from "10 kPa" --out law
   fiberbend table cases/circle.yaml --set actuator.wall="3 mm"
 """,
+    "export": """Examples:
+  fiberbend export runs/section --to mujoco
+  fiberbend export cases/section.yaml --to pyelastica --density floor="1.3 g/cm^3"
+  fiberbend export runs/section --to json --out rods/section --overwrite
+""",
     "report": """Examples:
   fiberbend report runs/section --open
   fiberbend report runs/section --out section.html

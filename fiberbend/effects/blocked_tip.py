@@ -56,16 +56,14 @@ class BlockedTipEffect(Effect):
 
     @staticmethod
     def _rigid(site: Site) -> float:
-        """Stiffness of strips that keep their height, MPa/mm: as of obstacles between which a body
-        is kept straight.
-        """
+        """Stiffness of strips, MPa/mm: that of obstacles that keep a body straight."""
         return _STIFFNESS * 3 * site.materials["wall"].initial_shear_modulus / site.actuator.wall
 
     def wants(self) -> dict[str, str]:
         """Roof and post as surfaces."""
         return {
-            STRIPS: "roof and post are no surfaces of it: closed forms fix the tip rigidly, of a rod "
-            "the sheath yields",
+            STRIPS: "roof and post are no surfaces of it: closed forms fix the tip rigidly, of a "
+            "rod the sheath yields",
         }
 
     def mirror_breaker(self) -> str:

@@ -245,7 +245,7 @@ class ContactEffect(Effect):
         )
 
     def on_rod(self, site: RodSite) -> OnRod:
-        """One penalty for each obstacle, as on a body; under roof and post the sheath yields too."""
+        """One penalty for each obstacle; under roof and post the sheath yields too."""
         from fiberbend.effects.slender.sheath import under_strip
         from fiberbend.effects.slender.skins import skin
         from rod.contact.touch import Touch

@@ -80,6 +80,7 @@ if TYPE_CHECKING:
     from geometry.mesh.data import Floats, MeshData
     from geometry.sections.size import MeshSize, Strips
     from geometry.winding.strip import Window
+    from materials.bedding import Bedding
     from materials.bulging import Bulging
 
 
@@ -280,7 +281,7 @@ class Effect(Spec):
         """Whether it waits for numbers that the cell of its section gives."""
         return False
 
-    def bulges(self) -> Bulging | None:
+    def bulges(self) -> Bulging | Bedding | None:
         """How stiff rubber is that bulges between its turns; None where that is not given."""
         return None
 
@@ -288,7 +289,7 @@ class Effect(Spec):
         """What stands for it in the cell by which a winding is calibrated; None: left out."""
         return None
 
-    def with_bulging(self, bulging: Bulging) -> Effect:
+    def with_bulging(self, bulging: Bulging | Bedding) -> Effect:
         """The effect with the numbers that it waited for."""
         raise NotImplementedError(f"effect {self.name} is not calibrated")
 

@@ -19,13 +19,14 @@ from fiberbend.effects.effect import (
     Site,
     Stretch,
 )
-from fiberbend.effects.wound import zoned
+from fiberbend.effects.records import OUTLINE
+from fiberbend.effects.wound import bedded, zoned
 from fiberbend.effects.wound.by_families import ByFamilies
 from fiberbend.effects.wound.by_pattern import ByPattern
 from fiberbend.effects.wound.family import Around, FamilySpec, bend, fiber_problems
 from fiberbend.effects.wound.felt import hardly_felt
 from fiberbend.effects.wound.room import rounded
-from fiberbend.effects.wound.thread import BulgingSpec, FiberSpec
+from fiberbend.effects.wound.thread import BeddingSpec, BulgingSpec, FiberSpec
 from fiberbend.effects.wound.threads import Threads, stiffness_of
 from fiberbend.effects.wound.turns import Turns
 from fiberbend.schema.problems import Problem
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from geometry.mesh.data import Floats, MeshData
     from geometry.winding.helix import Winding
     from geometry.winding.segments import EmbeddedFibers
+    from materials.bedding import Bedding
     from materials.bulging import Bulging
 else:
     PatternName = Literal[tuple(PATTERNS)]
@@ -81,6 +83,8 @@ class WindingEffect(Effect):
     models section and analytic."""
     bulging: BulgingSpec | None = None
     """How stiff that rubber is, where it is known: no cell is solved; calibrated only."""
+    bedding: BeddingSpec | None = None
+    """The same under threads of families."""
     width: LengthOrZero | None = None
     """Width of the ribbon that stands for the thread, its diameter by default; discrete, or in the
     cell of a calibrated winding. "0 mm" makes it a line, under which the pressure drifts with the
@@ -109,7 +113,7 @@ class WindingEffect(Effect):
     @property
     def _breaker(self) -> str:
         """Why it is not its own mirror image, so that it may twist; empty where it is."""
-        return self._threads.breaker(self.representation == SMEARED)
+        return self._threads.breaker(self._spread)
 
     def needs(self) -> dict[str, str]:
         """Turns where every one is to lie by itself, twist where the pattern has a hand."""
@@ -121,6 +125,8 @@ class WindingEffect(Effect):
             )
         if self.representation == CALIBRATED:
             needed[THREAD] = "in closed forms no rubber bulges between turns (leave out `as`)"
+            if self.families is not None:
+                needed[OUTLINE] = "families are calibrated in a section (as: discrete or smeared)"
         if self._breaker:
             needed[TWIST] = "the closed form has no twist"
         return needed
@@ -161,17 +167,21 @@ class WindingEffect(Effect):
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
         """Ribbon and thread, and whether there is room for them."""
         idle = {}
-        if self.bulging is not None:
+        if self.numbers is not None:
             idle = dict.fromkeys(("width", "lines"), "where bulging is given and no cell solved")
         if self.representation == SMEARED:
-            idle = dict.fromkeys(("width", "lines", "bulging"), "on a smeared winding")
+            keys = ("width", "lines", "bulging", "bedding")
+            idle = dict.fromkeys(keys, "on a smeared winding")
         elif self.representation == DISCRETE:
-            idle = {"bulging": "where every turn lies by itself"}
+            idle = dict.fromkeys(("bulging", "bedding"), "where every turn lies by itself")
         for key, where in idle.items():
             if getattr(self, key) is not None:
                 yield Problem(f"{path}.{key}", f"no effect {where}, expected no value")
         if self.representation != SMEARED and self.width == 0 and (self.lines or 1) > 1:
             yield Problem(f"{path}.lines", f"{self.lines}, expected 1 line where the width is zero")
+        slack = self.tension_only and self._wanted == CALIBRATED
+        families, bedding = self.families is not None, self.bedding is not None
+        yield from bedded.problems(path, families, self.bulging is not None, bedding, slack)
         if self.bulging is not None:
             yield from self.bulging.problems(f"{path}.bulging")
         wrong = list(self._wrong(path))
@@ -193,7 +203,12 @@ class WindingEffect(Effect):
     @property
     def _wanted(self) -> Kind | None:
         """How it is represented, as far as the case says."""
-        return self.representation or (None if self.bulging is None else CALIBRATED)
+        return self.representation or (None if self.numbers is None else CALIBRATED)
+
+    @property
+    def numbers(self) -> BulgingSpec | BeddingSpec | None:
+        """What a calibration gives it."""
+        return self.bulging if self.families is None else self.bedding
 
     def _runs(self, path: str) -> Iterator[Problem]:
         """Neither pattern nor families, or both; what is wrong with either."""
@@ -211,12 +226,6 @@ class WindingEffect(Effect):
                 yield Problem(f"{path}.{key}", "no effect beside families, expected no value")
         for number, family in enumerate(self.families):
             yield from family.problems(f"{path}.families.{number}")
-        if self._wanted == CALIBRATED:
-            yield Problem(
-                f"{path}.as",
-                '"calibrated", but one stiffness of the bulge between turns stands for one pitch '
-                "all around, expected smeared or discrete with families",
-            )
 
     def completed(self, offers: frozenset[str] | None) -> Self:
         """As finely as the model can have it; every turn where the model is to be chosen."""
@@ -225,14 +234,14 @@ class WindingEffect(Effect):
             ribbon = self.width is not None or self.lines is not None
             spread = offers is not None and TURNS not in offers and not ribbon
             kind = SMEARED if spread else DISCRETE
-            if self.bulging is not None:
+            if self.numbers is not None:
                 kind = CALIBRATED
         update: dict[str, Any] = {"representation": kind}
         if self.fiber is not None:
             update["fiber"] = self.fiber.plain()
         if self.families is not None:
             update["families"] = tuple(family.plain() for family in self.families)
-        if kind == DISCRETE or (kind == CALIBRATED and self.bulging is None):
+        if kind == DISCRETE or (kind == CALIBRATED and self.numbers is None):
             width = self.width
             if width is None and self.families is None:
                 width = self._made_of(None).thread().diameter
@@ -242,7 +251,7 @@ class WindingEffect(Effect):
 
     def representations(self) -> tuple[Self, ...]:
         """Spread and in turns, unless the case says which; a ribbon lies in turns."""
-        given = {"representation", "width", "lines", "bulging"} & self.model_fields_set
+        given = {"representation", "width", "lines", "bulging", "bedding"} & self.model_fields_set
         if given:
             return (self,)
         plain = self.model_copy(update={"width": None, "lines": None})
@@ -297,26 +306,22 @@ class WindingEffect(Effect):
 
     def uncalibrated(self) -> bool:
         """Where it is to be calibrated and nobody has given the numbers."""
-        return self.representation == CALIBRATED and self.bulging is None
+        return self.representation == CALIBRATED and self.numbers is None
 
-    def bulges(self) -> Bulging | None:
+    def bulges(self) -> Bulging | Bedding | None:
         """As the case or a calibration gives it."""
-        return None if self.bulging is None else self.bulging.bulging()
+        return None if self.numbers is None else self.numbers.bulging()
 
     def in_cell(self) -> WindingEffect:
         """Every turn by itself."""
-        return self.model_copy(update={"representation": DISCRETE, "bulging": None})
-
-    def with_bulging(self, bulging: Bulging) -> WindingEffect:
-        """Spread, with rubber that bulges; what the cell alone needs is gone."""
         return self.model_copy(
-            update={
-                "representation": CALIBRATED,
-                "bulging": BulgingSpec.of(bulging),
-                "width": None,
-                "lines": None,
-            }
+            update={"representation": DISCRETE, "bulging": None, "bedding": None}
         )
+
+    def with_bulging(self, bulging: Bulging | Bedding) -> WindingEffect:
+        """Spread, with rubber that bulges; what the cell alone needs is gone."""
+        update = {"representation": CALIBRATED, "width": None, "lines": None}
+        return self.model_copy(update=update | bedded.entry(bulging))
 
     def uncertainties(self, straight: bool) -> Iterator[str]:
         """None: the model's own errors were measured with it."""
@@ -357,9 +362,9 @@ class WindingEffect(Effect):
             stiffness = stiffness_of(threads, laid, which)
             return Built((Winding(segments, stiffness, slack),), (), segments, flat)
         placed, spread = laid.chosen(places=True), laid.chosen(places=False)
-        if self.representation == CALIBRATED:
-            if self.bulging is None:
-                raise ValueError("a winding that is to be calibrated is built after its cell")
+        if self.uncalibrated():
+            raise ValueError("a winding that is to be calibrated is built after its cell")
+        if self.bulging is not None:
             (fiber,), over = threads.fibers, smear(mesh, actuator, laid)
             bulges = self.bulging.bulging()
             return Built((CalibratedWinding(over, fiber.stiffness, bulges, slack),), (), over, True)
@@ -368,7 +373,10 @@ class WindingEffect(Effect):
         if spread is not None:
             over = smear(mesh, actuator, spread)
             stiffness = stiffness_of(threads, spread, over.curve)
-            terms.append(SmearedWinding(over, stiffness, slack))
+            if self.bedding is None:
+                terms.append(SmearedWinding(over, stiffness, slack))
+            else:
+                terms.append(bedded.term(over, stiffness, self.bedding, spread, actuator))
             shown.append(over)
         if placed is not None:
             segments, which = embed_families(mesh, actuator, placed)

@@ -24,6 +24,7 @@ from fiberbend.effects.effect import (
     WOUND,
     ZONES,
 )
+from fiberbend.effects.records import OUTLINE
 from fiberbend.models.costs.size import summed
 from fiberbend.models.mesh_error import section_error
 from fiberbend.models.model import ProblemSize, Rung, completed_mesh, count
@@ -47,7 +48,7 @@ class Section(UniformModel):
     """Nothing depends on z in the frame that turns with the section."""
 
     name = "section"
-    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, SIDE, THREAD, ZONES})
+    offers = frozenset({CHAMBER, WOUND, ARC, HELD, VOLUME, TWIST, SIDE, THREAD, OUTLINE, ZONES})
     turn = math.radians(10)
     first_turn = math.radians(10)
     memory = 5

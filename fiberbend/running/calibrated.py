@@ -15,6 +15,7 @@ from fiberbend.schema.problems import CaseError
 
 if TYPE_CHECKING:
     from fiberbend.calibration.record import Calibrated
+    from materials.bedding import Bedding
     from materials.bulging import Bulging
 
 
@@ -67,7 +68,7 @@ def calibrated(case: Case, comm: Any, progress: Progress, resumed: Path | None) 
 
 def _numbers(
     case: Case, progress: Progress, resumed: Path | None
-) -> tuple[Bulging | None, Calibrated | None]:
+) -> tuple[Bulging | Bedding | None, Calibrated | None]:
     """Those of a run that goes on, or of a calibration; a run keeps the ones it began with."""
     from fiberbend.calibration.calibrate import calibrate, known
 
@@ -78,7 +79,7 @@ def _numbers(
     return before, kept if kept is not None and kept.found.bulging() == before else None
 
 
-def _before(folder: Path) -> Bulging | None:
+def _before(folder: Path) -> Bulging | Bedding | None:
     """The numbers in the case of a run folder; None where there are none."""
     try:
         case = read_case(folder / CASE_FILE)
@@ -88,7 +89,7 @@ def _before(folder: Path) -> Bulging | None:
     return next((n for effect in case.effects if (n := effect.bulges()) is not None), None)
 
 
-def _given(numbers: Bulging) -> Own:
+def _given(numbers: Bulging | Bedding) -> Own:
     from fiberbend.calibration.record import named, words
 
     text = f"winding: rubber bulges between its turns as the case says ({words(numbers)})"

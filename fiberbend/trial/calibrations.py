@@ -63,7 +63,8 @@ class Calibrations:
         """
         if not waits(case):
             return Ready(case)
-        if not self._percent:
+        turns = case.turns
+        if not self._percent or turns is None or turns.pitch is None:
             own = calibrate(case)
             return Ready(with_bulging(case, own.found.bulging()), 0.0, own.remarks, case)
         numbers = dict(_enters(case))

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
 
+from analytic.path import CentreLine
 from fem.effects.effect import Discrete
 from fem.effects.sums.hold import HOLD, Held
 from fem.kinematics.domain import Domain
@@ -215,9 +216,24 @@ class Small:
         found = {term.key: term.discrete(self.scene.body) for term in built.terms}
         return {key: potential for key, potential in found.items() if potential is not None}
 
-    def again(self, state: State) -> State | None:
-        """The state at the same angle, or kept straight at the same pressure; None: none found."""
-        unknown, conditions = self._back(state)
+    @property
+    def length(self) -> float:
+        """Of the chamber, mm."""
+        return self._case.actuator.length
+
+    def line(self) -> CentreLine:
+        """The centre-line at the present state."""
+        return _bent(self.scene).centre_line()
+
+    def again(self, state: State, kind: str = "") -> State | None:
+        """The state once more; None: none found.
+
+        Args:
+            state: found before.
+            kind: what is given: 'control' or 'value'; by default the angle, or the pressure of
+                what is kept straight.
+        """
+        unknown, conditions = self.conditions(state, kind) if kind else self._back(state)
         outcome = self._newton.solve(state.w, unknown, conditions)
         return self._march.equilibrium.capture() if outcome.converged else None
 

@@ -11,7 +11,7 @@ import pytest
 from fiberbend.calibration import reach
 from fiberbend.calibration.calibrate import known, waits, with_bulging
 from fiberbend.calibration.digest import content, digest
-from fiberbend.calibration.record import Calibration
+from fiberbend.calibration.record import OfPattern
 from fiberbend.calibration.store import FOLDER, Store
 from fiberbend.case.case import Case
 from fiberbend.case.section_beside import as_section
@@ -23,7 +23,7 @@ from materials.bulging import Bulging
 from tests.run.conftest import small
 
 KNOWN: dict[str, Any] = {"as": None, "bulging": {"stiffness": "0.7 MPa/mm", "quadratic": 6.0}}
-FOUND = Calibration(
+FOUND = OfPattern(
     stiffness=0.6,
     linear=1.2,
     quadratic=5.0,

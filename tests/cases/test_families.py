@@ -84,8 +84,26 @@ WRONG: list[tuple[dict[str, Any], str]] = [
         case(HOOPS | {"spacing": "60 mm", "phase": "300 deg"}),
         f'{F}.spacing: "60 mm", but no hoop lies on the chamber, the first one at z = 50 mm',
     ),
-    (case(HELIX, kind="calibrated"), f'{W}.as: "calibrated", but one stiffness of the bulge'),
-    (case(HELIX, bulging={"stiffness": "1 MPa/mm"}, kind=None), f'{W}.as: "calibrated", but'),
+    (
+        case(HELIX, bulging={"stiffness": "1 MPa/mm"}, kind=None),
+        f"{W}.bulging: no effect beside families, expected bedding",
+    ),
+    (
+        case(HELIX, bedding={"normal": "0 MPa", "along": "1 MPa"}, kind="calibrated"),
+        f'{W}.bedding.normal: "0 MPa"',
+    ),
+    (
+        case(HELIX, tension_only=True, kind="calibrated"),
+        f"{W}.tension_only: families whose rubber yields are calibrated taut",
+    ),
+    (
+        case(HELIX, bedding={"normal": "1 MPa", "along": "1 MPa"}, kind="smeared"),
+        f"{W}.bedding: no effect on a smeared winding",
+    ),
+    (
+        case(HELIX, kind="calibrated") | {"model": "cell"},
+        f"{W}: model cell does not support it: families are calibrated in a section",
+    ),
     (case(HELIX, width="1 mm"), f"{W}.width: no effect on a smeared winding"),
 ]
 

@@ -124,7 +124,8 @@ def test_skins_have_the_areas_of_surfaces() -> None:
     width = 2 * actuator.outer_half_width
     # half a spacing at the root belongs to the clamp
     assert areas["outer"] == pytest.approx(actuator.winding_perimeter * 119.5, rel=2e-3)
-    assert areas["tip"] == pytest.approx(actuator.profile.outer_area, rel=5e-3)
+    # chords of 2 mm
+    assert areas["tip"] == pytest.approx(actuator.profile.outer_area, rel=1e-2)
     assert areas["roof"] == pytest.approx(400.0, rel=1e-2)
     assert areas["crown"] == pytest.approx(400.0)
     assert areas["post"] == pytest.approx(2 * width)

@@ -123,9 +123,13 @@ def _sole_half(actuator: Actuator, strips: Strips) -> float:
 
 def _strip(actuator: Actuator, half: float, top: bool) -> Outline:
     """The line |x| ≤ half on the top or the bottom of a section."""
-    corners = _corners(actuator, _FINE)
+    corners = ring(_corners(actuator, _FINE), _FINE).places
     middle = (actuator.outer_top + actuator.outer_bottom) / 2
     there = corners[(corners[:, 1] > middle) == top]
+    # of a vertical side only its end belongs to the line
+    end = actuator.outer_top if top else actuator.outer_bottom
+    beside = np.abs(there[:, 0]) > actuator.outer_half_width * (1 - _LEVEL)
+    there = there[~beside | (np.abs(there[:, 1] - end) < _LEVEL * actuator.total_length)]
     there = there[np.argsort(there[:, 0], kind="stable")]
     x = np.linspace(-half, half, max(3, 2 * round(half / (AROUND / 2)) + 1))
     return strip(np.column_stack([x, np.interp(x, there[:, 0], there[:, 1])]), AROUND)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,7 @@ from fiberbend.schema.quantities import (
 )
 
 if TYPE_CHECKING:
+    from materials.bedding import Bedding
     from materials.bulging import Bulging
     from materials.fiber import Fiber
 
@@ -132,3 +134,31 @@ class BulgingSpec(Spec):
         from materials.bulging import Bulging
 
         return Bulging(self.stiffness, self.linear, self.quadratic)
+
+
+class BeddingSpec(Spec):
+    """How stiff rubber is under threads of families, per length of a thread.
+
+    k = k0 exp[a (λ_n − 1) + c p/k0] against sinking, k_s against slip along the thread; λ_n is the
+    stretch of the surface across the thread, p the pressure in the chamber.
+    """
+
+    normal: Modulus
+    """k0: force across the surface per length and depth, at rest."""
+    along: Modulus
+    """k_s: force along the thread per length and slip."""
+    across: float = 0.0
+    """a: how k grows with the stretch of the surface across the thread."""
+    pressure: float = 0.0
+    """c: how it grows with the pressure."""
+
+    @classmethod
+    def of(cls, bedding: Bedding) -> BeddingSpec:
+        """From four numbers."""
+        return cls.model_construct(**dataclasses.asdict(bedding))
+
+    def bulging(self) -> Bedding:
+        """As the finite-element code takes it."""
+        from materials.bedding import Bedding
+
+        return Bedding(self.normal, self.along, self.across, self.pressure)

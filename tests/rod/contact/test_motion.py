@@ -22,9 +22,9 @@ def test_a_bounce_keeps_the_energy() -> None:
     table = Touch(skin, Plane((0.0, -25.0, 0.0), (0.0, 1.0, 0.0)), 0.02)
     rod = Rod(plain.layout, plain.law, plain.inertia, (Weight(plain.inertia, DOWN), table))
     motion = Motion(rod, lambda time: Level(amounts=(1.0, 1.0)))
-    moving = motion.at(rod.layout.at_rest())
-    first, worst, most, forces = motion.energy(moving), 0.0, 0.0, []
-    for moving in motion.run(moving, 5e-4, 500):
+    start = motion.at(rod.layout.at_rest())
+    first, worst, most, forces = motion.energy(start), 0.0, 0.0, []
+    for moving in motion.run(start, 5e-4, 500):
         worst = max(worst, abs(motion.energy(moving) - first))
         velocity = moving.velocity
         most = max(most, float(np.sum(velocity @ rod.inertia * velocity)) / 2)
@@ -33,4 +33,3 @@ def test_a_bounce_keeps_the_energy() -> None:
     pressed = np.array(forces) > 0
     touches = int(np.sum(np.diff(pressed.astype(int)) == 1))
     assert touches >= 2, "it bounces"
-    assert pressed.any() and not pressed.all()
