@@ -89,8 +89,9 @@ class Rod(SlenderModel):
             yield "zones", "no rod of zones is beside a body"
         if case.actuator.section not in _MEASURED:
             yield "actuator.section", f"a rod is beside a body with {' or '.join(_MEASURED)} alone"
-        if case.turns is None:
-            yield "effects", "a rod is beside a body with a winding alone"
+        turns = case.turns
+        if turns is None or turns.bulges:
+            yield "effects", "a rod is beside a body with a winding in turns, or smeared, alone"
         if case.mesh.element != type(case.mesh)().element:
             yield "mesh.element", "elements of this kind are asked for, and a rod has none"
         if not self._wound(case).plane or Symmetry.of(case.acting).across:
