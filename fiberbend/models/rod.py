@@ -15,6 +15,7 @@ from fiberbend.models.model import ModelKind, Objection, SlenderModel
 
 _MEASURED = ("hemicircle",)
 """Sections with which it is beside a body (docs/evidence/rod.md)."""
+_ROUNDING = 1e-9
 _SECTION_S, _CELL_S = 8.0, 15.0
 """Seconds for the table of a section and of a cell, of the baseline (`fiberbend table`)."""
 
@@ -92,6 +93,9 @@ class Rod(SlenderModel):
         turns = case.turns
         if turns is None or turns.bulges:
             yield "effects", "a rod is beside a body with a winding in turns, or smeared, alone"
+        if sum(effect.of_measured() for effect in case.effects) > 1 + _ROUNDING:
+            text = "a rod is beside a body with at most 0.2 N, 50 N mm or 20 g at the tip that keep"
+            yield "effects", f"{text} their directions, and under the weight of the Earth"
         if case.mesh.element != type(case.mesh)().element:
             yield "mesh.element", "elements of this kind are asked for, and a rod has none"
         if not self._wound(case).plane or Symmetry.of(case.acting).across:
@@ -123,9 +127,9 @@ class Rod(SlenderModel):
             return
         yield "law of the section: within 0.1 % of the section's own forces (fiberbend table)"
         yield (
-            f"{AT_ENDS}turned by the pressure as those of a short body; of the baseline, free, under "
-            "its weight, 0.2 N, 50 N mm or 20 g at the tip, the angle is within 0.7 % and the tip "
-            "within 1 mm of a body of 8 mm elements (docs/evidence/rod.md)"
+            f"{AT_ENDS}turned by the pressure as those of a short body; of the baseline, free, "
+            "under its weight, 0.2 N, 50 N mm or 20 g at the tip, the angle is within 0.7 % and "
+            "the tip within 1 mm of a body of 8 mm elements (docs/evidence/rod.md)"
         )
         if any(effect.touches() for effect in case.effects):
             yield (

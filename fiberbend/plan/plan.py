@@ -211,7 +211,8 @@ def _cheaper(case: Case, model: ModelKind) -> Iterator[str]:
             return
         refusal, left_out = (next(each(case), None) for each in (other.refuses, other.leaves_out))
         path, text = refusal or left_out or against
-        verb = "does not support" if refusal else "leaves out" if left_out else "is not measured for"
+        verb = "leaves out" if left_out else "is not measured for"
+        verb = "does not support" if refusal else verb
         yield f"{name} {verb} {path}: {text}"
 
 
