@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import Symmetry
-from fiberbend.columns import MIDDLE, OBSTACLES, SOLVED
+from fiberbend.columns import MIDDLE, OBSTACLES, SOLVED, TIMED
 from fiberbend.effects.effect import CHAMBER, ENDS, SIDE, THREAD, TURNS, TWIST, WOUND
-from fiberbend.effects.records import LINE
+from fiberbend.effects.records import LINE, MOTION
 from fiberbend.models.ends import AT_ENDS
 from fiberbend.models.model import ModelKind, Objection, SlenderModel
 
@@ -24,8 +24,8 @@ class Rod(SlenderModel):
     """A geometrically exact rod: a uniform bend anew in every piece, under weights and loads."""
 
     name = "rod"
-    offers = frozenset({CHAMBER, WOUND, THREAD, TURNS, TWIST, SIDE, LINE, ENDS})
-    fills = ModelKind.fills | {MIDDLE, SOLVED, OBSTACLES}
+    offers = frozenset({CHAMBER, WOUND, THREAD, TURNS, TWIST, SIDE, LINE, ENDS, MOTION})
+    fills = ModelKind.fills | {MIDDLE, SOLVED, OBSTACLES, TIMED}
     ends = True
     agreement = 0.5
     start_s = 1.0
