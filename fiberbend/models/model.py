@@ -254,10 +254,6 @@ class SlenderModel(ModelKind):
         """Strains of all pieces."""
 
     @abstractmethod
-    def strains(self, case: Case) -> tuple[str, ...]:
-        """Names of the strains of a piece, as `rod.layout.STRAINS` orders them."""
-
-    @abstractmethod
     def law_seconds(self, case: Case) -> float:
         """Seconds for the law of its section where no table of it is kept yet."""
 

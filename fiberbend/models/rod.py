@@ -6,9 +6,10 @@ import math
 from collections.abc import Iterator
 
 from fiberbend.case.case import Case
-from fiberbend.case.symmetry import Symmetry
+from fiberbend.case.symmetry import wound
 from fiberbend.columns import MIDDLE, OBSTACLES, SOLVED, TIMED
-from fiberbend.effects.effect import CHAMBER, ENDS, SIDE, THREAD, TURNS, TWIST, WOUND
+from fiberbend.columns import ZONES as OF_ZONES
+from fiberbend.effects.effect import CHAMBER, ENDS, SIDE, THREAD, TURNS, TWIST, WOUND, ZONES
 from fiberbend.effects.records import LINE, MOTION
 from fiberbend.models.ends import AT_ENDS
 from fiberbend.models.model import ModelKind, Objection, SlenderModel
@@ -24,8 +25,8 @@ class Rod(SlenderModel):
     """A geometrically exact rod: a uniform bend anew in every piece, under weights and loads."""
 
     name = "rod"
-    offers = frozenset({CHAMBER, WOUND, THREAD, TURNS, TWIST, SIDE, LINE, ENDS, MOTION})
-    fills = ModelKind.fills | {MIDDLE, SOLVED, OBSTACLES, TIMED}
+    offers = frozenset({CHAMBER, WOUND, THREAD, TURNS, TWIST, SIDE, LINE, ENDS, MOTION, ZONES})
+    fills = ModelKind.fills | {MIDDLE, SOLVED, OBSTACLES, TIMED, OF_ZONES}
     ends = True
     agreement = 0.5
     start_s = 1.0
@@ -35,12 +36,9 @@ class Rod(SlenderModel):
     step_s = 0.02
 
     def unknowns(self, case: Case) -> int:
-        """A stretch and a curvature each."""
-        return len(self.strains(case)) * (self.pieces + 2 * self.cap_pieces)
-
-    def strains(self, case: Case) -> tuple[str, ...]:
-        """In its plane."""
-        return ("stretch", "curvature")
+        """A stretch and a curvature each; out of its plane a side curvature and a twist too."""
+        each = 4 if any(effect.mirror_breaker() for effect in case.acting) else 2
+        return each * (self.pieces + 2 * self.cap_pieces)
 
     def law_seconds(self, case: Case) -> float:
         """Of a cell more than of a section."""
@@ -60,20 +58,19 @@ class Rod(SlenderModel):
                 yield f"{path}.volume", text
             if own is not None and ((own.to or 0.0) < 0 or (own.angle or 0.0) < 0):
                 yield path, "the law of a section is of pressures above zero, and no vacuum"
-        known = [effect for effect in case.acting if self.offers.issuperset(effect.needs())]
-        wound, symmetry = self._wound(case), Symmetry.of(known)
-        if not wound.plane:
-            yield "effects", f"the law of its section is of stretch and curvature: {wound.words()}"
-        elif symmetry.across:
-            reasons = "; ".join(symmetry.across)
-            yield "effects", f"the law of its section is of bending in the plane x = 0: {reasons}"
+        if not wound(case).plane:
+            reason = wound(case).words()
+            yield "effects", f"the law of a section that twists by itself is not known: {reason}"
         if case.output.fields and "fields" in case.output.model_fields_set:
             yield "output.fields", "a rod has no fields: its sections are known by their law alone"
 
-    def _wound(self, case: Case) -> Symmetry:
-        """Symmetry of its section."""
-        beside = (effect.beside() for effect in case.effects)
-        return Symmetry.of([effect for effect in beside if effect is not None])
+    def limits_of_zones(self, case: Case) -> Iterator[Objection]:
+        """What no law of one zone knows of the whole."""
+        for index, effect in enumerate(case.effects):
+            own = effect.inflation()
+            if own is not None and own.angle is not None:
+                text = "zones have a pressure in common and no angle, expected to"
+                yield f"effects.{index}.{effect.name}.angle", text
 
     def leaves_out(self, case: Case) -> Iterator[Objection]:
         """Fields of chosen states, which nobody asks for who wants none."""
@@ -98,7 +95,7 @@ class Rod(SlenderModel):
             yield "effects", f"{text} their directions, and under the weight of the Earth"
         if case.mesh.element != type(case.mesh)().element:
             yield "mesh.element", "elements of this kind are asked for, and a rod has none"
-        if not self._wound(case).plane or Symmetry.of(case.acting).across:
+        if any(effect.mirror_breaker() for effect in case.acting):
             yield "effects", "a rod is beside a body that bends in the plane x = 0 alone"
 
     def completed(self, case: Case) -> Case:

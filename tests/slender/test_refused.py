@@ -25,18 +25,12 @@ PRESSED = {"pressure": {"to": "20 kPa"}}
         ([{"pressure": {"volume": "9 ml"}}], {}, "effects.0.pressure.volume: model rod does not"),
         ([{"pressure": {"to": "-5 kPa"}}], {}, "of pressures above zero, and no vacuum"),
         ([{"gravity": {"direction": "-y"}}], {}, "expected effect pressure with one"),
-        ([{"gravity": {"direction": "+x"}}, PRESSED], {}, "bending in the plane x = 0: gravity"),
-        (
-            [PRESSED, {"tip-load": {"moment": ["0 N mm", "1 N mm", "0 N mm"]}}],
-            {},
-            "bending in the plane x = 0: a tip moment about y or z",
-        ),
         ([PRESSED], {"output": QUIET | {"fields": True}}, "output.fields: model rod does not"),
         ([PRESSED], {"accuracy": "1 %"}, "but model rod has no known error"),
         (
-            [PRESSED],
+            [{"pressure": {"angle": "20 deg"}}],
             {"zones": [{"length": "50 mm", "floor": RUBBER}, {"length": "50 mm"}]},
-            "zones: model rod does not support it",
+            "effects.0.pressure.angle: model rod does not support it",
         ),
     ],
 )
@@ -50,7 +44,7 @@ def test_what_it_cannot_have_is_refused_by_name(
 
 def test_a_winding_with_a_hand_is_refused() -> None:
     wound = WOUND | {"pattern": "single-helix-left"}
-    with pytest.raises(CaseError, match="is of stretch and curvature: half a turn about y"):
+    with pytest.raises(CaseError, match="that twists by itself is not known: half a turn about y"):
         parse_case(spec() | {"effects": [PRESSED, {"winding": wound}]})
 
 
