@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -12,6 +13,9 @@ from fiberbend.plan.doubts import doubts
 from fiberbend.plan.plan import make_plan
 from fiberbend.reader.reader import parse_case
 from fiberbend.schema.problems import CaseError
+from fiberbend.sectionlaw import store
+from fiberbend.sectionlaw.store import Store
+from fiberbend.slender.kept import laws_to_make
 from tests.slender.rods import QUIET, ROUND, RUBBER, WOUND, case, spec
 
 PRESSED = {"pressure": {"to": "20 kPa"}}
@@ -101,3 +105,18 @@ def test_the_plan_says_what_is_not_measured() -> None:
     assert list(MODELS["rod"].refuses(tube)) == []
     text = " ".join(make_plan(tube).lines())
     assert "rod is not measured for actuator.section" in text
+
+
+def test_cases_that_share_a_section_share_its_law(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """A law is of section and pressure: a direction of the weight makes no other one."""
+    monkeypatch.setattr(store, "Store", lambda: Store(tmp_path / "tables"))
+    weighed = [case({"gravity": {"direction": d}}, PRESSED) for d in ("-y", "+y", "-z")]
+    one, seconds = laws_to_make(weighed)
+    assert one == 1
+    assert seconds > 0
+    further = case({"gravity": {"direction": "-y"}}, {"pressure": {"to": "30 kPa"}})
+    assert laws_to_make([*weighed, further])[0] == 2
+    body = case({"gravity": {"direction": "-y"}}, PRESSED, model="body")
+    assert laws_to_make([body]) == (0, 0)
