@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -79,8 +79,12 @@ class Slender:
         return place
 
 
-def slender(case: Case) -> Slender:
+def slender(case: Case, tell: Callable[[str], None] | None = None) -> Slender:
     """The rod of a case of model rod.
+
+    Args:
+        case: the case.
+        tell: takes lines of progress while the law of its section is made.
 
     Raises:
         fiberbend.schema.problems.CaseError: its section has no law as far as the case goes.
@@ -103,7 +107,7 @@ def slender(case: Case) -> Slender:
         weight=convert.site(case).weight,
         body=convert.site(case),
     )
-    made = section_law(case, strains, counts)
+    made = section_law(case, strains, counts, tell)
     chamber = slice(CAP_PIECES, CAP_PIECES + sum(counts))
     law = along(case, made, cap_law(case, section, strains), layout, chamber)
     found = [effect.on_rod(site) for effect in case.effects]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import numpy as np
 
@@ -73,13 +74,19 @@ def pieces_of(case: Case, pieces: int) -> tuple[int, ...]:
     return tuple(max(_FEW, round(pieces * each / whole)) for each in lengths(case))
 
 
-def section_law(case: Case, strains: tuple[str, ...], counts: tuple[int, ...] = ()) -> SectionLaw:
+def section_law(
+    case: Case,
+    strains: tuple[str, ...],
+    counts: tuple[int, ...] = (),
+    tell: Callable[[str], None] | None = None,
+) -> SectionLaw:
     """The law of the sections of a rod, from the tables that are kept or anew.
 
     Args:
         case: of model rod.
         strains: of the rod.
         counts: pieces of each zone.
+        tell: takes lines of progress while a table is made.
 
     Raises:
         fiberbend.schema.problems.CaseError: a section has no law that reaches as far as the case.
@@ -91,7 +98,7 @@ def section_law(case: Case, strains: tuple[str, ...], counts: tuple[int, ...] = 
 
     store, loads = Store(), loads_of(case)
     made = [
-        law_of(section_case(zone), strains, ERROR, store=store, loads=loads)
+        law_of(section_case(zone), strains, ERROR, store=store, tell=tell, loads=loads)
         for zone in zone_cases(case)
     ]
     laws = [each.law for each in made]

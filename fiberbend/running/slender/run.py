@@ -103,7 +103,7 @@ class _RodRun:
         case, progress = self.case, self.progress
         known = doubts(case)
         progress.phase("law")
-        rod = slender(case)
+        rod = slender(case, progress.message)
         progress.phase("solve")
         course = self._course(rod)
         maker = Rows(rod, course.tells)
