@@ -46,7 +46,7 @@ class _Cuts(NamedTuple):
 
     def only(self, mask: Bools) -> _Cuts:
         """Some of them."""
-        return _Cuts(*(part[mask] for part in self))
+        return _Cuts(self.which[mask], self.pieces[mask], self.parts[mask], self.y[mask])
 
 
 class Itself(Penalty):
