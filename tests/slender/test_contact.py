@@ -165,7 +165,7 @@ def test_factors_of_a_layer_are_those_of_elements(sides: int) -> None:
     for width in (0.25, 1.0, 4.0):
         assert layer_factor(width, sides) == pytest.approx(factor(width, sides), rel=1e-3)
     # between two that are known
-    assert layer_factor(5.0, sides) == pytest.approx(factor(5.0, sides), rel=0.01)
+    assert layer_factor(7.0, sides) == pytest.approx(factor(7.0, sides, 24), rel=0.01)
     # lubrication: the edges are two thicknesses further out at most
     for width in (16.0, 40.0):
         assert (width**2 / 12) < layer_factor(width, sides) < (width + 5.0) ** 2 / 12

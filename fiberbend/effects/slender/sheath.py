@@ -4,7 +4,7 @@ A layer of incompressible rubber of thickness h and Young's modulus E, bonded be
 a rigid strip of width w without friction: mean pressure over mean depth is f E/h. The factors f are
 those of plane strain and small strains, solved by elements (tests/slender/layer.py), for a layer
 that goes on at both sides of the strip and for one that ends where the strip ends. Of a wide strip
-f = (w/h)²/12, lubrication's, of a narrow one w f grows as a logarithm.
+f = (w/h)²/12, which is lubrication's.
 """
 
 from __future__ import annotations
@@ -15,22 +15,27 @@ import numpy as np
 
 from fiberbend.effects.records import Site
 
-WIDTHS = (0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0)
+WIDTHS = (0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0)
 """w/h."""
 FACTORS = {
-    2: (4.683, 3.635, 3.439, 4.161, 5.231, 6.507, 9.585, 13.36, 22.93, 35.17),
-    1: (2.300, 1.960, 1.973, 2.446, 3.152, 4.046, 6.355, 9.350, 17.36, 28.04),
+    2: (4.683, 3.635, 3.439, 4.161, 5.231, 6.507, 7.965, 9.585, 13.36, 17.81, 22.93, 35.17),
+    1: (2.300, 1.960, 1.973, 2.446, 3.152, 4.046, 5.117, 6.355, 9.350, 13.02, 17.36, 28.04),
 }
 """f by the number of sides to which the layer goes on."""
 
 
 def layer_factor(width: float, sides: int) -> float:
-    """f, in logarithms between those that are known, and along the last chord beyond them.
+    """f, in logarithms between those that are known.
+
+    Beyond them it is lubrication's, of a strip that is wider by as much as the last one shows.
 
     Args:
         width: w/h.
         sides: to which the layer goes on, 1 or 2.
     """
+    if width > WIDTHS[-1]:
+        wider = math.sqrt(12 * FACTORS[sides][-1]) - WIDTHS[-1]
+        return (width + wider) ** 2 / 12
     known, found = np.log(WIDTHS), np.log(FACTORS[sides])
     at = math.log(width)
     place = min(max(int(np.searchsorted(known, at)), 1), len(known) - 1)
