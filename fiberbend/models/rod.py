@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import Symmetry
 from fiberbend.columns import MIDDLE, OBSTACLES, SOLVED
+from fiberbend.effects.blocked_tip import OF_STRIPS
 from fiberbend.effects.effect import CHAMBER, ENDS, SIDE, THREAD, TURNS, TWIST, WOUND
 from fiberbend.effects.records import LINE
 from fiberbend.models.ends import AT_ENDS
@@ -97,6 +98,8 @@ class Rod(SlenderModel):
         """Ends, and the law."""
         if case.inflation is None:
             return
+        if case.straight:
+            yield f"between roof and post: the sheath alone yields, {OF_STRIPS} (docs/contact.md)"
         yield "law of the section: within 0.1 % of the section's own forces (fiberbend table)"
         yield (
             f"{AT_ENDS}the baseline of 120 mm bends 0.7 % less than a body at 60 kPa, under its "

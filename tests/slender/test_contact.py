@@ -173,4 +173,10 @@ def test_factors_of_a_layer_are_those_of_elements(sides: int) -> None:
 
 def test_plan_says_what_yields() -> None:
     left = dict(MODELS["rod"].leaves_out(case(PRESSED, TABLE)))
-    assert "sections keep their shape" in left["effects.1.contact"]
+    assert "sections keep their outline at rest" in left["effects.1.contact"]
+    for held, name in ((BLOCKED, "contact"), (STRIPS, "blocked-tip")):
+        left = dict(MODELS["rod"].leaves_out(case(PRESSED, held)))
+        assert "tip force up to 11 % too great" in left[f"effects.1.{name}"]
+        assert any(
+            "tip force up to 11 %" in told for told in MODELS["rod"].errors(case(PRESSED, held))
+        )
