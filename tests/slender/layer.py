@@ -74,7 +74,8 @@ def _matrices(x: Floats, y: Floats) -> tuple[sp.csr_matrix, sp.csr_matrix]:
         for b, v in zip(*leggauss(3), strict=True)
     ]
     rows, columns, values = [], [], []
-    held, of, volumes = [], [], []
+    held, of = [], []
+    volumes: list[Floats] = []
     for first in range(0, len(x) - 2, 2):
         for low in range(0, high - 2, 2):
             wide, tall = x[first + 2] - x[first], y[low + 2] - y[low]
