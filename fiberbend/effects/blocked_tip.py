@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 _STIFFNESS = 100.0
 """Strips on a rod are so many times as stiff as the wall."""
+OF_STRIPS = "and no section shears: tip force up to 11 % too great, the roof's up to 30 %"
+"""Of a rod between roof and post (docs/contact.md)."""
 
 
 class BlockedTipEffect(Effect):
@@ -63,7 +65,7 @@ class BlockedTipEffect(Effect):
         """Roof and post as surfaces."""
         return {
             STRIPS: "roof and post are no surfaces of it: closed forms fix the tip rigidly, of a "
-            "rod the sheath yields",
+            f"rod the sheath alone yields, {OF_STRIPS} (docs/contact.md)",
         }
 
     def mirror_breaker(self) -> str:

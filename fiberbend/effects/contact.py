@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from fiberbend import columns as col
-from fiberbend.effects.blocked_tip import tip_force_summary
+from fiberbend.effects.blocked_tip import OF_STRIPS, tip_force_summary
 from fiberbend.effects.clearance import from_bar, over_plane
 from fiberbend.effects.effect import SPACE, Built, Draft, Effect, Requests, Site
 from fiberbend.effects.obstacles import CylinderSpec, ObstacleSpec, PlaneSpec, PostSpec, RoofSpec
@@ -90,7 +90,10 @@ class ContactEffect(Effect):
 
     def wants(self) -> dict[str, str]:
         """Sections that yield where they touch."""
-        return {SPACE: "sections keep their shape; under roof and post the sheath alone yields"}
+        text = "sections keep their outline at rest: the baseline is within 2 % of a body"
+        if self.strips() is not None:
+            text = f"under roof and post the sheath alone yields, {OF_STRIPS}"
+        return {SPACE: f"{text} (docs/contact.md)"}
 
     def mirror_breaker(self) -> str:
         """A plane whose normal has an x component."""

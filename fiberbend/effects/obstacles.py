@@ -41,7 +41,7 @@ class ObstacleSpec(Spec):
         """The obstacle in space, as a rod meets it."""
 
     def strip(self) -> tuple[float, int] | None:
-        """Width in mm of the strip under it, and to how many of its sides rubber escapes.
+        """Width in mm of the strip under it, and beside how many of its sides the sheath goes on.
 
         None: what touches it is no strip.
         """

@@ -1,1 +1,1 @@
-"""Rods that touch: rigid obstacles, points of a rod's surface, and the rod against itself."""
+"""Rods that touch: rigid obstacles, and points of a rod's surface."""

@@ -13,13 +13,14 @@ from scipy.optimize import brentq
 from fiberbend import columns as col
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.slender.sheath import under_strip
+from fiberbend.effects.slender.sheath import layer_factor, under_strip
 from fiberbend.effects.slender.skins import skin
 from fiberbend.models.choice import MODELS
 from fiberbend.running.runner import run_case
 from fiberbend.slender.actuator import slender
 from geometry.sections.size import Strips
 from rod.law import Law
+from tests.slender.layer import factor
 from tests.slender.rods import BASE, RUBBER, STIFFNESS, case, linear
 from tests.slender.rods import by_law as by_law
 
@@ -145,7 +146,7 @@ def slender_site(given: Case) -> Any:
     )
 
 
-def test_a_sheath_yields_as_a_bonded_layer() -> None:
+def test_a_sheath_yields_as_a_layer_in_plane_strain() -> None:
     given = case(
         PRESSED,
         BLOCKED,
@@ -153,12 +154,29 @@ def test_a_sheath_yields_as_a_bonded_layer() -> None:
         materials=BASE["materials"] | {"sheath": RUBBER | {"mu": "0.05 MPa"}},
     )
     both, part = under_strip(convert.site(given), 4.0, 2, 1e9)
-    # E (4/3)(1 + S²)/h with E = 3 μ, S = 1
-    assert both == pytest.approx(0.15 * 4 / 3 * 2 / 2)
+    # f E/h with E = 3 μ and w/h = 2
+    assert both == pytest.approx(factor(2.0, 2) * 0.15 / 2, rel=1e-3)
     assert part == pytest.approx(both / 1e9)
     assert under_strip(convert.site(case(PRESSED, BLOCKED)), 4.0, 2, 50.0) == (50.0, 1.0)
 
 
+@pytest.mark.parametrize("sides", [1, 2])
+def test_factors_of_a_layer_are_those_of_elements(sides: int) -> None:
+    for width in (0.25, 1.0, 4.0):
+        assert layer_factor(width, sides) == pytest.approx(factor(width, sides), rel=1e-3)
+    # between two that are known
+    assert layer_factor(7.0, sides) == pytest.approx(factor(7.0, sides, 24), rel=0.01)
+    # lubrication: the edges are two thicknesses further out at most
+    for width in (16.0, 40.0):
+        assert (width**2 / 12) < layer_factor(width, sides) < (width + 5.0) ** 2 / 12
+
+
 def test_plan_says_what_yields() -> None:
     left = dict(MODELS["rod"].leaves_out(case(PRESSED, TABLE)))
-    assert "sections keep their shape" in left["effects.1.contact"]
+    assert "sections keep their outline at rest" in left["effects.1.contact"]
+    for held, name in ((BLOCKED, "contact"), (STRIPS, "blocked-tip")):
+        left = dict(MODELS["rod"].leaves_out(case(PRESSED, held)))
+        assert "tip force up to 11 % too great" in left[f"effects.1.{name}"]
+        assert any(
+            "tip force up to 11 %" in told for told in MODELS["rod"].errors(case(PRESSED, held))
+        )

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rod.contact.obstacles import Cylinder, Obstacle, Plane
+from rod.contact.obstacles import Cylinder, Obstacle, Plane, Sphere
 from rod.contact.skin import Outline, Skin, face, ring, side
 from rod.contact.touch import Touch
 from rod.inertia import SectionMass, spread
@@ -202,10 +202,19 @@ def test_a_column_that_leans_on_a_wall_is_stable() -> None:
     assert [unstable(part * euler, stop) for part in (0.251, 2.0, 2.1)] == [0, 0, 1]
 
 
-def test_an_obstacle_that_is_pushed() -> None:
+PUSHED: dict[str, Obstacle] = {
+    "plane": Plane((0.0, 0.0, 0.0), (0.0, -2.0, 0.0)),
+    "sphere": Sphere((0.0, 5.0, BAR.length), 5.0),
+    "bar": Cylinder((0.0, 5.0, BAR.length), (1.0, 0.0, 0.0), 5.0),
+    "face of a cylinder": Cylinder((0.0, 6.0, BAR.length), (0.0, 1.0, 0.0), 3.0, 12.0),
+}
+
+
+@pytest.mark.parametrize("name", PUSHED)
+def test_an_obstacle_that_is_pushed(name: str) -> None:
     """A stop that is moved by u against the tip of a cantilever: 3 EI u/L³; the amount is a way."""
     layout = BAR.layout(48)
-    stop = Touch(tip(layout), Plane(np.zeros(3), (0.0, -2.0, 0.0)), STIFF, travel=(0.0, -3.0, 0.0))
+    stop = Touch(tip(layout), PUSHED[name], STIFF, travel=(0.0, -3.0, 0.0))
     rod = Rod(layout, BAR.law(PLANE), terms=[stop])
     state = solve(rod, layout.at_rest(), Path(Level(), Level(amounts=(0.02,))), 1.0)
     force = stop.touched(state.shape, 0.02).force
