@@ -353,20 +353,15 @@ def compile_form(mesh: Any, form: Any) -> Any:
 
 
 class PointValues:
-    """A UFL expression at points (q, d) of every owned cell; bridges Expression.eval.
-
-    FFCx names a kernel by the variables in it, too, and UFL from 2024.2 on numbers these by how
-    many the process has made: only without them is that of another scene the same kernel.
-    """
+    """A UFL expression at points (q, d) of every owned cell; bridges Expression.eval."""
 
     def __init__(self, mesh: Any, expression: Any, points: npt.NDArray[np.float64]) -> None:
         cells = np.arange(owned_cells(mesh), dtype=np.int32)
         self._cells, self._where = cells, (cells,) if _BEFORE_8 else (mesh, cells)
         self._points = len(points)
+        # UFL ≥ 2024.2 counts variables of the process: FFCx would compile anew for each scene
         bare = ufl.algorithms.strip_variables(expression)
-        self._expression = _jit(
-            mesh.comm, lambda options: dfem.Expression(bare, points, **{_JIT: options})
-        )
+        self._expression = _jit(mesh.comm, lambda to: dfem.Expression(bare, points, **{_JIT: to}))
 
     def __call__(self) -> npt.NDArray[np.float64]:
         """Values now, (owned cells, points, components)."""

@@ -48,8 +48,9 @@ def _beside() -> dict[str, str]:
         files = metadata.files("mpich") or []
     except metadata.PackageNotFoundError:
         return {}
-    found = (str(path.locate()) for path in files if path.name == "libmpi.so.12")
-    return {_LIBRARY: os.path.realpath(path) for path in found if os.path.exists(path)}
+    places = (os.path.realpath(path.locate()) for path in files if path.name == "libmpi.so.12")
+    found = next(filter(os.path.exists, places), None)
+    return {_LIBRARY: found} if found else {}
 
 
 @contextlib.contextmanager
