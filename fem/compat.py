@@ -359,9 +359,9 @@ class PointValues:
         cells = np.arange(owned_cells(mesh), dtype=np.int32)
         self._cells, self._where = cells, (cells,) if _BEFORE_8 else (mesh, cells)
         self._points = len(points)
-        self._expression = _jit(
-            mesh.comm, lambda options: dfem.Expression(expression, points, **{_JIT: options})
-        )
+        # UFL ≥ 2024.2 counts variables of the process: FFCx would compile anew for each scene
+        bare = ufl.algorithms.strip_variables(expression)
+        self._expression = _jit(mesh.comm, lambda to: dfem.Expression(bare, points, **{_JIT: to}))
 
     def __call__(self) -> npt.NDArray[np.float64]:
         """Values now, (owned cells, points, components)."""

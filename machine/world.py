@@ -7,6 +7,7 @@ import os
 import sys
 import time
 from collections.abc import Iterator
+from importlib import metadata
 from typing import Any
 
 _HEARD = 0.2
@@ -15,6 +16,8 @@ _NO_SIGNALS = {"UCX_DEBUG_SIGNO": "0", "UCX_HANDLE_ERRORS": "none"}
 """UCX: by default SIGHUP makes it say more, and a crash print pages."""
 _NO_NETWORK = {"OMPI_MCA_btl_tcp_disable_family": "6"}
 """Open MPI: the version of IP that it does without."""
+_LIBRARY = "MPI4PY_LIBMPI"
+"""mpi4py as a wheel: the library that it loads."""
 
 
 class _World:
@@ -35,15 +38,30 @@ def parted() -> bool:
     return _World.alone
 
 
+def _beside() -> dict[str, str]:
+    """The library of PyPI's MPICH, where it is among the packages of this Python.
+
+    mpi4py looks for it by the prefix of Python alone. Where packages are taken from elsewhere, it
+    would load another MPI of the system, and PETSc, linked with MPICH's, would not load.
+    """
+    try:
+        files = metadata.files("mpich") or []
+    except metadata.PackageNotFoundError:
+        return {}
+    places = (os.path.realpath(path.locate()) for path in files if path.name == "libmpi.so.12")
+    found = next(filter(os.path.exists, places), None)
+    return {_LIBRARY: found} if found else {}
+
+
 @contextlib.contextmanager
 def starting() -> Iterator[None]:
-    """While MPI is loaded and starts: it takes no signals, and one machine needs no network.
+    """While MPI is loaded and starts: it is that of PETSc, takes no signals, needs no network.
 
     Open MPI of Debian 13 (5.0.7) loads UCX, which takes SIGHUP and the signals of a crash. And
     where a machine has IPv4 and IPv6, each of its ranks complains that one does not reach the
     other, though they talk by memory. What the user has set stays, and nothing is left behind.
     """
-    wanted = dict(_NO_SIGNALS)
+    wanted = _NO_SIGNALS | _beside()
     ranks = os.environ.get("OMPI_COMM_WORLD_SIZE", "")
     if ranks and ranks == os.environ.get("OMPI_COMM_WORLD_LOCAL_SIZE"):
         wanted |= _NO_NETWORK

@@ -13,20 +13,26 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from geometry.mesh.data import Floats, MeshData
-from geometry.mesh.errors import MeshError
+from geometry.mesh.errors import NO_MESH, MeshError
 from geometry.sections.shape import ShapedActuator
 from geometry.sections.size import MeshSize, Strips, check_size, in_unit, own_unit
 
 _LAST_LINES = 5
-_ATTEMPTS = ((1, False), (2, False), (3, False), (4, False), (1, True))
-"""Seeds of gmsh's random numbers for tetrahedra, and whether surfaces are adapted triangles, one
-attempt after another. On some walls that are thinner than a third of an edge HXT puts points onto
-the boundary and crashes: gmsh 4.8 with the first seed, 4.15 with every seed on its own surfaces."""
+_ATTEMPTS = (
+    *((seed, False, False) for seed in (1, 2, 3, 4)),
+    (1, True, False),
+    (1, False, True),
+)
+"""Seeds of gmsh's random numbers for tetrahedra, whether surfaces are adapted triangles, and
+whether Delaunay's algorithm fills them instead of HXT, one attempt after another. On some walls
+that are thinner than a third of an edge HXT puts points onto the boundary and crashes: gmsh 4.8
+with the first seed, 4.15 with every seed on its own surfaces, and it may refuse adapted ones."""
+_WHAT_MAY_DO = "shorter elements or hexahedra may do"
 _MPI_VARIABLES = ("OMPI_", "PMIX_", "PMI_", "MPI_", "HYDRA_", "MPIEXEC_")
 
 
-class CrashError(MeshError):
-    """gmsh crashed."""
+class ChanceError(MeshError):
+    """gmsh crashed, or found no tetrahedra, which may be otherwise with other numbers."""
 
 
 def build_body(
@@ -52,7 +58,8 @@ def build_body(
 
     Raises:
         ValueError: dimensions that this mesh cannot resolve.
-        MeshError: gmsh failed, or crashed whatever the seed, or did not end in time.
+        MeshError: gmsh failed, or crashed or found no mesh in every attempt, or did not end in
+            time.
     """
     check_size(actuator, size, strips)
     unit = own_unit(actuator)  # gmsh's tolerances are lengths: it never sees mm of an odd size
@@ -72,15 +79,15 @@ def build_body(
         # -P: a file gmsh.py in the working folder is not gmsh
         worker = [sys.executable, "-P", "-m", "geometry.bodies.gmsh_worker", str(spec), str(out)]
         end = time.monotonic() + time_limit
-        for seed, adapted in _ATTEMPTS:
-            attempt = {"seed": seed, "adapted": adapted}
+        for seed, adapted, delaunay in _ATTEMPTS:
+            attempt = {"seed": seed, "adapted": adapted, "delaunay": delaunay}
             spec.write_text(json.dumps(description | attempt))
             try:
                 _run(worker, time_limit, end - time.monotonic())
                 break
-            except CrashError:
+            except ChanceError:
                 # of hexahedra nothing is random
-                if size.element == "hexahedron" or (seed, adapted) == _ATTEMPTS[-1]:
+                if size.element == "hexahedron" or (seed, adapted, delaunay) == _ATTEMPTS[-1]:
                     raise
         mesh = MeshData.load(out)
         return dataclasses.replace(mesh, nodes=unit * mesh.nodes)
@@ -119,6 +126,8 @@ def _run(command: list[str], time_limit: float, left: float) -> None:
         lines = [line for line in done.stdout.splitlines() if line.strip()]
         last = " | ".join(lines[-_LAST_LINES:])
         if done.returncode < 0:
-            how = f"gmsh crashed by signal {-done.returncode}; shorter elements or hexahedra may do"
-            raise CrashError(f"{how}: {last}")
+            how = f"gmsh crashed by signal {-done.returncode}; {_WHAT_MAY_DO}"
+            raise ChanceError(f"{how}: {last}")
+        if done.returncode == NO_MESH:
+            raise ChanceError(f"gmsh found no mesh; {_WHAT_MAY_DO}: {last}")
         raise MeshError(f"gmsh ended with code {done.returncode}: {last}")

@@ -20,6 +20,7 @@ import numpy as np
 from geometry.bodies.gmsh_read import read_mesh
 from geometry.bodies.stations import Stations, body_stations
 from geometry.mesh.data import Floats, Ints, MeshData
+from geometry.mesh.errors import NO_MESH
 from geometry.mesh.reference import determinants
 from geometry.sections.blocks import SIDES, Layout, Point
 from geometry.sections.size import MeshSize, Strips
@@ -28,7 +29,7 @@ from geometry.sections.table import make_actuator, section_layout
 geo = gmsh.model.geo
 Edge = tuple[int, int]
 
-_HXT = 10
+_DELAUNAY, _HXT = 1, 10
 _MESH_ADAPT = 1
 _FLAT = 1e-4
 """Volume of a tetrahedron, over the median of all, that is flat; round-off of gmsh leaves some."""
@@ -220,14 +221,17 @@ def add_winding(curves: list[list[list[float]]]) -> None:
     gmsh.model.setPhysicalName(1, gmsh.model.addPhysicalGroup(1, entities), "winding")
 
 
-def _generate(element: str, first: int, adapted: bool) -> None:
-    """Mesh the model, tetrahedra until none is flat, from one seed on."""
+def _generate(element: str, first: int, adapted: bool, delaunay: bool) -> None:
+    """Mesh the model, tetrahedra until none is flat, from one seed on.
+
+    Raises:
+        SystemExit: gmsh finds no mesh, or Delaunay's has flat tetrahedra.
+    """
     if adapted:
         gmsh.option.setNumber("Mesh.Algorithm", _MESH_ADAPT)
     # the default algorithm leaves slivers in the thin walls (Jacobians of 1e-4 mm³)
-    gmsh.option.setNumber("Mesh.Algorithm3D", _HXT)
-    gmsh.option.setNumber("Mesh.RandomSeed", first)
-    gmsh.model.mesh.generate(3)
+    gmsh.option.setNumber("Mesh.Algorithm3D", _DELAUNAY if delaunay else _HXT)
+    _from_seed(first)
     for seed in range(first + 1, first + 1 + _TRIES):
         if element != "tetrahedron" or _flattest() > _FLAT:
             return
@@ -235,8 +239,19 @@ def _generate(element: str, first: int, adapted: bool) -> None:
         if _flattest() > _FLAT:
             return
         gmsh.model.mesh.clear()
-        gmsh.option.setNumber("Mesh.RandomSeed", seed)
+        _from_seed(seed)
+    if delaunay and _flattest() <= _FLAT:
+        print("tetrahedra are flat", flush=True)
+        raise SystemExit(NO_MESH)
+
+
+def _from_seed(seed: int) -> None:
+    gmsh.option.setNumber("Mesh.RandomSeed", seed)
+    try:
         gmsh.model.mesh.generate(3)
+    except Exception as error:  # gmsh raises no other
+        print(error, flush=True)
+        raise SystemExit(NO_MESH) from error
 
 
 def _unfolded(body: GmshBody) -> MeshData:
@@ -283,7 +298,8 @@ def mesh_body(spec: dict[str, Any], out: Path) -> None:
     Args:
         spec: dictionaries "actuator", "size", "strips" and lists "winding", all lengths of them in
             the "unit" (mm), in which the mesh too is written; path "msh_path" of a file in mm;
-            "seed" of random numbers; "adapted": whether surfaces are triangulated by MeshAdapt.
+            "seed" of random numbers; "adapted": whether surfaces are triangulated by MeshAdapt;
+            "delaunay": whether they are filled by Delaunay's algorithm instead of HXT.
         out: .npz file for `MeshData.load`.
     """
     actuator = make_actuator(spec["actuator"])
@@ -296,7 +312,7 @@ def mesh_body(spec: dict[str, Any], out: Path) -> None:
     body = GmshBody(layout, stations, size)
     geo.synchronize()
     body.add_groups()
-    _generate(size.element, spec["seed"], spec["adapted"])
+    _generate(size.element, spec["seed"], spec["adapted"], spec["delaunay"])
     gmsh.model.mesh.setOrder(2)
     if body.structured:
         body.straighten()

@@ -9,12 +9,17 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
+import cffi
+import numpy as np
 import pytest
+import ufl
 
 from fem import compat
 from machine.folders import MachineError
 from tests.conftest import ROOT
+from tests.fem.parts import sector
 
 KNOWN = ["0.5.2", "0.9.0", "0.9.0.post1", "0.11.0.post0"]
 PACKAGES = (
@@ -132,3 +137,17 @@ def test_own_code_exports_no_name(path: Path) -> None:
     functions = head.findall(path.read_text())
     assert functions
     assert [name for kind, name in functions if not kind.startswith("static")] == []
+
+
+def test_values_at_points_are_compiled_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However many variables the process has made meanwhile."""
+    mesh = sector("hexahedron").mesh
+
+    def values() -> Any:
+        place = ufl.variable(ufl.SpatialCoordinate(mesh))
+        return compat.PointValues(mesh, place[2] ** 2, np.full((1, 3), 0.25))()
+
+    first, compiled = values(), list[str]()
+    monkeypatch.setattr(cffi.FFI, "compile", lambda *_, **given: compiled.append(str(given)))
+    assert np.array_equal(values(), first)
+    assert compiled == []
