@@ -160,6 +160,7 @@ def test_what_is_damaged_is_made_anew(coarse: Store, tmp_path: Path) -> None:
     assert calibrate(case, Store(tmp_path / FOLDER)).kept
 
 
+@pytest.mark.long
 def test_a_load_beyond_the_states_takes_the_next_class(coarse: Store, tmp_path: Path) -> None:
     case = wound()
     near = calibrate(parse_case(case), coarse)
@@ -197,6 +198,7 @@ def test_a_run_keeps_its_numbers_and_goes_on_with_them(coarse: Store, tmp_path: 
     assert not (tmp_path / FOLDER).exists()
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_two_ranks_have_the_numbers_of_one(mpirun: MpiRun, tmp_path: Path) -> None:
     case = wound("body", mesh={"axial": "8 mm"})

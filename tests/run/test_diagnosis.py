@@ -57,6 +57,7 @@ def test_a_body_that_passes_through_itself_is_warned_about() -> None:
     assert "passes through itself" in text
 
 
+@pytest.mark.long
 def test_a_body_that_bends_less_is_not_warned_about() -> None:
     assert section({"angle": "270 deg"}).run["warnings"] == []
 

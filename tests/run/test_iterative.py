@@ -70,6 +70,7 @@ def test_what_is_not_known_to_be_stable_may_be_lost() -> None:
     assert suspect(state(**{MODES_MEASURE: 0}), Report(critical=[limit]))
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_two_ranks_find_the_same(
     direct: list[dict[str, Any]], mpirun: MpiRun, tmp_path: Path

@@ -84,6 +84,7 @@ def test_told_to_stop_on_two_ranks(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert run["load_steps"] >= 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("phase", ["crosscheck", "output", "report"])
 def test_told_to_stop_after_the_last_load_step(phase: str, tmp_path: Path) -> None:
     """The curves are whole, and a run says so; the rest is made by --resume."""

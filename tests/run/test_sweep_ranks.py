@@ -92,6 +92,7 @@ class Cube:
         return out
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_27_points_with_one_rank_killed_give_the_table_of_the_pool(tmp_path: Path) -> None:
     """Table, trends and histories byte for byte, but for the times."""
@@ -140,6 +141,7 @@ def test_ranks_share_the_points_and_the_leader_solves_none(lab: Lab) -> None:
     assert (lab.starts(), (lab.out / "sweep.csv").read_bytes()) == (Counter(NAMES), before)
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_a_lost_rank_costs_its_points_which_the_pool_takes_up(lab: Lab) -> None:
     """And what the pool has left when it is killed, ranks take up."""
@@ -165,6 +167,7 @@ def test_a_lost_rank_costs_its_points_which_the_pool_takes_up(lab: Lab) -> None:
     assert lab.log.read_text().splitlines()[-1].split()[2] == "resumed"
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_mpirun_that_is_stopped_leaves_a_table_and_no_process(lab: Lab, number: int) -> None:
@@ -203,6 +206,7 @@ def test_points_that_fail_on_ranks_are_listed(lab: Lab) -> None:
     assert "Traceback" in (lab.out / "points" / NAMES[4] / "error.log").read_text()
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 @pytest.mark.parametrize("other", ["ranks", "processes"])
 def test_a_sweep_by_ranks_shares_the_points_with_another(lab: Lab, other: str) -> None:
@@ -317,6 +321,7 @@ sys.stdout.flush()
 """
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_a_script_sweeps_by_ranks_and_then_shares_a_body(mpirun: MpiRun, tmp_path: Path) -> None:
     """Every rank has the table; what a rank printed elsewhere meanwhile it prints again."""

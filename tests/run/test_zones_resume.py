@@ -161,6 +161,7 @@ def test_a_sweep_goes_on_with_the_zones_of_its_point(
     assert run["newton_iterations"] == whole.run["newton_iterations"]
 
 
+@pytest.mark.long
 def test_killed_by_a_signal_and_gone_on_with(whole: RunResult, tmp_path: Path) -> None:
     """A process that ends by SIGKILL, and one that is told to stop, in the second zone."""
     case, out = tmp_path / "case.yaml", tmp_path / "run"
