@@ -159,7 +159,7 @@ def test_a_resumed_run_goes_on_with_its_log(tmp_path: Path) -> None:
     spread = small()["effects"][1]["winding"] | {"as": "smeared"}
     effects = [{"pressure": {"to": "10 kPa"}}, {"winding": spread}]
     output = {"pictures": False, "fields": False}
-    case = parse_case(small(model="section", effects=effects, output=output))
+    case = parse_case(small(mesh={"axial": "8 mm"}, effects=effects, output=output))
     folder = tmp_path / "run"
     run(case, folder)
     first = (folder / "run.log").read_text(encoding="utf-8")

@@ -119,6 +119,7 @@ def test_a_step_with_one_tangent_gives_a_neighbour() -> None:
     assert small.read(near).pressure - small.read(state).pressure == pytest.approx(moved, rel=1e-2)
 
 
+@pytest.mark.long
 def test_numbers_that_made_a_section_are_found_again(monkeypatch: pytest.MonkeyPatch) -> None:
     """States of a section in place of a cell's: what is left is round-off."""
     case, reach = parse_case(wound()), Reach.of(0)
@@ -148,6 +149,7 @@ def test_a_second_case_of_the_same_section_takes_what_is_kept(coarse: Store) -> 
     assert told == ["winding: its cell is solved to calibrate it"]
 
 
+@pytest.mark.long
 def test_what_is_damaged_is_made_anew(coarse: Store, tmp_path: Path) -> None:
     case = parse_case(wound())
     first = calibrate(case, coarse)

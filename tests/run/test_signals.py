@@ -50,7 +50,9 @@ def _stop(ranks: int, number: int, tmp_path: Path) -> tuple[int, str, dict[str, 
     return code, text, run
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize(
+    "number", [signal.SIGTERM, pytest.param(signal.SIGHUP, marks=pytest.mark.long)]
+)
 def test_a_run_that_is_told_to_stop_keeps_its_steps(number: int, tmp_path: Path) -> None:
     """Also where a library of MPI would take the signal for itself."""
     code, text, run = _stop(1, number, tmp_path)

@@ -131,7 +131,9 @@ def test_a_kill_in_the_first_zone_leaves_nothing(
     assert_bitwise(again, whole)
 
 
-@pytest.mark.parametrize("damage", [b"", b"no archive", None])
+@pytest.mark.parametrize(
+    "damage", [b"", *(pytest.param(each, marks=pytest.mark.long) for each in (b"no archive", None))]
+)
 def test_a_damaged_zone_is_solved_again(
     damage: bytes | None, whole: RunResult, tmp_path: Path, marched: list[int]
 ) -> None:
