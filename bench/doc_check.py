@@ -137,6 +137,7 @@ class Checker:
     def _fiberbend(self, words: list[str]) -> None:
         from fiberbend.cli import app
         from fiberbend.design.reading import read_design
+        from fiberbend.hand.reading import read_hand
         from fiberbend.reader.reader import read_case
         from fiberbend.sweep.points import read_sweep
 
@@ -153,6 +154,8 @@ class Checker:
                 read_sweep(file, changes)
             elif name == "design":
                 read_design(file, changes)
+            elif name == "hand":
+                read_hand(file, changes)
             elif name != "init":
                 read_case(file, changes)
             default = f"runs/{file.stem}" + ("_control" if name == "control" else "")
@@ -183,7 +186,7 @@ class Checker:
         DesignFile.model_validate(whole)
 
     def yaml(self, text: str, where: str) -> None:
-        """Check a whole case, sweep or design, or keys of one of them.
+        """Check a whole case, sweep, design or hand, or keys of a case, sweep or design.
 
         Raises:
             ValueError: keys that neither has.
@@ -191,6 +194,8 @@ class Checker:
         """
         from fiberbend.case.case import Case
         from fiberbend.design.file import DesignFile
+        from fiberbend.hand.file import HandFile
+        from fiberbend.reader.base_case import HAND
         from fiberbend.reader.reader import parse_case
         from fiberbend.sweep.file import SweepFile
 
@@ -199,6 +204,8 @@ class Checker:
             return
         if isinstance(data, dict) and {"actuator", "materials", "effects"} <= set(data):
             parse_case(data)
+        elif isinstance(data, dict) and HAND in data:
+            HandFile.model_validate(data)
         elif isinstance(data, dict) and {"case", "targets"} <= set(data):
             DesignFile.model_validate(data)
         elif isinstance(data, dict) and {"targets", "goals", "confirm", "search"} & set(data):

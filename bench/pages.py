@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from bench import materials_page
+from bench.rod import page as rod_page
 from fiberbend.reader.json_schema import json_schema
 from fiberbend.schema.units import KINDS
 
@@ -185,6 +186,7 @@ PAGES: dict[str, Callable[[], str]] = {
     "docs/case_file.md": case_file,
     "docs/commands.md": commands,
     "docs/materials.md": materials_page.page,
+    "docs/evidence/rod.md": rod_page.page,
 }
 """Pages by their path, each with what writes it."""
 

@@ -21,7 +21,7 @@ from fiberbend.version import __version__
 from machine.folders import MachineError
 
 WRONG_INPUT = 1
-COMPUTING = ("run", "sweep", "control", "accuracy", "design")
+COMPUTING = ("run", "sweep", "control", "accuracy", "design", "hand")
 """Commands whose results are in a folder, whatever becomes of the lines that they print."""
 
 app = App(
@@ -63,11 +63,17 @@ _LOADED = {
     "fiberbend.commands.design:design": (
         "Find the case that does what is wanted, and confirm it by the whole body."
     ),
+    "fiberbend.commands.hand:hand": (
+        "Close several actuators around what they grasp: forces, moments, pictures."
+    ),
     "fiberbend.commands.table:table": (
         "Write the law of a section as a table: energy, force and moment, for rods."
     ),
     "fiberbend.commands.export:export": (
         "Write an actuator as a rod for PyElastica, MuJoCo or SOFA, with a script that runs."
+    ),
+    "fiberbend.commands.frequencies:frequencies": (
+        "Write natural frequencies and modes of an actuator at pressures, as a rod."
     ),
     "fiberbend.commands.report:report": "Write report.html of a run, a sweep or a design again.",
 }

@@ -44,6 +44,15 @@ TORQUE = "torque_Nmm"
 WORK = "work_mJ"
 STORED = "stored_mJ"
 MODES = "unstable_modes"
+TIME = "time_s"
+SPEED = "tip_speed_mm_per_s"
+KINETIC = "kinetic_mJ"
+ELASTIC = "elastic_mJ"
+POTENTIAL = "potential_mJ"
+AIR_WORK = "air_work_mJ"
+LOADS_WORK = "loads_work_mJ"
+DISSIPATED = "dissipated_mJ"
+DRIFT = "balance_mJ"
 BALANCE_FORCE = "balance_force"
 BALANCE_MOMENT = "balance_moment"
 
@@ -55,6 +64,8 @@ RUN = "run"
 """Columns of every model."""
 MIDDLE = "middle"
 """Columns of a model that separates the bend of the middle from that of the ends."""
+TIMED = "timed"
+"""Columns of a run in time."""
 SOLVED = "solved"
 """Columns of a model that finds its states in equilibrium: of finite elements, or as a rod."""
 OBSTACLES = "obstacles"
@@ -237,6 +248,15 @@ COLUMNS = (
         "the same, the pressure on all inside the winding",
         beside=True,
     ),
+    Column(TIME, "s", "time", TIMED),
+    Column(SPEED, "mm/s", "speed of the tip", TIMED),
+    Column(KINETIC, "mJ", "kinetic energy", TIMED),
+    Column(ELASTIC, "mJ", "elastic energy of the sections since rest", TIMED),
+    Column(POTENTIAL, "mJ", "potential of weight, loads and contact since rest", TIMED),
+    Column(AIR_WORK, "mJ", "∫ P dV that the air has done since the motion began", TIMED),
+    Column(LOADS_WORK, "mJ", "the same of loads without a potential", TIMED),
+    Column(DISSIPATED, "mJ", "what damping has taken since then", TIMED),
+    Column(DRIFT, "mJ", "what the balance of these leaves open: 0 but for round-off", TIMED),
 )
 """In the order of a row."""
 

@@ -28,8 +28,11 @@ _SMALL = 4.0
 """Greatest s by the series: its terms fall from the first one on."""
 _TERMS = 13
 """Of the series of c_6 and c_7 at s = 4: the next one is below 1e-23."""
-_FEWER = ((1e-3, 3), (0.05, 5), (0.5, 8))
-"""Greatest s, and terms that are then below 1e-19."""
+_NEAR = ((1e-3, 6), (0.05, 8), (0.5, 11))
+"""Greatest s, and terms of all series that leave less than 1e-18 of c_0 out."""
+_SERIES: Floats = np.array(
+    [[(-1) ** j / math.factorial(2 * j + k) for j in range(_NEAR[-1][1])] for k in range(ORDER)]
+)
 _EYE = np.eye(3)
 _CROSS = np.zeros((3, 3, 3))
 """[a×] = Σ a_k of these."""
@@ -71,13 +74,18 @@ def stumpff(s: Floats) -> Floats:
     Returns:
         The functions along a new first axis, (8, ...).
     """
-    c = np.empty((ORDER, *s.shape))
     greatest = float(s.max())
+    for bound, terms in _NEAR:
+        if greatest <= bound:
+            # one product of matrices: numpy needs a microsecond for every call
+            powers = np.vander(s.ravel(), terms, increasing=True).T
+            out: Floats = np.matmul(_SERIES[:, :terms], powers).reshape(ORDER, *s.shape)
+            return out
+    c = np.empty((ORDER, *s.shape))
     near = s if greatest <= _SMALL else np.minimum(s, _SMALL)
-    terms = next((count for bound, count in _FEWER if greatest <= bound), _TERMS)
     for k in (ORDER - 2, ORDER - 1):
         total = np.ones_like(near)
-        for j in range(terms, 0, -1):
+        for j in range(_TERMS, 0, -1):
             total = 1.0 - near * total / ((2 * j + k) * (2 * j + k - 1))
         c[k] = total / math.factorial(k)
     for k in range(ORDER - 3, -1, -1):
@@ -90,6 +98,19 @@ def stumpff(s: Floats) -> Floats:
         for k in range(2, ORDER):
             c[k][far] = (1.0 / math.factorial(k - 2) - c[k - 2][far]) / large
     return c
+
+
+def matrices(phi: Floats, c: Floats) -> tuple[Floats, Floats]:
+    """The rotation exp [φ×] and its mean on the way from 0 to φ, (n, 3, 3) both.
+
+    Args:
+        phi: φ, (n, 3), rad.
+        c: `stumpff` of |φ|².
+    """
+    across = cross_matrix(phi)
+    first, second = c[1:3, :, None, None], c[2:4, :, None, None]
+    both = _EYE + first * across + second * (across @ across)
+    return both[0], both[1]
 
 
 class Pair:
@@ -116,19 +137,23 @@ class Pair:
         return square
 
     @functools.cached_property
-    def _f(self) -> tuple[Floats, Floats, Floats]:
-        """f, df/ds, d²f/ds²."""
-        return self._slopes(self._k)
+    def _f(self) -> tuple[Floats, Floats]:
+        """f, df/ds."""
+        return self._c[self._k], self._slope(self._k)
 
     @functools.cached_property
-    def _g(self) -> tuple[Floats, Floats, Floats]:
-        return self._slopes(self._k + 1)
+    def _g(self) -> tuple[Floats, Floats]:
+        return self._c[self._k + 1], self._slope(self._k + 1)
 
-    def _slopes(self, k: int) -> tuple[Floats, Floats, Floats]:
-        c = self._c
-        first, third = ((i * c[i + 2] - c[i + 1]) / 2 for i in (k, k + 2))
-        second = ((k + 1) * c[k + 3] - c[k + 2]) / 2
-        return c[k], first, (k * third - second) / 2
+    def _slope(self, k: int) -> Floats:
+        """dc_k/ds."""
+        out: Floats = (k * self._c[k + 2] - self._c[k + 1]) / 2
+        return out
+
+    def _second(self, k: int) -> Floats:
+        """d²c_k/ds²."""
+        out: Floats = (k * self._slope(k + 2) - self._slope(k + 1)) / 2
+        return out
 
     def matrix(self) -> Floats:
         """The map itself, (..., 3, 3)."""
@@ -170,7 +195,7 @@ class Pair:
         bent = bent - 2 * total[..., None] * phi
         f, g = self._f, self._g
         rate = 2 * (f[1] * along + g[1] * square)
-        second = 4 * (f[2] * along + g[2] * square)
+        second = 4 * (self._second(self._k) * along + self._second(self._k + 1) * square)
         half = 2 * (f[1][..., None] * w + g[1][..., None] * bent) + second[..., None] * phi / 2
         outer = _outer(half, phi)
         eye = _EYE

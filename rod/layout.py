@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 
 import numpy as np
 
@@ -42,7 +43,7 @@ class Layout:
         unknown = [name for name in self.strains if name not in STRAINS]
         if unknown or not self.strains:
             raise ValueError(f"strains {self.strains}: some of {', '.join(STRAINS)} expected")
-        if list(self.columns) != sorted(set(self.columns)):
+        if self.columns != sorted(set(self.columns)):
             raise ValueError(f"strains {self.strains}: each once and in the order of {STRAINS}")
         turn = np.asarray(self.rotation, dtype=float)
         square = np.allclose(turn.T @ turn, np.eye(3), rtol=0.0, atol=1e-9)
@@ -51,10 +52,10 @@ class Layout:
         if np.shape(self.place) != (3,) or not np.all(np.isfinite(self.place)):
             raise ValueError(f"place of the root: three mm expected, not {self.place}")
 
-    @property
-    def columns(self) -> tuple[int, ...]:
+    @functools.cached_property
+    def columns(self) -> list[int]:
         """Places of the free strains among the six."""
-        return tuple(STRAINS.index(name) for name in self.strains)
+        return [STRAINS.index(name) for name in self.strains]
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -72,8 +73,9 @@ class Layout:
 
     def full(self, strains: Floats) -> Floats:
         """All six strains of each piece, (n, 6), by the free ones, (n, m)."""
-        out = np.tile(AT_REST, (len(self.lengths), 1))
-        out[:, list(self.columns)] = strains
+        out = np.empty((len(self.lengths), len(STRAINS)))
+        out[:] = AT_REST
+        out[:, self.columns] = strains
         return out
 
     def weights(self, strain: str) -> Floats:

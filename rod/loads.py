@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Sequence
 
 import numpy as np
@@ -31,7 +32,8 @@ class Weight:
         """See `Term`."""
         return True
 
-    def _loads(self) -> Floats:
+    @functools.cached_property
+    def loads(self) -> Floats:
         """On the frames, (n + 1, 3, 4); see `Shape.pulled`."""
         acceleration = np.asarray(self.gravity, dtype=float)
         out: Floats = acceleration[:, None] * self.inertia[:, None, 3, :]
@@ -39,15 +41,15 @@ class Weight:
 
     def potential(self, shape: Shape, amount: float) -> float:
         """See `Term`; zero where all masses are at the origin."""
-        return -amount * float(np.sum(self._loads() * shape.frames))
+        return -amount * float(np.sum(self.loads * shape.frames))
 
     def residual(self, shape: Shape, amount: float) -> Floats:
         """See `Term`."""
-        return -shape.pulled(amount * self._loads())
+        return -shape.pulled(amount * self.loads)
 
     def tangent(self, shape: Shape, amount: float) -> Floats:
         """See `Term`."""
-        return -shape.curved(amount * self._loads())
+        return -shape.curved(amount * self.loads)
 
     def growth(self, shape: Shape, amount: float) -> Floats:
         """See `Term`."""

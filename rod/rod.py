@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
+import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from rod.functions import Floats
+from rod.functions import Floats, Ints
 from rod.law import Law
 from rod.layout import Layout
 from rod.shape import Shape
-from rod.term import Term
+from rod.term import Iterate, Iterated, Term
 
 
 @dataclasses.dataclass(frozen=True)
@@ -75,9 +76,55 @@ class Rod:
         self.layout, self.law, self.terms = layout, law, tuple(terms)
         self.inertia: Floats = np.zeros((frames, 4, 4)) if inertia is None else inertia
 
+    @property
+    def sizes(self) -> Floats:
+        """Changes of strains that count as one: of a stretch 1, of a curvature 1/L; (n, m)."""
+        length = float(self.layout.lengths.sum())
+        sizes = np.array([1.0, 1.0, 1.0, 1 / length, 1 / length, 1 / length])
+        return np.broadcast_to(sizes[list(self.layout.columns)], self.layout.shape)
+
+    def way(self, change: Floats) -> float:
+        """How far a change of strains leads: a mean stretch or the turns of all pieces, rad."""
+        parts = self.layout.lengths[:, None] * np.abs(change) / self.sizes
+        return float(parts.sum(axis=0).max()) / float(self.layout.lengths.sum())
+
+    def blocks(self, shape: Shape, level: Level) -> list[Ints]:
+        """Unknowns that the tangent couples: all of them."""
+        return [np.arange(shape.strains.size)]
+
+    def outside(self, shape: Shape, level: Level) -> str:
+        """What of a state is beyond the range in which its law is known; empty where nothing is."""
+        return self.law.outside(shape.strains, level.pressure)
+
     def shape(self, strains: Floats) -> Shape:
         """Its line at given strains, (n, m)."""
         return Shape(self.layout, strains)
+
+    def leapt(self, before: Shape, after: Shape) -> str:
+        """What may have passed through something between two states: nothing is known to."""
+        return ""
+
+    def closing(
+        self, shape: Shape, level: Level, after: Shape, then: Level
+    ) -> list[tuple[int, float]]:
+        """What one state does not touch, but another one does; see `rod.term.Flexible`."""
+        found = []
+        begun, ended = self.amounts(level), self.amounts(then)
+        for place, (term, first, last) in enumerate(zip(self.terms, begun, ended, strict=True)):
+            if not isinstance(term, Iterated):
+                continue
+            gap = term.gap(after, last)
+            if gap < 0 <= (room := term.gap(shape, first)) < math.inf:
+                found.append((place, room / (room - gap)))
+        return found
+
+    def amounts(self, level: Level) -> list[float]:
+        """Of all terms at a level."""
+        return [*level.amounts, *[0.0] * (len(self.terms) - len(level.amounts))]
+
+    def search(self, shape: Shape, level: Level) -> Search:
+        """What stands for it in one search by Newton's method, from a state near by."""
+        return Search(self, shape, level)
 
     def acting(self, level: Level) -> list[tuple[Term, float]]:
         """The terms of which something acts, with their amounts.
@@ -136,3 +183,38 @@ class Rod:
     def volume(self, strains: Floats, pressure: float) -> float:
         """Of the chamber, mm³."""
         return float(self.layout.lengths @ self.law.chamber(strains, pressure))
+
+
+class Search:
+    """A rod whose terms remember what happens within one search.
+
+    Args:
+        rod: the rod.
+        shape: from which they begin.
+        level: there.
+
+    Attributes:
+        rod: with the iterates of its terms.
+    """
+
+    def __init__(self, rod: Rod, shape: Shape, level: Level) -> None:
+        amounts = rod.amounts(level)
+        self._iterates: dict[int, Iterate] = {
+            number: term.iterate(shape, amounts[number])
+            for number, term in enumerate(rod.terms)
+            if isinstance(term, Iterated)
+        }
+        if not self._iterates:
+            self.rod = rod
+            return
+        terms = [self._iterates.get(number, term) for number, term in enumerate(rod.terms)]
+        self.rod = Rod(rod.layout, rod.law, None, terms)
+
+    def stepped(self, shape: Shape, level: Level, change: Floats, after: Level) -> bool:
+        """Tells them of a step; whether none of them changed its mind."""
+        amounts, others = self.rod.amounts(level), self.rod.amounts(after)
+        settled = [
+            term.stepped(shape, amounts[number], change, others[number] - amounts[number])
+            for number, term in self._iterates.items()
+        ]
+        return all(settled)

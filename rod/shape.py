@@ -19,7 +19,7 @@ import functools
 
 import numpy as np
 
-from rod.functions import Floats, Ints, Pair, axial, cross, cross_matrix, stumpff, trace
+from rod.functions import Floats, Ints, Pair, axial, cross, cross_matrix, matrices, stumpff, trace
 from rod.layout import Layout
 
 _EYE = np.eye(3)
@@ -46,9 +46,9 @@ class Shape:
         phi = self._reach[..., 0] * self._spin
         c = stumpff(np.sum(phi * phi, axis=-1))
         self._turn, self._mean = Pair(phi, c, 1), Pair(phi, c, 2)
-        self._means = self._mean.matrix()
+        turns, self._means = matrices(phi, c)
         steps = (self._reach * (self._means @ self._v[..., None]))[..., 0]
-        chain = _chained(self._turn.matrix(), steps, layout.rotation, layout.place)
+        chain = _chained(turns, steps, layout.rotation, layout.place)
         self.frames = chain[:, :3]
         self._base = self.frames[:-1, :, :3]
 
@@ -110,7 +110,7 @@ class Shape:
         bent = reach**2 * self._mean.slope(self._v)
         shift = np.concatenate([moved, bent], axis=-1)
         turned = np.concatenate([np.zeros_like(moved), moved], axis=-1)
-        columns = list(self.layout.columns)
+        columns = self.layout.columns
         u: Floats = self._base @ shift[..., columns]
         omega: Floats = self._base @ turned[..., columns]
         return u, omega
@@ -132,10 +132,12 @@ class Shape:
         Returns:
             Work by a unit of each free strain, (n, m), N mm and N mm².
         """
-        force, about = self._beyond(loads)
-        u, omega = self._basis
-        out: Floats = _dot(u, force) + _dot(omega, axial(about))
-        return out
+        u0, omega = self._screws
+        # [R | r] Aᵀ: the dyads Σ y ⊗ f about the origin
+        total = _after(loads[..., 3])
+        about = _after(self.frames @ np.swapaxes(loads, -1, -2))
+        out: Floats = total[:, None] @ u0 + axial(about)[:, None] @ omega
+        return out[:, 0]
 
     def jacobian(self, frame: int = -1) -> tuple[Floats, Floats]:
         """How a frame moves and turns with the strains.
@@ -201,7 +203,7 @@ class Shape:
             along[..., axis] = pull
             mixed = reach[..., 0] ** 2 * self._mean.gradient(along)
             blocks[:, 3:, axis] = blocks[:, axis, 3:] = mixed
-        columns = list(self.layout.columns)
+        columns = self.layout.columns
         return blocks[:, columns][:, :, columns]
 
     def spun(self, moment: Floats) -> Floats:
@@ -226,7 +228,7 @@ class Shape:
             z = np.zeros((n, 3, 3))
             z[..., axis] = pull
             blocks[:, 3 + axis, 3:] = self._reach[..., 0] ** 2 * self._mean.gradient(z)
-        columns = list(self.layout.columns)
+        columns = self.layout.columns
         place = np.arange(n)
         out.reshape(n, m, n, m)[place, :, place] = blocks[:, columns][:, :, columns]
         return out
@@ -364,11 +366,6 @@ def _flat(columns: Floats, count: int) -> Floats:
 def _stacked(first: Floats, second: Floats, count: int) -> Floats:
     """(6, n m) of two of (n, 3, m)."""
     return np.concatenate([_flat(first, count), _flat(second, count)])
-
-
-def _dot(columns: Floats, vectors: Floats) -> Floats:
-    out: Floats = np.einsum("nkm,nk->nm", columns, vectors)
-    return out
 
 
 def _apply(columns: Floats, rates: Floats) -> Floats:

@@ -44,6 +44,8 @@ class Axis:
         self.lines, self.degree = lines, degree
         self.count = len(lines) - 1 + degree
         self._pieces = _pieces(lines, degree)
+        self._inner, self._widths = lines[1:-1], np.diff(lines)
+        self._polynomials = _derived(self._pieces, self._widths)
 
     def basis(self, x: Floats) -> tuple[npt.NDArray[np.intp], Floats]:
         """The splines that are not zero at given points, with two derivatives.
@@ -55,16 +57,12 @@ class Axis:
             Number of the first of the p + 1 splines, (n,), and their values, slopes and second
             derivatives, (3, n, p + 1).
         """
-        lines, p = self.lines, self.degree
-        place = np.clip(np.searchsorted(lines, x, side="right") - 1, 0, len(lines) - 2)
-        width = np.diff(lines)[place]
-        u = (x - lines[place]) / width
-        power = np.arange(p + 1)
-        rise = np.zeros((3, len(x), p + 1))
-        rise[0] = u[:, None] ** power
-        rise[1, :, 1:] = rise[0, :, :-1] * power[1:] / width[:, None]
-        rise[2, :, 1:] = rise[1, :, :-1] * power[1:] / width[:, None]
-        return place.astype(np.intp), np.einsum("dnk,nbk->dnb", rise, self._pieces[place])
+        # few calls: numpy needs a microsecond for each
+        place = self._inner.searchsorted(x, side="right")
+        u = (x - self.lines[place]) / self._widths[place]
+        powers = np.vander(u, self.degree + 1, increasing=True)
+        found = (self._polynomials[place] @ powers[:, :, None])[..., 0]
+        return place, found.reshape(len(x), 3, -1).transpose(1, 0, 2)
 
     def highest(self, coefficients: Floats) -> Floats:
         """The derivative of order p, which is constant on each interval.
@@ -82,6 +80,17 @@ class Axis:
         ]
         out: Floats = float(math.factorial(p)) * np.stack(leading)
         return out
+
+
+def _derived(pieces: Floats, widths: Floats) -> Floats:
+    """Powers of u in values, slopes and second derivatives, (k, 3 splines, powers)."""
+    k, b, count = pieces.shape
+    out = np.zeros((k, 3, b, count))
+    out[:, 0] = pieces
+    rise = np.arange(1, count) / widths[:, None]
+    for order in (1, 2):
+        out[:, order, :, :-1] = out[:, order - 1, :, 1:] * rise[:, None, :]
+    return out.reshape(k, 3 * b, count)
 
 
 def _pieces(lines: Floats, degree: int) -> Floats:

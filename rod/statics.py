@@ -5,16 +5,16 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterator, Sequence
-from typing import Protocol
+from typing import Any, Generic, Protocol, TypeAlias
 
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky
 from scipy.linalg.lapack import dgesv
 
-from rod.functions import Floats
+from rod.functions import Floats, Ints
 from rod.rod import Level, Rod
 from rod.shape import Shape
-from rod.term import Iterate, Iterated
+from rod.term import Flexible, L, S
 
 _CLOSE = 1e-9
 """Greatest last correction of a stretch, and of an angle over the whole length in rad; as it falls
@@ -38,11 +38,11 @@ class NoEquilibriumError(RuntimeError):
 
 
 @dataclasses.dataclass(frozen=True)
-class State:
+class Equilibrium(Generic[S, L]):
     """An equilibrium.
 
     Attributes:
-        shape: the rod.
+        shape: of the rod, or of the rods.
         level: what acts on it.
         share: of the way between two levels.
         iterations: of Newton's method.
@@ -51,18 +51,22 @@ class State:
         tangent: there, (n m, n m).
     """
 
-    shape: Shape
-    level: Level
+    shape: S
+    level: L
     share: float
     iterations: int
     unstable: int
     tangent: Floats
 
     @classmethod
-    def at(cls, rod: Rod, shape: Shape, level: Level, share: float, iterations: int) -> State:
+    def at(
+        cls, rod: Flexible[S, L], shape: S, level: L, share: float, iterations: int
+    ) -> Equilibrium[S, L]:
         """A state, its tangent and stability."""
         tangent = rod.tangent(shape, level)
-        return cls(shape, level, share, iterations, unstable_modes(tangent), tangent)
+        blocks = rod.blocks(shape, level)
+        unstable = sum(unstable_modes(_part(tangent, block)) for block in blocks)
+        return cls(shape, level, share, iterations, unstable, tangent)
 
     @property
     def strains(self) -> Floats:
@@ -70,8 +74,12 @@ class State:
         return self.shape.strains
 
 
+State: TypeAlias = Equilibrium[Shape, Level]
+"""Of one rod."""
+
+
 @dataclasses.dataclass(frozen=True)
-class Path:
+class Loading(Generic[L]):
     """From one level to another; what is beyond its ends is on it as well.
 
     Attributes:
@@ -79,23 +87,26 @@ class Path:
         end: the level at 1.
     """
 
-    start: Level
-    end: Level
+    start: L
+    end: L
 
-    def at(self, share: float) -> Level:
+    def at(self, share: float) -> L:
         """The level at a share of the way."""
-        return self.start.toward(self.end, share)
+        out: L = self.start.toward(self.end, share)
+        return out
+
+
+Path: TypeAlias = Loading[Level]
+"""Of one rod."""
 
 
 class Held(Protocol):
     """What is given in place of the share of the path, which is then unknown."""
 
-    def value(self, rod: Rod, strains: Floats, level: Level) -> float:
+    def value(self, rod: Any, strains: Floats, level: Any) -> float:
         """Of what is given."""
 
-    def slopes(
-        self, rod: Rod, strains: Floats, level: Level, change: Level
-    ) -> tuple[Floats, float]:
+    def slopes(self, rod: Any, strains: Floats, level: Any, change: Any) -> tuple[Floats, float]:
         """Its derivatives by the strains, (n, m), and along a change of the level."""
 
 
@@ -139,32 +150,29 @@ class Volume:
 
 
 def size(rod: Rod) -> Floats:
-    """Changes of strains that count as one: of a stretch 1, of a curvature 1/L; (n, m)."""
-    length = float(rod.layout.lengths.sum())
-    sizes = np.array([1.0, 1.0, 1.0, 1 / length, 1 / length, 1 / length])
-    return np.broadcast_to(sizes[list(rod.layout.columns)], rod.layout.shape)
+    """Changes of strains that count as one; see `Rod.sizes`."""
+    return rod.sizes
 
 
 def way(rod: Rod, change: Floats) -> float:
-    """How far a change of strains leads: a mean stretch or the turns of all pieces in sum, rad."""
-    parts = rod.layout.lengths[:, None] * np.abs(change) / size(rod)
-    return float(parts.sum(axis=0).max()) / float(rod.layout.lengths.sum())
+    """How far a change of strains leads; see `Rod.way`."""
+    return rod.way(change)
 
 
 def solve(
-    rod: Rod,
+    rod: Flexible[S, L],
     strains: Floats,
-    path: Path,
+    path: Loading[L],
     target: float,
     held: Held | None = None,
     share: float | None = None,
-    before: State | None = None,
-) -> State:
+    before: Equilibrium[S, L] | None = None,
+) -> Equilibrium[S, L]:
     """The equilibrium at a share of a path, or at a given angle on it, by Newton's method.
 
     Args:
-        rod: the rod.
-        strains: to start from, (n, m).
+        rod: the rod, or several.
+        strains: to start from, (n, m); of several rods as they have them.
         path: levels.
         target: the share; with `held` its value.
         held: what is given in place of the share.
@@ -178,20 +186,23 @@ def solve(
     Raises:
         NoEquilibriumError: it does not converge.
     """
-    sizes, change = size(rod), path.end.less(path.start)
+    sizes, change = rod.sizes, path.end.less(path.start)
     at = target if held is None else (0.0 if share is None else share)
     last = math.inf
     near = (rod.shape(strains), path.at(at)) if before is None else (before.shape, before.level)
-    search = _Search(rod, *near)
+    search = rod.search(*near)
     for iteration in range(1, _MOST + 1):
         shape, level = rod.shape(strains), path.at(at)
         tangent = search.rod.tangent(shape, level)
         columns = [-search.rod.residual(shape, level).ravel()]
         if held is not None:
             columns.append(-search.rod.growth(shape, level, change).ravel())
-        solved, singular = dgesv(tangent, np.stack(columns, axis=1))[2:]
-        if singular:
-            raise NoEquilibriumError(f"iteration {iteration}: the tangent is singular")
+        solved = np.empty((strains.size, len(columns)))
+        for block in search.rod.blocks(shape, level):
+            right = np.stack([column[block] for column in columns], axis=1)
+            solved[block], singular = dgesv(_part(tangent, block), right)[2:]
+            if singular:
+                raise NoEquilibriumError(f"iteration {iteration}: the tangent is singular")
         step = solved[:, 0]
         if held is not None:
             by_strains, by_share = held.slopes(rod, strains, level, change)
@@ -202,7 +213,7 @@ def solve(
             step, at = step + more * solved[:, 1], at + float(more)
         settled = search.stepped(shape, level, step.reshape(strains.shape), path.at(at))
         strains = strains + step.reshape(strains.shape)
-        if not way(rod, step.reshape(strains.shape)) < _FAR:
+        if not rod.way(step.reshape(strains.shape)) < _FAR:
             raise NoEquilibriumError(f"iteration {iteration}: the correction is too great")
         moved = float(np.max(np.abs(step.reshape(strains.shape) / sizes)))
         if settled and (moved < _CLOSE or (moved < _LOOSE and moved > last / 2)):
@@ -211,45 +222,14 @@ def solve(
     else:
         raise NoEquilibriumError(f"{_MOST} iterations leave a correction of {moved:.3g}")
     shape, level = rod.shape(strains), path.at(at)
-    outside = rod.law.outside(strains, level.pressure)
+    outside = rod.outside(shape, level)
     if outside:
         raise NoEquilibriumError(outside)
-    return State.at(rod, shape, level, at, iteration)
+    return Equilibrium.at(rod, shape, level, at, iteration)
 
 
-class _Search:
-    """A rod whose terms remember what happens within one search.
-
-    Args:
-        rod: the rod.
-        shape: from which they begin.
-        level: there.
-
-    Attributes:
-        rod: with the iterates of its terms.
-    """
-
-    def __init__(self, rod: Rod, shape: Shape, level: Level) -> None:
-        (amounts,) = _amounts(rod, level)
-        self._iterates: dict[int, Iterate] = {
-            number: term.iterate(shape, amounts[number])
-            for number, term in enumerate(rod.terms)
-            if isinstance(term, Iterated)
-        }
-        if not self._iterates:
-            self.rod = rod
-            return
-        terms = [self._iterates.get(number, term) for number, term in enumerate(rod.terms)]
-        self.rod = Rod(rod.layout, rod.law, None, terms)
-
-    def stepped(self, shape: Shape, level: Level, change: Floats, after: Level) -> bool:
-        """Tells them of a step; whether none of them changed its mind."""
-        amounts, others = _amounts(self.rod, level, after)
-        settled = [
-            term.stepped(shape, amounts[number], change, others[number] - amounts[number])
-            for number, term in self._iterates.items()
-        ]
-        return all(settled)
+def _part(matrix: Floats, block: Ints) -> Floats:
+    return matrix if len(block) == len(matrix) else matrix[np.ix_(block, block)]
 
 
 def unstable_modes(tangent: Floats) -> int:
@@ -265,7 +245,7 @@ def unstable_modes(tangent: Floats) -> int:
 
 
 @dataclasses.dataclass(frozen=True)
-class Step:
+class Step(Generic[S, L]):
     """A state of a march.
 
     Attributes:
@@ -275,18 +255,18 @@ class Step:
             is at most a thousandth of the way from target to target beyond the touch.
     """
 
-    state: State
+    state: Equilibrium[S, L]
     reached: bool
     touches: tuple[int, ...]
 
 
 def march(
-    rod: Rod,
-    start: State | Floats,
-    path: Path,
+    rod: Flexible[S, L],
+    start: Equilibrium[S, L] | Floats,
+    path: Loading[L],
     targets: Sequence[float],
     held: Held | None = None,
-) -> list[State]:
+) -> list[Equilibrium[S, L]]:
     """States along a path at targets in turn; see `steps`.
 
     Raises:
@@ -297,19 +277,19 @@ def march(
 
 
 def steps(
-    rod: Rod,
-    start: State | Floats,
-    path: Path,
+    rod: Flexible[S, L],
+    start: Equilibrium[S, L] | Floats,
+    path: Loading[L],
     targets: Sequence[float],
     held: Held | None = None,
-) -> Iterator[Step]:
+) -> Iterator[Step[S, L]]:
     """States along a path, each from the last two by extrapolation; steps are halved where needed.
 
     A step on which something is touched for the first time ends there, and the next one starts
     without what was foreseen before: a touch is a kink of the path.
 
     Args:
-        rod: the rod.
+        rod: the rod, or several.
         start: a state or strains of an equilibrium at share 0.
         path: levels.
         targets: shares, or with `held` its values, in turn.
@@ -321,10 +301,13 @@ def steps(
     Raises:
         NoEquilibriumError: the smallest step does not converge.
     """
-    strains, share = (start.strains, start.share) if isinstance(start, State) else (start, 0.0)
+    if isinstance(start, Equilibrium):
+        strains, share = start.strains, start.share
+    else:
+        strains, share = start, 0.0
     now = share if held is None else held.value(rod, strains, path.at(share))
     known = [(now, strains, share)]
-    last = State.at(rod, rod.shape(strains), path.at(share), share, 0)
+    last = Equilibrium.at(rod, rod.shape(strains), path.at(share), share, 0)
     for target in targets:
         begin, part, done, beyond = known[-1][0], 1.0, 0.0, math.inf
         while done < 1.0:
@@ -336,8 +319,11 @@ def steps(
             guess, at = _ahead(known, goal)
             try:
                 state = solve(rod, guess, path, goal, held, at, last)
-                if way(rod, state.strains - guess) > _AWAY:
+                if rod.way(state.strains - guess) > _AWAY:
                     raise NoEquilibriumError(f"the state at {goal:.6g} is far from the last one")
+                leapt = rod.leapt(last.shape, state.shape)
+                if leapt:
+                    raise NoEquilibriumError(leapt)
             except NoEquilibriumError:
                 part = ahead / 2
                 if part < _SMALLEST:
@@ -369,34 +355,18 @@ def until_touch(closing: list[tuple[int, float]], ahead: float, beyond: float) -
     return min(near + (-TOUCH / 4 if near > TOUCH * 3 / 4 else TOUCH / 2), halfway)
 
 
-def closing(rod: Rod, last: State, shape: Shape, level: Level) -> list[tuple[int, float]]:
-    """What the last state does not touch, but another one does.
+def closing(
+    rod: Flexible[S, L], last: Equilibrium[S, L], shape: S, level: L
+) -> list[tuple[int, float]]:
+    """What the last state does not touch, but another one does; see `Flexible.closing`.
 
     Args:
-        rod: the rod.
+        rod: the rod, or several.
         last: the one that does not.
         shape: of the other one.
         level: there.
-
-    Returns:
-        Places among the rod's terms, and the parts of the way at which gaps close if they fall
-        evenly.
     """
-    found = []
-    amounts = zip(rod.terms, *_amounts(rod, last.level, level), strict=True)
-    for place, (term, before, after) in enumerate(amounts):
-        if not isinstance(term, Iterated):
-            continue
-        gap = term.gap(shape, after)
-        if gap < 0 <= (room := term.gap(last.shape, before)) < math.inf:
-            found.append((place, room / (room - gap)))
-    return found
-
-
-def _amounts(rod: Rod, *levels: Level) -> list[list[float]]:
-    """Of all terms at some levels."""
-    count = len(rod.terms)
-    return [[*level.amounts, *[0.0] * (count - len(level.amounts))] for level in levels]
+    return rod.closing(last.shape, last.level, shape, level)
 
 
 def _ahead(known: list[tuple[float, Floats, float]], goal: float) -> tuple[Floats, float]:

@@ -58,21 +58,22 @@ class Table:
         *axes, last = self.axes
         first, basis = last.basis(np.array([pressure]))
         reach = slice(int(first[0]), int(first[0]) + last.degree + 1)
-        at_pressure = self.coefficients[..., reach] @ np.moveaxis(basis[:, 0], 0, -1)
+        at_pressure = self.coefficients[..., reach] @ basis[:, 0].T
         found = [axis.basis(x) for axis, x in zip(axes, strains.T, strict=True)]
         places = []
         for number, (axis, (start, _)) in enumerate(zip(axes, found, strict=True)):
             shape = [len(strains)] + [1] * len(axes)
             shape[1 + number] = axis.degree + 1
             places.append((start[:, None] + np.arange(axis.degree + 1)).reshape(shape))
-        near = at_pressure[tuple(places)]
-        out = np.empty((len(orders), len(strains)))
-        for row, order in enumerate(orders):
-            part = near[..., order[-1]]
-            for number in reversed(range(len(axes))):
-                part = np.einsum("n...b,nb->n...", part, found[number][1][order[number]])
-            out[row] = part
-        return out
+        # all derivatives by one variable after the other: (n, splines…, 3) to (n, …, 3 each)
+        part = at_pressure[tuple(places)]
+        for axis, (_, values) in zip(axes, found, strict=True):
+            n = len(strains)
+            flat = part.reshape(n, axis.degree + 1, -1)
+            turned = (values.transpose(1, 0, 2) @ flat).reshape(n, 3, *part.shape[2:])
+            part = np.moveaxis(turned, 1, -1)
+        # now (n, 3 by the pressure, 3 by each strain): moved to the end one after the other
+        return np.stack([part[(slice(None), order[-1], *order[:-1])] for order in orders])
 
     def _unit(self, *strains: int, pressure: int = 0) -> tuple[int, ...]:
         order = [0] * len(self.axes)

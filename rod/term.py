@@ -1,10 +1,10 @@
-"""What acts on a rod beside its sections: one question for all of it."""
+"""What is asked of all that acts on a rod beside its sections, and of rods themselves."""
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
-from rod.functions import Floats
+from rod.functions import Floats, Ints
 from rod.shape import Shape
 
 
@@ -30,6 +30,15 @@ class Term(Protocol):
 
     def growth(self, shape: Shape, amount: float) -> Floats:
         """Derivative of the residual by the amount, (n, m)."""
+
+
+@runtime_checkable
+class Dead(Term, Protocol):
+    """A term whose potential is −amount Σ A : X of loads A that never change."""
+
+    @property
+    def loads(self) -> Floats:
+        """A on the frames, (n + 1, 3, 4); see `Shape.pulled`."""
 
 
 class Iterate(Term, Protocol):
@@ -66,3 +75,89 @@ class Iterated(Term, Protocol):
 
         Infinite where nothing is, or where it always touches.
         """
+
+
+# --- what Newton's method and a march ask of a rod, and of several alike -------------------------
+
+
+class Placed(Protocol):
+    """What strains give: the shape of a rod, or of several."""
+
+    @property
+    def strains(self) -> Floats:
+        """The unknowns."""
+
+
+class Loads(Protocol):
+    """How much of everything acts; see `rod.rod.Level`."""
+
+    def toward(self, other: Any, share: float) -> Any:
+        """On the way to another."""
+
+    def less(self, other: Any) -> Any:
+        """Difference to another."""
+
+
+S = TypeVar("S", bound=Placed)
+L = TypeVar("L", bound=Loads)
+Acting = TypeVar("Acting", bound=Loads, contravariant=True)
+
+
+class Flexible(Protocol[S, Acting]):
+    """A rod, or several of them; see `rod.rod.Rod` and `rod.several.system.System`."""
+
+    @property
+    def sizes(self) -> Floats:
+        """Changes of strains that count as one."""
+
+    def way(self, change: Floats) -> float:
+        """How far a change of strains leads."""
+
+    def shape(self, strains: Floats) -> S:
+        """What strains give."""
+
+    def residual(self, shape: S, level: Acting) -> Floats:
+        """Of equilibrium, as many numbers as there are strains."""
+
+    def tangent(self, shape: S, level: Acting) -> Floats:
+        """Its derivative by the strains, a matrix."""
+
+    def growth(self, shape: S, level: Acting, change: Acting) -> Floats:
+        """Its derivative along a change of the level."""
+
+    def outside(self, shape: S, level: Acting) -> str:
+        """What of a state is not known; empty where nothing is."""
+
+    def blocks(self, shape: S, level: Acting) -> list[Ints]:
+        """Unknowns that the tangent couples, each group by itself."""
+
+    def leapt(self, before: S, after: S) -> str:
+        """What may have passed through something between two states; empty where nothing has."""
+
+    def closing(self, shape: S, level: Acting, after: S, then: Acting) -> list[tuple[int, float]]:
+        """What one state does not touch, but another one does.
+
+        Args:
+            shape: that does not.
+            level: there.
+            after: that does.
+            then: level there.
+
+        Returns:
+            Places among the terms, and the parts of the way at which gaps close if they fall
+            evenly.
+        """
+
+    def search(self, shape: S, level: Acting) -> Search[S, Acting]:
+        """What stands for it in one search by Newton's method."""
+
+
+class Search(Protocol[S, Acting]):
+    """A rod, or several, within one search; see `rod.term.Iterated`."""
+
+    @property
+    def rod(self) -> Flexible[S, Acting]:
+        """What equilibrium is asked of."""
+
+    def stepped(self, shape: S, level: Acting, change: Floats, after: Acting) -> bool:
+        """Takes note of a step; whether nothing has changed its mind."""

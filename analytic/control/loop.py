@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from analytic.control.controller import Controller, Valves
 from analytic.control.filter import AngleFilter
-from analytic.control.plant import Plant
+from analytic.control.plant import Plant, PlantParameters
 from analytic.stress import Floats
 
 
@@ -32,6 +32,22 @@ class Reference(Protocol):
 
     def __call__(self, time: float) -> float:
         """θ_d in rad at a time in s."""
+
+
+class Controlled(Protocol):
+    """What a loop controls: a `Plant`, or one whose actuator has inertia."""
+
+    parameters: PlantParameters
+    pressure: float
+    """Gauge pressure in the chamber now, MPa."""
+    angle: float
+    """Bending angle now, rad."""
+
+    def restart(self, pressure: float) -> None:
+        """Come to rest under a gauge pressure in MPa."""
+
+    def advance(self, valves: Valves, duration: float) -> None:
+        """Let time pass with the valves as they are, s."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -169,6 +185,7 @@ def simulate(
     controller: Controller,
     reference: Reference,
     sensor: Sensor,
+    inert: Controlled | None = None,
 ) -> Trace:
     """Run the loop from rest at the reference's lower angle, as the filter sees it.
 
@@ -176,17 +193,19 @@ def simulate(
     plant's dead time, which may be longer than a sample.
 
     Args:
-        plant: what is controlled; left in its last state.
+        plant: what is controlled, and what `check` looks at; left in some state.
         angle_filter: θ from the measured pressure.
         controller: commands the valves.
         reference: θ_d over time.
         sensor: noise of the measured pressure.
+        inert: what is controlled in place of it: the same actuator with its inertia.
 
     Raises:
         ValueError: what `check` refuses, or a pressure beyond the plant's curve.
     """
     check(plant, angle_filter, controller, reference)
-    plant.restart(angle_filter.pressure(reference.levels[0]))
+    controlled: Controlled = plant if inert is None else inert
+    controlled.restart(angle_filter.pressure(reference.levels[0]))
     random = np.random.default_rng(sensor.seed)
     count = math.ceil(reference.duration * controller.rate - 1e-9)
     noise = (sensor.noise * random.standard_normal(count)).tolist()
@@ -196,21 +215,32 @@ def simulate(
     rows = []
     for i in range(count):
         time = i / controller.rate
-        measured = plant.pressure + noise[i]
+        measured = controlled.pressure + noise[i]
         filtered, desired = angle_filter(measured), reference(time)
         wanted = controller.command(desired, filtered, command)
         if wanted is not command:
             command = wanted
-            due.append((time + plant.parameters.dead_time, command))
+            due.append((time + controlled.parameters.dead_time, command))
         half = controller.zone(desired)
-        rows.append((time, desired, filtered, plant.angle, half, command, plant.pressure, measured))
+        rows.append(
+            (
+                time,
+                desired,
+                filtered,
+                controlled.angle,
+                half,
+                command,
+                controlled.pressure,
+                measured,
+            )
+        )
         now, end = time, time + period
         while due and due[0][0] < end - 1e-9 * period:
             switch, following = due.popleft()
             if switch > now:
-                plant.advance(moving, switch - now)
+                controlled.advance(moving, switch - now)
             now, moving = max(now, switch), following
-        plant.advance(moving, end - now)
+        controlled.advance(moving, end - now)
     columns = list(np.array(rows, dtype=float).T)
     columns[5] = columns[5].astype(np.int8)
     return Trace(*columns)

@@ -153,6 +153,45 @@ def flow(conductance: float, upstream: float, downstream: float, critical_ratio:
     return REFERENCE_PRESSURE * conductance * upstream * part
 
 
+def inflow(parameters: PlantParameters, valves: Valves, absolute: float) -> float:
+    """Air that the valves let into the chamber, MPa mm³/s.
+
+    Args:
+        parameters: pneumatics.
+        valves: which one is open.
+        absolute: pressure in the chamber, MPa.
+    """
+    p = parameters
+    if valves is Valves.FILL:
+        return flow(CONDUCTANCE * p.inlet, p.supply + p.atmosphere, absolute, p.critical_ratio)
+    if valves is Valves.VENT:
+        return -flow(CONDUCTANCE * p.outlet, absolute, p.atmosphere, p.critical_ratio)
+    return 0.0
+
+
+def substep(parameters: PlantParameters, volume: float) -> float:
+    """A fifth of the shortest time constant, and a quarter of a millisecond at most, s.
+
+    Args:
+        parameters: pneumatics.
+        volume: least one of the chamber, mm³.
+
+    Raises:
+        ValueError: valves too large for the chamber.
+    """
+    p = parameters
+    largest = CONDUCTANCE * max(p.inlet, p.outlet)
+    steep = REFERENCE_PRESSURE * largest * _laminar_slope(p.critical_ratio)
+    fastest = p.exponent * steep / (volume + p.dead_volume)
+    step = min(_SUBSTEP, 0.2 / fastest, p.lag / 5 if p.lag else math.inf)
+    if step < _LEAST_SUBSTEP:
+        raise ValueError(
+            f"plant: time constants below {5e6 * _LEAST_SUBSTEP:g} µs; smaller conductances or "
+            "a longer lag expected"
+        )
+    return step
+
+
 def _check(curve: ActuatorCurve, parameters: PlantParameters) -> None:
     sizes = {name: np.shape(getattr(curve, name)) for name in _STATES}
     if len(set(sizes.values())) > 1 or len(curve.pressure) < 2:
@@ -205,7 +244,7 @@ class Plant:
         self._volume = CubicTable.monotone(curve.angle, curve.volume)
         self.highest = self._angle.high
         self.restart(pressure)
-        self._step = self._substep(float(np.min(curve.volume)))
+        self._step = substep(parameters, float(np.min(curve.volume)))
 
     def restart(self, pressure: float) -> None:
         """Come to rest under a gauge pressure in MPa.
@@ -258,33 +297,12 @@ class Plant:
         angle = self._angle(pressure)
         swelling = self._volume.slope(angle) * self._angle.slope(pressure)
         volume = self._volume(angle) + self.parameters.dead_volume
-        return n * self._inflow(valves, absolute) / (volume + n * absolute * swelling), 0.0
+        air = inflow(self.parameters, valves, absolute)
+        return n * air / (volume + n * absolute * swelling), 0.0
 
     def _lagging(self, valves: Valves, pressure: float, angle: float) -> tuple[float, float]:
         n, absolute = self.parameters.exponent, pressure + self.parameters.atmosphere
         turn = (self._angle(pressure) - angle) / self.parameters.lag
         volume = self._volume(angle) + self.parameters.dead_volume
         swell = self._volume.slope(angle) * turn
-        return n * (self._inflow(valves, absolute) - absolute * swell) / volume, turn
-
-    def _inflow(self, valves: Valves, absolute: float) -> float:
-        p = self.parameters
-        if valves is Valves.FILL:
-            return flow(CONDUCTANCE * p.inlet, p.supply + p.atmosphere, absolute, p.critical_ratio)
-        if valves is Valves.VENT:
-            return -flow(CONDUCTANCE * p.outlet, absolute, p.atmosphere, p.critical_ratio)
-        return 0.0
-
-    def _substep(self, volume: float) -> float:
-        """A fifth of the shortest time constant, and a quarter of a millisecond at most."""
-        p = self.parameters
-        largest = CONDUCTANCE * max(p.inlet, p.outlet)
-        steep = REFERENCE_PRESSURE * largest * _laminar_slope(p.critical_ratio)
-        fastest = p.exponent * steep / (volume + p.dead_volume)
-        step = min(_SUBSTEP, 0.2 / fastest, p.lag / 5 if p.lag else math.inf)
-        if step < _LEAST_SUBSTEP:
-            raise ValueError(
-                f"plant: time constants below {5e6 * _LEAST_SUBSTEP:g} µs; smaller conductances or "
-                "a longer lag expected"
-            )
-        return step
+        return n * (inflow(self.parameters, valves, absolute) - absolute * swell) / volume, turn

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from fiberbend import columns as col
+from fiberbend.answer import timed
 from fiberbend.answer.asked import asked
 from fiberbend.answer.motion import SEEN, motion, turn
 from fiberbend.answer.numbers import number, quantity
@@ -95,6 +96,7 @@ def answer(case: Case, rows: Sequence[col.Row], run: Mapping[str, Any]) -> Answe
     entries = [
         *(Entry(*told) for told in asked(case, model, rows)),
         _end(case, rows),
+        *(Entry(*told) for told in timed.entries(rows, run)),
         *_tip(case, rows),
         *(Entry(*told) for told in turned(rows, len(case.zones or ()))),
         *_contacts(case, rows),

@@ -22,6 +22,7 @@ from pydantic_core import PydanticCustomError
 from fiberbend.case.materials import Materials as Materials
 from fiberbend.case.materials import MaterialSpec as MaterialSpec
 from fiberbend.case.names import MODELS
+from fiberbend.case.timed.spec import TimeSpec
 from fiberbend.case.zone_spec import ZoneSpec as ZoneSpec
 from fiberbend.effects.effect import Effect, Inflation, keep_straight
 from fiberbend.effects.table import EffectEntry, unwrap
@@ -217,6 +218,8 @@ class Case(Spec):
     accuracy: Accuracy | None = None
     """Greatest error of what is asked for: model, mesh and winding that are not given are chosen
     for it, and the run reports its estimated error beside its result."""
+    time: TimeSpec | None = None
+    """Motion of a rod in time, with its mass and its damping; a state at rest unless given."""
     compare: tuple[Literal["paper"], ...] = Field(default=(), strict=False)
     """What a run is put beside on top of the cheaper models: the figures of the paper."""
     mesh: Mesh = Mesh.model_construct()

@@ -35,7 +35,7 @@ _PERHAPS = (
 
 
 @dataclasses.dataclass(frozen=True)
-class _Wanted:
+class Wanted:
     """A column that is looked for.
 
     Attributes:
@@ -43,22 +43,24 @@ class _Wanted:
         kind: of its quantity, a key of `schema.units.KINDS`; also its key in the case.
         words: what else it may be called.
         example: a name with its unit.
+        setting: the part of a case that may name its column and its unit; empty: none may.
     """
 
     name: str
     kind: str
     words: frozenset[str]
     example: str
+    setting: str = "output.measured"
 
 
-_PRESSURE = _Wanted(col.PRESSURE, "pressure", frozenset({"pressure", "p"}), "P [kPa]")
-_ANGLE = _Wanted(
+PRESSURE = Wanted(col.PRESSURE, "pressure", frozenset({"pressure", "p"}), "P [kPa]")
+_ANGLE = Wanted(
     col.ANGLE,
     "angle",
     frozenset({"angle", "theta", "θ", "bending angle", "bending_angle"}),
     "theta [deg]",
 )
-_FORCE = _Wanted(
+_FORCE = Wanted(
     col.TIP_FORCE, "force", frozenset({"force", "f", "tip force", "tip_force"}), "F [N]"
 )
 
@@ -152,23 +154,23 @@ def _read(
     delimiter = None if spec.delimiter is None else marks[spec.delimiter]
     table = read_table(Path(spec.file), delimiter, spec.decimal)
     value = _FORCE if blocked else _ANGLE
-    given = [spec.column(wanted.kind) for wanted in (_PRESSURE, value)]
+    given = [spec.column(wanted.kind) for wanted in (PRESSURE, value)]
     places = [
-        _place(table, wanted, name)
-        for wanted, (name, _) in zip((_PRESSURE, value), given, strict=True)
+        place_of(table, wanted, name)
+        for wanted, (name, _) in zip((PRESSURE, value), given, strict=True)
     ]
     if places[0] == places[1]:
         name = table.columns[places[0]]
         raise ValueError(f"{table.source}: {name!r} given twice, expected two columns")
     units = [
-        _unit(table, wanted, table.columns[place], unit)
-        for wanted, place, (_, unit) in zip((_PRESSURE, value), places, given, strict=True)
+        unit_of(table, wanted, table.columns[place], unit)
+        for wanted, place, (_, unit) in zip((PRESSURE, value), places, given, strict=True)
     ]
-    factors = factor(units[0], _PRESSURE.kind), factor(units[1], value.kind)
+    factors = factor(units[0], PRESSURE.kind), factor(units[1], value.kind)
     return table.values(places), factors, (units[0], units[1])
 
 
-def _place(table: Table, wanted: _Wanted, name: str | None) -> int:
+def place_of(table: Table, wanted: Wanted, name: str | None) -> int:
     """Place of the column of a quantity: by its name in the case, by this program's, or by words.
 
     Raises:
@@ -193,28 +195,33 @@ def _place(table: Table, wanted: _Wanted, name: str | None) -> int:
     if places:
         several = " and ".join(repr(columns[i]) for i in places)
         raise ValueError(
-            f"{table.source}: {several}, expected one column of {wanted.kind}s, or its name as "
-            f"{wanted.kind} in output.measured"
+            f"{table.source}: {several}, expected one column of {wanted.kind}s"
+            + _or_setting(wanted, ", or its name as")
         )
     what = wanted.name if name is None else repr(name)
     hint = (
         ""
         if name is not None
         else (
-            f", expected {wanted.name}, a name such as {wanted.example!r}, or the column's name as "
-            f"{wanted.kind} in output.measured"
+            f", expected {wanted.name}, a name such as {wanted.example!r}"
+            + _or_setting(wanted, ", or the column's name as")
         )
     )
     expected = hint or ", expected one of them"
     raise ValueError(f"{table.source}: no column {what}, found {table.found}{expected}")
 
 
-def _stem(column: str, wanted: _Wanted) -> str:
+def _or_setting(wanted: Wanted, words: str) -> str:
+    """The end of a message where a case may name the column."""
+    return f"{words} {wanted.kind} in {wanted.setting}" if wanted.setting else ""
+
+
+def _stem(column: str, wanted: Wanted) -> str:
     """A column's name without its unit, in small letters."""
     return _cut(column, wanted)[0].casefold()
 
 
-def _cut(column: str, wanted: _Wanted) -> tuple[str, str]:
+def _cut(column: str, wanted: Wanted) -> tuple[str, str]:
     """A column's name and the unit that it says, or nothing."""
     for pattern in _UNITS:
         match = pattern.fullmatch(column)
@@ -235,7 +242,7 @@ def _is_unit(text: str, kind: str) -> bool:
     return True
 
 
-def _unit(table: Table, wanted: _Wanted, column: str, given: str | None) -> str:
+def unit_of(table: Table, wanted: Wanted, column: str, given: str | None) -> str:
     """The unit of a column, by its name or by the case.
 
     Raises:
@@ -251,7 +258,7 @@ def _unit(table: Table, wanted: _Wanted, column: str, given: str | None) -> str:
     if not (said or given):
         raise ValueError(
             f"{table.source}: column {column!r} has no unit, expected a name such as "
-            f"{wanted.example!r}, or {key} in output.measured"
+            f"{wanted.example!r}" + (f", or {key} in {wanted.setting}" if wanted.setting else "")
         )
     if said and given:
         one, other = factor(said, wanted.kind), factor(given, wanted.kind)

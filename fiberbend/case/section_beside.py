@@ -37,6 +37,7 @@ def as_section(case: Case, load: Effect) -> Case:
         update={
             "model": MODEL,
             "accuracy": None,
+            "time": None,
             "effects": (load, *(effect for effect in beside if effect is not None)),
             "mesh": mesh,
             "solver": Solver(),

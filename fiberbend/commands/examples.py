@@ -54,6 +54,14 @@ EXAMPLES = {
   fiberbend design cases/designs/bend_at_pressure.yaml
   fiberbend design cases/designs/blocked_force.yaml --set actuator.length="80 mm"
 """,
+    "frequencies": """Examples:
+  fiberbend frequencies cases/swing.yaml
+  fiberbend frequencies cases/swing.yaml --at "0 kPa" --at "25 kPa" --modes 5
+""",
+    "hand": """Examples:
+  fiberbend hand cases/hands/three_fingers.yaml
+  fiberbend hand cases/hands/three_fingers.yaml --set actuator.wall="3 mm" --out runs/thick
+""",
     "table": """Examples:
   fiberbend table cases/section.yaml
   fiberbend table cases/section.yaml --error 0.5% --from "10 kPa" --out law

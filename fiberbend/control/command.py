@@ -7,7 +7,7 @@ import functools
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -28,12 +28,15 @@ from fiberbend.control.export import (
     table_header,
     trace_csv,
 )
-from fiberbend.control.result import ControlResult, FilterFit
+from fiberbend.control.result import ControlResult, FilterFit, Pace
 from fiberbend.control.settings import ControlSettings, refusals
 from fiberbend.models.closed_form import analytic_curves, no_analytic
 from fiberbend.results.folder import RunFolder
 from fiberbend.running import launch
 from fiberbend.schema.problems import CaseError, Problem
+
+if TYPE_CHECKING:
+    from fiberbend.control.rod_plant import RodPlant
 
 CONTROL_FILE = "control.json"
 
@@ -52,7 +55,7 @@ def run_control(
     Raises:
         CaseError: a case, settings or a folder that cannot be used.
     """
-    problems = list(left_out(case))
+    problems = [] if settings.plant == "rod" else list(left_out(case))
     if problems:
         raise CaseError(problems)
     comm = _world()
@@ -61,13 +64,17 @@ def run_control(
     if comm is not None:
         # nobody makes the folder before everybody has looked for it
         comm.barrier()
-    curve, ended = plant_curve(case, settings)
+    moving: RodPlant | None = None
+    if settings.plant == "rod":
+        curve, ended, moving = _rod(case, settings)
+    else:
+        curve, ended = plant_curve(case, settings)
     with refusals(ended):
         fit = fit_filter(case, curve, settings)
         plant = Plant(curve, settings.pneumatics)
         loop = functools.partial(simulate, plant, fit.filter, settings.controller)
-        steps = loop(settings.steps, settings.sensor)
-        sine = loop(settings.sine, settings.sensor)
+        steps = loop(settings.steps, settings.sensor, moving)
+        sine = loop(settings.sine, settings.sensor, moving)
         table = short_table(fit.filter, settings.pneumatics.supply)
     result = ControlResult(
         settings,
@@ -77,6 +84,7 @@ def run_control(
         sine,
         step_metrics(steps, settings.steps),
         sine_metrics(sine, settings.sine),
+        None if moving is None else Pace.of(moving.steps, moving.seconds, steps, sine),
     )
     if out is not None:
         with RunFolder.create(out, case, overwrite, comm) as folder:
@@ -108,6 +116,22 @@ def plant_curve(case: Case, settings: ControlSettings) -> tuple[ActuatorCurve, s
 
     curve = section_curve(case, end, lambda section: run_case(section, None))
     return curve, curve.reason
+
+
+def _rod(case: Case, settings: ControlSettings) -> tuple[ActuatorCurve, str, RodPlant]:
+    """The rod's curve at rest, why it ends early, and the rod that moves."""
+    from fiberbend.control.rod_plant import Damping, RodPlant, rod_curve, rod_of
+
+    rod = rod_of(case, max(settings.steps.high, settings.sine.high))
+    curve, ended = rod_curve(rod)
+    own = None if case.time is None else case.time.damping
+    retardation, drag = (0.0, 0.0) if own is None else (own.retardation_time, own.drag)
+    damping = Damping(
+        retardation if settings.retardation_time is None else settings.retardation_time,
+        drag if settings.drag is None else settings.drag,
+    )
+    with refusals():
+        return curve, ended, RodPlant(rod, settings.pneumatics, damping)
 
 
 def fit_filter(case: Case, curve: ActuatorCurve, settings: ControlSettings) -> FilterFit:

@@ -36,6 +36,27 @@ class FilterFit:
 
 
 @dataclasses.dataclass(frozen=True)
+class Pace:
+    """How quick a plant with inertia was.
+
+    Attributes:
+        steps: in time.
+        step_ms: processor time of one.
+        real: processor time over the time that passed in the loops.
+    """
+
+    steps: int
+    step_ms: float
+    real: float
+
+    @classmethod
+    def of(cls, steps: int, seconds: float, *traces: Trace) -> Pace:
+        """Of so many steps that took so long, s, in loops with these traces."""
+        passed = sum(float(trace.time[-1] - trace.time[0]) for trace in traces)
+        return cls(steps, 1e3 * seconds / steps, seconds / passed)
+
+
+@dataclasses.dataclass(frozen=True)
 class ControlResult:
     """What a control run has found.
 
@@ -47,6 +68,7 @@ class ControlResult:
         sine: trace of the sine.
         step_metrics: measures of the first.
         sine_metrics: measures of the second.
+        pace: of a plant with inertia, else None.
     """
 
     settings: ControlSettings
@@ -56,6 +78,7 @@ class ControlResult:
     sine: Trace
     step_metrics: StepMetrics
     sine_metrics: SineMetrics
+    pace: Pace | None = None
 
     def lines(self, paper: bool = False) -> list[str]:
         """The result as lines of text.
@@ -83,6 +106,7 @@ class ControlResult:
             f"{shown_time(sine.delay_s)}{beside(shown_time(PAPER['delay_s']))}",
             f"         undesired switching {_percent(sine.undesired)} of the time"
             f"{beside(_percent(PAPER['undesired_sine']))}",
+            *([] if self.pace is None else [_paced(self.pace)]),
         ]
 
     def report(self, paper: bool = False) -> dict[str, Any]:
@@ -151,6 +175,8 @@ class ControlResult:
                 "plant_error_rms_deg": math.degrees(sine.plant_error_rad),
             },
         }
+        if self.pace is not None:
+            content["motion"] = dataclasses.asdict(self.pace)
         if paper:
             content["paper"] = {
                 "fill_ms": 1e3 * PAPER["fill_s"],
@@ -160,6 +186,13 @@ class ControlResult:
                 "sine_undesired_percent": 100 * PAPER["undesired_sine"],
             }
         return {name: _rounded(value) for name, value in content.items()}
+
+
+def _paced(pace: Pace) -> str:
+    return (
+        f"motion:  {pace.steps} steps of {pace.step_ms:.1f} ms of the processor, "
+        f"{pace.real:.2f} of real time"
+    )
 
 
 def _percent(part: float) -> str:

@@ -26,7 +26,8 @@ class ControlSettings:
     """What a loop is made of, beside the case.
 
     Attributes:
-        plant: where the plant's curve comes from: the section model or eq. (19) itself.
+        plant: where the plant's curve comes from: the section model, eq. (19) itself, or a rod,
+            which then moves with its inertia.
         filter: what the filter inverts: eq. (19) with μ̄ fitted to the plant, or the plant's curve.
         modulus: μ̄ of the filter, MPa; None: fitted.
         mismatch: relative error put on the pressures that the filter expects (μ̄ scales them all).
@@ -35,9 +36,11 @@ class ControlSettings:
         sensor: pressure sensor.
         steps: step response to run.
         sine: sine to run.
+        retardation_time: τ of a rod's sections, s; None: that of the case.
+        drag: of a rod, 1/s; None: that of the case.
     """
 
-    plant: Literal["section", "analytic"]
+    plant: Literal["section", "analytic", "rod"]
     filter: Literal["analytic", "curve"]
     modulus: float | None
     mismatch: float
@@ -46,6 +49,8 @@ class ControlSettings:
     sensor: Sensor
     steps: Steps
     sine: Sine
+    retardation_time: float | None = None
+    drag: float | None = None
 
 
 def _fraction(text: Any) -> float:
@@ -66,6 +71,7 @@ _Modulus = Annotated[float, Quantity("modulus", "any")]
 _Conductance = Annotated[float, Quantity("conductance", "any")]
 _Time = Annotated[float, Quantity("time", "any")]
 _Volume = Annotated[float, Quantity("volume", "any")]
+_Rate = Annotated[float, Quantity("rate", "zero or above")]
 _Frequency = Annotated[float, Quantity("frequency", "any")]
 _Angle = Annotated[float, Quantity("angle", "any")]
 _Fraction = Annotated[float, BeforeValidator(_fraction)]
@@ -117,8 +123,13 @@ class Options(Spec):
     """Lower and upper angle of the step response."""
     sine: tuple[_Angle, _Angle] = _option(("0 deg", "180 deg"))
     """Lower and upper angle of the sine."""
-    plant: Literal["section", "analytic"] = "section"
-    """Model of the plant's curve."""
+    plant: Literal["section", "analytic", "rod"] = "section"
+    """Model of the plant's curve; a rod moves with its inertia, under the case's weight and
+    loads."""
+    retardation_time: _Time | None = None
+    """τ of Kelvin and Voigt of a rod; that of the case's time, or none."""
+    drag: _Rate | None = None
+    """Rayleigh's part of a rod's mass; likewise."""
     filter: Literal["analytic", "curve"] = "analytic"
     """What the filter inverts: eq. (19) or the plant's curve."""
     inside: Literal["hold", "settle", "relay"] = "hold"
@@ -153,6 +164,14 @@ def read_settings(given: Mapping[str, Any]) -> ControlSettings:
             for problem in from_pydantic(error, Options)
         ) from None
     with refusals():
+        for name in ("retardation_time", "drag"):
+            if getattr(options, name) is not None and options.plant != "rod":
+                label = name.replace("_", "-")
+                raise ValueError(f"{label}: no effect without --plant rod, expected no value")
+        if options.retardation_time is not None and options.retardation_time < 0:
+            raise ValueError(
+                f"retardation-time: expected zero or above, not {options.retardation_time}"
+            )
         if options.modulus is not None and options.modulus <= 0:
             raise ValueError(f"modulus: a positive number expected, not {options.modulus}")
         zone = DeadZone(options.dead_zone_divisor, options.dead_zone)
@@ -175,6 +194,8 @@ def read_settings(given: Mapping[str, Any]) -> ControlSettings:
             sensor=Sensor(options.noise, options.seed),
             steps=Steps(*options.steps, options.hold),
             sine=Sine(*options.sine, options.frequency),
+            retardation_time=options.retardation_time,
+            drag=options.drag,
         )
 
 

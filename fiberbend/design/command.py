@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fiberbend.design.reading import Design, read_design
-from fiberbend.process.lock import FolderLock, HeldError
 from fiberbend.process.signals import Interrupted, stop_of
-from fiberbend.results.folder import DESIGN, FILES, REPORT, RunFolder
+from fiberbend.results.folder import DESIGN, REPORT, RunFolder
+from fiberbend.results.held import held
 from fiberbend.running import launch
 from fiberbend.schema.problems import CaseError, Problem
 
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
     from fiberbend.design.told.sensitivity import Row
 
 Say = Callable[[str], None]
-_CRASHED = ("error.log", "error.rank*.log")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -72,7 +70,7 @@ def run_design(
         text = "under mpirun, expected one process: sections are too small to share"
         raise CaseError([Problem("fiberbend design", text)])
     design = read_design(path, changes)
-    with _held(out, options.overwrite) as folder:
+    with held(out, DESIGN, "design", options.overwrite) as folder:
         launch.start_mpi()
         return _Made(design, folder, options, say).go()
 
@@ -188,33 +186,3 @@ class _Made:
         self._say(f"results in {path}")
         if (path / REPORT).exists():
             self._say(f"report in {path / REPORT}")
-
-
-@contextlib.contextmanager
-def _held(path: Path, overwrite: bool) -> Iterator[RunFolder]:
-    """The folder of a design, new, empty or that of one that is replaced."""
-    from fiberbend.process import remains
-
-    try:
-        names = remains.entries(path) if path.exists() else []
-        # of a design that has crashed before it wrote anything
-        crashed = all(remains.matches(name, _CRASHED) for name in names)
-        if names and not overwrite and not crashed:
-            text = "exists, expected a new folder, or --overwrite"
-            raise CaseError([Problem(str(path), text)])
-        if not crashed and DESIGN not in names:
-            text = "contains no design, expected the folder of a design"
-            raise CaseError([Problem(str(path), text)])
-        path.mkdir(parents=True, exist_ok=True)
-        lock = FolderLock(path)
-    except HeldError as error:
-        text = f"{error}, expected its end, or another folder by --out"
-        raise CaseError([Problem(str(path), text)]) from None
-    except OSError as error:
-        raise CaseError([Problem(str(path), f"{error.strerror}, expected a folder")]) from None
-    try:
-        for old in remains.found(path, FILES):
-            old.unlink(missing_ok=True)
-        yield RunFolder(path)
-    finally:
-        lock.release()

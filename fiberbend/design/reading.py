@@ -14,7 +14,7 @@ from fiberbend.case.case import Case
 from fiberbend.design.fields import Fields, Pairs, read_fields
 from fiberbend.design.file import DesignFile, Goal, Search, problems
 from fiberbend.design.quantities.quantity import Quantity
-from fiberbend.reader.base_case import read_base
+from fiberbend.reader.base_case import read_base, refuse_hand
 from fiberbend.reader.own_files import rooted_values
 from fiberbend.reader.reader import parse_case
 from fiberbend.reader.yaml_file import YamlContent, line_numbers, read_yaml, setting_path
@@ -81,6 +81,7 @@ def read_design(path: Path | str, settings: Iterable[str] = ()) -> Design:
     """
     path = Path(path)
     source = read_yaml(path)
+    refuse_hand(source.data, path)
     if "case" not in source.data and "actuator" in source.data:
         raise CaseError([Problem(str(path), f"this is a case: fiberbend run {path}")])
     wanted = {"targets", "goals"} & source.data.keys()

@@ -52,6 +52,8 @@ HOOPS = "hoops"
 """A circumference can be fixed."""
 ZONES = "zones"
 """Winding and materials may differ along the length."""
+MOTION = "motion"
+"""A model moves in time, with its mass."""
 
 
 @dataclasses.dataclass(frozen=True)

@@ -12,7 +12,7 @@ from fiberbend.case.case import Case, Mesh
 from fiberbend.case.zones import path_of, zone_cases
 from fiberbend.columns import ELEMENTS, RUN, SOLVED
 from fiberbend.effects.effect import ZONES
-from fiberbend.effects.records import mirror_breakers
+from fiberbend.effects.records import MOTION, mirror_breakers
 from fiberbend.models.costs.price import Price, price
 from fiberbend.models.costs.size import ProblemSize as ProblemSize
 from fiberbend.models.costs.size import thread_mb
@@ -119,6 +119,8 @@ class ModelKind(ABC):
 
     def refuses(self, case: Case) -> Iterator[Objection]:
         """What of a case it does not support: paths within the case and reasons."""
+        if case.time is not None and MOTION not in self.offers:
+            yield "time", "it knows states at rest only, model rod moves"
         if case.zones is None:
             yield from self._refuses_alike(case)
         elif ZONES not in self.offers:

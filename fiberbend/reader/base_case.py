@@ -19,6 +19,19 @@ from fiberbend.reader.yaml_file import (
 from fiberbend.schema.paths import put
 from fiberbend.schema.problems import CaseError, Problem
 
+HAND = "fingers"
+"""Key by which a file is a hand's."""
+
+
+def refuse_hand(data: Mapping[str, Any], path: Path | str) -> None:
+    """A line that says the command for a hand.
+
+    Raises:
+        CaseError: it is one.
+    """
+    if HAND in data:
+        raise CaseError([Problem(str(path), f"this is a hand: fiberbend hand {path}")])
+
 
 @dataclasses.dataclass(frozen=True)
 class BaseCase:

@@ -16,6 +16,8 @@ from fiberbend.case.case import (
     Solver,
 )
 from fiberbend.case.symmetry import upside_down
+from fiberbend.case.timed import checks as timed
+from fiberbend.case.timed.spec import TimeSpec
 from fiberbend.effects.effect import Draft, Effect, Inflation, keep_straight
 from fiberbend.effects.records import mirror_breakers
 from fiberbend.effects.table import EFFECTS
@@ -48,6 +50,7 @@ class ValidParts:
     output: Output | None = None
     model: str | None = None
     zoned: bool = False
+    time: TimeSpec | None = None
     effects: dict[int, Effect] = dataclasses.field(default_factory=dict)
     broken_effects: bool = False
 
@@ -62,6 +65,7 @@ class ValidParts:
             case.output,
             case.model,
             case.zones is not None,
+            case.time,
             dict(enumerate(case.effects)),
         )
 
@@ -103,6 +107,8 @@ def check(parts: ValidParts) -> Iterator[Problem]:
     yield from _solver(parts)
     yield from _output(parts)
     yield from _kept_straight(parts)
+    if parts.time is not None and not parts.broken_effects:
+        yield from timed.problems(parts.time, parts.inflation, parts.output)
 
 
 def _dimensions(parts: ValidParts) -> Iterator[Problem]:
@@ -172,12 +178,14 @@ def _density(parts: ValidParts) -> Iterator[Problem]:
     if parts.materials is None or parts.broken_effects:
         return
     weighing = [effect.name for effect in parts.effects.values() if effect.needs_density]
+    weighing += [] if parts.time is None else ["time"]
     for part in ("wall", "floor", "sheath", "layer"):
         path, material = f"materials.{part}", getattr(parts.materials, part)
         if material is None:
             continue
         if not weighing and material.density:
-            names = " or ".join(name for name, effect in EFFECTS.items() if effect.needs_density)
+            needing = [name for name, effect in EFFECTS.items() if effect.needs_density]
+            names = " or ".join([*needing, "time"])
             yield Problem(f"{path}.density", f"no effect without {names}, expected no value")
         if weighing and material.density is None:
             from materials.named.table import SOLIDS

@@ -14,7 +14,7 @@ def complete(case: Case) -> Case:
     The effects come first: the model is chosen by them, and the mesh by the model. What is zero
     and says no more than leaving it out is left out: one actuator is one case.
     """
-    weighs = any(effect.needs_density for effect in case.effects)
+    weighs = case.time is not None or any(e.needs_density for e in case.effects)
     given = {part: spec for part, spec in dict(case.materials).items() if spec is not None}
     plain = {part: spec.plain(weighs) for part, spec in given.items()}
     case = case.model_copy(update={"materials": case.materials.model_copy(update=plain)})

@@ -79,6 +79,9 @@ def root_paths(data: dict[str, Any], folder: Path) -> None:
             place.holder[place.key] = str(folder.resolve() / place.value)
         elif isinstance(place.value, dict):
             _root_tests(place.value, folder)
+    pressure = _pressure_over_time(data)
+    if isinstance(pressure.get("file"), str | Path):
+        pressure["file"] = str(folder.resolve() / pressure["file"])
     output = data.get("output")
     if not isinstance(output, dict):
         return
@@ -124,11 +127,17 @@ def inlined(data: Mapping[str, Any]) -> Inlined:
     Raises:
         CaseError: everything that is wrong with the files themselves.
     """
-    if not any(_asks(place.value) for place in places(data)):
+    timed = "file" in _pressure_over_time(data)
+    if not timed and not any(_asks(place.value) for place in places(data)):
         return Inlined(data, {})
     whole = copy.deepcopy(dict(data))
     files: dict[str, tuple[str, Mapping[str, int]]] = {}
     problems: list[Problem] = []
+    if timed:
+        try:
+            _write_points(_pressure_over_time(whole))
+        except ValueError as error:
+            problems.append(Problem("time.pressure.file", str(error)))
     weighs = _weighs(whole)
     for place in list(places(whole)):
         try:
@@ -179,6 +188,26 @@ def _effect(name: str, effect: Any, path: str) -> Iterator[Place]:
         yield Place(f"{path}.fabric", effect, "fabric", path)
 
 
+def _pressure_over_time(data: Mapping[str, Any]) -> dict[str, Any]:
+    """What a case says of its pressure over time; empty where that is nothing."""
+    time = data.get("time")
+    pressure = time.get("pressure") if isinstance(time, dict) else None
+    return pressure if isinstance(pressure, dict) else {}
+
+
+def _write_points(pressure: dict[str, Any]) -> None:
+    """Write the rows of a file of pressures in the place of its name.
+
+    Raises:
+        ValueError: what is wrong with the file.
+    """
+    from fiberbend.case.timed.file import points
+
+    if isinstance(pressure["file"], str | Path) and pressure.keys() == {"file"}:
+        # whatever else there is, is said by the check of the case
+        pressure["points"] = points(Path(pressure.pop("file")))
+
+
 def _list(value: Any) -> list[Any]:
     return value if isinstance(value, list) else []
 
@@ -205,7 +234,9 @@ def _root_tests(value: dict[str, Any], folder: Path) -> None:
 
 
 def _weighs(data: Mapping[str, Any]) -> bool:
-    """Whether an effect of a case needs densities."""
+    """Whether an effect of a case, or its motion, needs densities."""
+    if data.get("time") is not None:
+        return True
     names = {name for name, effect in EFFECTS.items() if effect.needs_density}
     entries = (e for e in _list(data.get("effects")) if isinstance(e, dict))
     return any(not names.isdisjoint(entry) for entry in entries)

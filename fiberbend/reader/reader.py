@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
@@ -17,8 +18,10 @@ from fiberbend.case.case import (
     Output,
     Solver,
 )
+from fiberbend.case.timed.spec import TimeSpec
 from fiberbend.effects.table import EffectEntry, unwrap
 from fiberbend.models import choice
+from fiberbend.reader.base_case import refuse_hand
 from fiberbend.reader.checks import ValidParts, check, mesh_problems
 from fiberbend.reader.defaults import complete
 from fiberbend.reader.own_files import inlined, root_paths
@@ -65,6 +68,7 @@ def read_case(path: Path | str, settings: Iterable[str] | Mapping[str, Any] = ()
     source = read_yaml(Path(path))
     settings = settings if isinstance(settings, Mapping) else list(settings)
     data = source.data
+    refuse_hand(data, path)
     if "case" in data and not _DESIGN.isdisjoint(data):
         raise CaseError([Problem(str(path), f"this is a design: fiberbend design {path}")])
     if "case" in data and not _SWEEP.isdisjoint(data):
@@ -188,6 +192,9 @@ def _valid_parts(data: Mapping[str, Any]) -> ValidParts:
             valid[name] = part.model_validate(data.get(name, {}))
         except ValidationError:
             continue
+    if data.get("time") is not None:
+        with contextlib.suppress(ValidationError):
+            valid["time"] = TimeSpec.model_validate(data["time"])
     entries: Any = data.get("effects")
     broken, effects = not isinstance(entries, list), {}
     for index, entry in enumerate([] if broken else entries):

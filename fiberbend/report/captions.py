@@ -10,6 +10,7 @@ from fiberbend.states.labels import short_number
 
 _CAPTIONS = {
     "pressure_angle": "Bending angle against pressure.",
+    "over_time": "Pressure, angle, tip and energies over time.",
     "pressure_twist": "Twist against pressure.",
     "tip_force": "Tip force against pressure.",
     "contact_force": "Force of each obstacle on the actuator against pressure.",

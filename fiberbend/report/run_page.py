@@ -193,6 +193,7 @@ def _forces(case: Case, rows: Sequence[Mapping[str, Any]]) -> dict[int, str]:
     return {
         step: ", ".join(
             [
+                *([f"{beside.times[step]:.3g} s"] if step in beside.times else []),
                 *(f"{name} {short_number(turn)}°" for name, turn in beside.turned[step].items()),
                 *(
                     f"{name} {short_number(float(np.linalg.norm(force)))} N"

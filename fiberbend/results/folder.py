@@ -70,6 +70,8 @@ RUNGS = "rungs"
 """Folder of a ladder with a file of each rung."""
 DESIGN = "design.json"
 """By this file a folder is that of a design; what it has found."""
+HAND = "hand.resolved.yaml"
+"""By this file a folder is that of a hand: the hand with the resolved case of every finger."""
 BLOCKED = "blocked"
 """Folder within that of a sweep's point with the same body kept straight."""
 
@@ -81,6 +83,7 @@ _OF_A_RUN = (
     *("pictures/rest.png", "pictures/animation.gif", "pictures/animation.mp4"),
     *("pictures/undeformed.png", "pictures/cut.png", "pictures/montage.png", "pictures/bent*.png"),
     *("pictures/pressure_*.png", "pictures/tip_*.png", "pictures/contact_*.png"),
+    *("pictures/over_time.png", "pictures/modes.png"),
     *("pictures/section_*.png", "pictures/cell_*.png", "pictures/fiber_*.png"),
 )
 _OF_A_SWEEP = (TABLE, ABOUT_SWEEP, TRENDS, "maps/*.png", REPORT)
@@ -91,6 +94,7 @@ _OF_A_DESIGN = (
     *("tries.csv", "sensitivity.csv", "front.csv"),
     *("design_*.png", REPORT),
 )
+_OF_A_HAND = (HAND, "pictures/hand_*.png")
 FILES = (
     *_OF_A_RUN,
     *(f"{BLOCKED}/{name}" for name in _OF_A_RUN),
@@ -98,6 +102,7 @@ FILES = (
     *_OF_CONTROL,
     *_OF_A_LADDER,
     *_OF_A_DESIGN,
+    *_OF_A_HAND,
 )
 """What is written: no other name can be, and `overwrite` removes nothing else."""
 

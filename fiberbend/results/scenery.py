@@ -51,7 +51,9 @@ def scenery(case: Case, rows: Sequence[Mapping[str, Any]] = ()) -> Scenery:
         if thickness is not None:
             lengths[region] = thickness
     shapes = convert.obstacle_shapes(case)
-    return Scenery(shapes, forces, tips, lengths, actuator, _strips(case), at_tip, turned)
+    times = {int(row[col.STEP]): t for row in rows if (t := row.get(col.TIME)) is not None}
+    strips = _strips(case)
+    return Scenery(shapes, forces, tips, lengths, actuator, strips, at_tip, turned, times)
 
 
 def _strips(case: Case) -> tuple[Window, ...]:

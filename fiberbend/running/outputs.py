@@ -10,6 +10,7 @@ from typing import IO, TYPE_CHECKING, Any
 import numpy as np
 
 from fiberbend.case.case import Case
+from fiberbend.case.timed.frames import frame_time
 from fiberbend.process.beside import Beside
 from fiberbend.results.folder import RunFolder
 from fiberbend.results.states import States
@@ -153,11 +154,18 @@ def _draw_states(
     if case.output.animation:
         with pictures(say, "no animation"), Renderer() as renderer:
             states = States(folder.path, case, list(rows), say)
-            write("animation.gif", lambda file: _animate(file, states, space, renderer, beside))
+            frame = None if case.time is None else frame_time(case.time.duration)
+            shown = (states, space, renderer, beside, frame)
+            write("animation.gif", lambda file: _animate(file, *shown))
 
 
 def _animate(
-    file: IO[bytes], states: States, space: Space, renderer: Renderer, beside: Scenery
+    file: IO[bytes],
+    states: States,
+    space: Space,
+    renderer: Renderer,
+    beside: Scenery,
+    frame: float | None,
 ) -> None:
     from fiberbend.drawing.space.animation import Animation
 
@@ -166,7 +174,7 @@ def _animate(
             yield space.snapshot(state), space.at_cells(state)
 
     Animation(space.model_mesh, renderer, beside).write(
-        file, strained(), lambda: (space.snapshot(state) for state in states)
+        file, strained(), lambda: (space.snapshot(state) for state in states), frame
     )
 
 

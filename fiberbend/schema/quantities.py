@@ -92,9 +92,11 @@ class Quantity:
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
         """Text that begins with a number and goes on with a unit."""
+        # "0.5 1/s": a unit that begins with a digit stands behind a space
+        unit = r"\s+1/" if KINDS[self.kind].shown.startswith("1/") else r"\s*[^\s0-9.]"
         return {
             "type": "string",
-            "pattern": r"^\s*[+-]?[0-9.]+([eE][+-]?[0-9]+)?\s*[^\s0-9.].*$",
+            "pattern": rf"^\s*[+-]?[0-9.]+([eE][+-]?[0-9]+)?{unit}.*$",
             "examples": [KINDS[self.kind].example],
         }
 

@@ -105,6 +105,7 @@ KINDS = {
     "accuracy": Kind("an accuracy", "percent", "%", "1 %", {"%": "1", "percent": "1"}),
     "time": Kind("a time", "s", "ms", "5 ms", {"s": "1", "ms": "1e-3"}),
     "frequency": Kind("a frequency", "Hz", "Hz", "100 Hz", {"Hz": "1", "kHz": "1e3"}),
+    "rate": Kind("a rate", "1/s", "1/s", "0.5 1/s", {"1/s": "1", "1/ms": "1e3"}),
     "conductance": Kind(
         "a sonic conductance",
         "dm^3/(s*bar)",

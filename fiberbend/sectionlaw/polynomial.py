@@ -27,29 +27,43 @@ class Polynomial:
 
     def value(self, y: Floats) -> Floats:
         """At points, (n, d): (n,)."""
-        return self._derived(y)
+        return self._derived(self._powers(y))
 
     def first(self, y: Floats) -> Floats:
         """∂/∂y, (n, d)."""
-        return np.stack([self._derived(y, i) for i in range(y.shape[1])], axis=-1)
+        z = self._powers(y)
+        return np.stack([self._derived(z, i) for i in range(y.shape[1])], axis=-1)
 
     def second(self, y: Floats) -> Floats:
         """∂²/∂y², (n, d, d)."""
-        d = range(y.shape[1])
-        rows = [np.stack([self._derived(y, i, j) for j in d], axis=-1) for i in d]
+        z, d = self._powers(y), range(y.shape[1])
+        rows = [np.stack([self._derived(z, i, j) for j in d], axis=-1) for i in d]
         return np.stack(rows, axis=-2)
 
-    def _derived(self, y: Floats, *by: int) -> Floats:
-        return self._terms(y, *by) @ np.array(self.coefficients)
+    def terms(self, y: Floats) -> Floats:
+        """All terms with coefficients of one, (n, t)."""
+        return self._terms(self._powers(y)).T
 
-    def _terms(self, y: Floats, *by: int) -> Floats:
-        """Derivatives of all terms, (n, t)."""
+    def _powers(self, y: Floats) -> Floats:
+        """(y_i/s_i)^p from p = 0 on, (p, d, n): an integer power by itself is slow."""
+        most = max(map(max, self.powers), default=0)
+        out = np.empty((most + 1, *y.shape[::-1]))
+        out[0], out[1:] = 1.0, (y / np.array(self.sizes)).T
+        return np.multiply.accumulate(out, axis=0)
+
+    def _derived(self, z: Floats, *by: int) -> Floats:
+        found: Floats = np.array(self.coefficients) @ self._terms(z, *by)
+        return found
+
+    def _terms(self, z: Floats, *by: int) -> Floats:
+        """Derivatives of all terms, (t, n), by the powers of the variables."""
         powers, factor = np.array(self.powers), np.ones(len(self.powers))
         for i in by:
             factor = factor * powers[:, i] / self.sizes[i]
-            powers = powers.copy()
             powers[:, i] = np.maximum(powers[:, i] - 1, 0)
-        out: Floats = factor * np.prod((y / np.array(self.sizes))[:, None, :] ** powers, axis=2)
+        out: Floats = factor[:, None] * z[powers[:, 0], 0]
+        for i in range(1, powers.shape[1]):
+            out = out * z[powers[:, i], i]
         return out
 
 
@@ -67,7 +81,7 @@ def fit(y: Floats, values: Floats, weights: Floats, degree: int, start: float) -
     powers = [p for p in itertools.product(range(degree + 1), repeat=d) if 0 < sum(p) <= degree]
     sizes = tuple(float(size) or 1.0 for size in np.abs(y).max(axis=0))
     empty = Polynomial(sizes, tuple(powers), (0.0,) * len(powers))
-    matrix = weights[:, None] * empty._terms(y)
+    matrix = weights[:, None] * empty.terms(y)
     found, *_ = np.linalg.lstsq(matrix, weights * (values - start), rcond=1e-10)
     constant = (0,) * d
     return Polynomial(sizes, (constant, *powers), (start, *found.tolist()))

@@ -18,7 +18,7 @@ from fiberbend.accuracy.words import ways_differ
 from fiberbend.case.case import Case
 from fiberbend.effects.straight import kept_straight
 from fiberbend.models.choice import choose_model
-from fiberbend.reader.base_case import BaseCase, read_base
+from fiberbend.reader.base_case import BaseCase, read_base, refuse_hand
 from fiberbend.reader.own_files import rooted_value
 from fiberbend.reader.reader import parse_case
 from fiberbend.reader.yaml_file import YamlContent, line_numbers, read_yaml
@@ -126,6 +126,7 @@ def read_sweep(path: Path | str, settings: Iterable[str] = ()) -> Sweep:
     """
     path = Path(path)
     source = read_yaml(path)
+    refuse_hand(source.data, path)
     if "case" not in source.data and "actuator" in source.data:
         raise CaseError([Problem(str(path), f"this is a case: fiberbend run {path}")])
     if not _DESIGN.isdisjoint(source.data):

@@ -211,7 +211,7 @@ BAD_SETTINGS = [
     ("materials.wall={density: 1 g/cm^3}", "materials.wall: neither name nor law"),
     (
         "materials.wall={name: elastosil-m4601, density: 1 g/cm^3}",
-        "materials.wall.density: no effect without gravity, expected no value",
+        "materials.wall.density: no effect without gravity or time, expected no value",
     ),
     (
         "effects.1.winding.fiber={modulus: 3 GPa}",

@@ -50,7 +50,7 @@ def test_every_column_is_said_once_and_in_full() -> None:
 
 def test_names_have_one_style() -> None:
     """Lower case and underscores, then the unit as it is written."""
-    units = {"°": "deg", "mm²": "mm2", "mm³": "mm3", "N mm": "Nmm"}
+    units = {"°": "deg", "mm²": "mm2", "mm³": "mm3", "N mm": "Nmm", "mm/s": "mm_per_s"}
     for known in COLUMNS:
         name = known.name.replace("min_det_F", "min_det_f")
         unit = units.get(known.unit, known.unit)

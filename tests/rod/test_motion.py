@@ -216,9 +216,9 @@ def test_what_cannot_move_is_refused() -> None:
     bare = Rod(BAR.layout(3), BAR.law(PLANE))
     with pytest.raises(ValueError, match="without inertia"):
         Motion(bare, lambda time: Level())
-    for wrong in ({"viscosity": -1.0}, {"drag": -1.0}):
+    for viscosity, drag in ((-1.0, 0.0), (0.0, -1.0)):
         with pytest.raises(ValueError, match="zero or more"):
-            Motion(BAR.rod(3), lambda time: Level(), **wrong)
+            Motion(BAR.rod(3), lambda time: Level(), viscosity, drag)
     motion = Motion(BAR.rod(3), lambda time: Level(amounts=(math.nan,)))
     with pytest.raises(NoEquilibriumError, match="does not converge"):
         motion.step(motion.at(BAR.layout(3).at_rest()), 1e-3)

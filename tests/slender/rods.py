@@ -56,7 +56,7 @@ def spec(*effects: dict[str, Any], **changes: Any) -> dict[str, Any]:
     data = copy.deepcopy(BASE | changes)
     if effects:
         data["effects"] = [*effects, {"winding": WOUND}]
-    if any("gravity" in effect for effect in data["effects"]):
+    if "time" in data or any("gravity" in effect for effect in data["effects"]):
         for material in data["materials"].values():
             material.setdefault("density", DENSITY)
     return data

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
@@ -52,6 +53,7 @@ class Animation:
         target: Target,
         strained: Iterable[tuple[Snapshot, Floats]],
         again: Callable[[], Iterable[Snapshot]],
+        frame: float | None = None,
     ) -> None:
         """Write the GIF.
 
@@ -60,6 +62,8 @@ class Animation:
             strained: every state in space, rest first, and its maximum principal logarithmic
                 strain at the nodes of every cell, (m, k).
             again: gives the same states once more.
+            frame: seconds from one state to the next where they are a motion; else all of them
+                take the same time together.
 
         Raises:
             ValueError: no state.
@@ -90,7 +94,7 @@ class Animation:
                 write_forces(panel, obstacles, self._surfaces.points(state), state, 10)
                 yield page.pixels()
 
-        _save(target, frames(), len(values))
+        save_gif(target, frames(), len(values), _palette(), frame)
 
     def _image(
         self,
@@ -114,15 +118,35 @@ def _extremes(points: Floats) -> Floats:
     return extremes
 
 
-def _save(target: Target, frames: Iterable[Image], number: int) -> None:
+def save_gif(
+    target: Target,
+    frames: Iterable[Image],
+    number: int,
+    palette: Any = None,
+    frame: float | None = None,
+) -> None:
+    """Write frames as an animation; the first and the last one stay.
+
+    Args:
+        target: a path, or a file open for writing bytes.
+        frames: pixels of each.
+        number: of frames.
+        palette: a Pillow image that has the colours of all; by default those of the first frame.
+        frame: seconds of each where they are a motion.
+    """
     from PIL import Image as Pillow
 
-    palette = _palette()
+    if palette is None:
+        first = next(frames := iter(frames))
+        frames = itertools.chain([first], frames)
+        palette = Pillow.fromarray(first).quantize(256, dither=Pillow.Dither.NONE)
     pages = [
         Pillow.fromarray(frame).quantize(palette=palette, dither=Pillow.Dither.NONE)
         for frame in frames
     ]
     pace = int(np.clip(1000 * _SECONDS / number, _QUICK, _SLOW))
+    if frame is not None:
+        pace = round(1000 * frame)
     times = [pace] * number
     times[0] = times[-1] = max(_REST * pace, _STAYS)
     pages[0].save(

@@ -61,6 +61,7 @@ class Scenery:
             None where it has no direction that is known.
         turned: by the number of a load step, how far it is turned beside its bending angle over the
             whole length, in degrees by what captions call it.
+        times: by the number of a step of a motion, when that is, s.
     """
 
     shapes: Mapping[str, Shape] = dataclasses.field(default_factory=dict)
@@ -71,13 +72,16 @@ class Scenery:
     strips: tuple[Window, ...] = ()
     at_tip: Mapping[int, Mapping[str, Force | None]] = dataclasses.field(default_factory=dict)
     turned: Mapping[int, Mapping[str, float]] = dataclasses.field(default_factory=dict)
+    times: Mapping[int, float] = dataclasses.field(default_factory=dict)
 
     def caption(self, state: Snapshot) -> str:
         """Pressure and turns of a state; where the body is kept straight its force comes first."""
         force = self.tip_forces.get(state.step)
         if force is None:
             turned = self.turned.get(state.step, {}).items()
-            return state.caption + "".join(f",  {n} {short_number(v)}°" for n, v in turned)
+            time = self.times.get(state.step)
+            when = "" if time is None else f"t = {time:.2f} s,  "
+            return when + state.caption + "".join(f",  {n} {short_number(v)}°" for n, v in turned)
         text = f"P = {short_number(state.pressure_kpa)} kPa,  F = {short_number(force)} N"
         angle = short_number(state.angle_deg)
         return text if abs(state.angle_deg) < _STRAIGHT else f"{text},  θ = {angle}°"

@@ -57,6 +57,10 @@ def run_rod(
         own: what the run has of itself beside its case.
         scratch: where states go without a folder, or None.
     """
+    if case.time is not None:
+        from fiberbend.running.slender.moving import run_moving
+
+        return run_moving(case, model, folder, progress, comm, own, scratch)
     run = _RodRun(case, model, folder, progress, comm.size, own or Own(), scratch)
     try:
         return on_rank_0(comm, run.go)
@@ -110,7 +114,7 @@ class _RodRun:
         self.warn([*self.own.remarks, *rod.section.remarks], silent=True)
         self.warn(known)
         self.warn(messages.remarks(report))
-        touching = passes_itself(rod, course.points)
+        touching = passes_itself(rod, [point.state.shape for point in course.points])
         if touching is not None:
             at = course.points[touching]
             measures = {"control": at.angle, "value pressure": at.values.get("pressure", 0.0)}

@@ -8,20 +8,24 @@ import numpy as np
 
 from fem.march.selfcontact import Pose, clearance, directions
 from fiberbend.slender.actuator import Slender
-from fiberbend.slender.path import Point
 from geometry.bodies.quads import section_mesh
 from geometry.sections.size import MeshSize
 from geometry.sections.table import section_layout
 from rod.functions import Floats
+from rod.shape import Shape
 
 
-def passes_itself(rod: Slender, points: Sequence[Point]) -> int | None:
-    """Number of the first state in which sections are within others; None: of none."""
+def passes_itself(rod: Slender, shapes: Sequence[Shape]) -> int | None:
+    """Number of the first state in which sections are within others; None: of none.
+
+    Args:
+        rod: the rod, wherever it is clamped.
+        shapes: its states, the first at rest.
+    """
     reach = _reach(rod)
     z = np.concatenate([[0.0], np.cumsum(rod.rod.layout.lengths)])
     outline = np.tile(reach, (len(z), 1))
-    for number, point in enumerate(points):
-        shape = point.state.shape
+    for number, shape in enumerate(shapes):
         pose = Pose(z, shape.places, shape.rotations, outline)
         if number and clearance(pose, 0.0) < 0:
             return number

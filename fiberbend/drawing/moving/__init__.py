@@ -1,0 +1,1 @@
+"""Pictures of what moves: a motion over time, and modes of vibration."""

@@ -1,0 +1,1 @@
+"""Hands: several actuators as rods, with what they grasp."""

@@ -1,0 +1,1 @@
+"""Several rods solved together, which touch each other."""
