@@ -59,6 +59,7 @@ def test_ninety_degrees_with_the_least_work(tmp_path: Path) -> None:
     assert (out / "design_angle.png").exists()
 
 
+@pytest.mark.long
 def test_three_newtons_in_an_envelope(tmp_path: Path) -> None:
     out = tmp_path / "out"
     file = changed(tmp_path, "blocked_force")

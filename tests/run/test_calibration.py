@@ -139,6 +139,7 @@ def test_numbers_that_made_a_section_are_found_again(monkeypatch: pytest.MonkeyP
     assert found.pressure == pytest.approx(readings[-1].pressure)
 
 
+@pytest.mark.long
 def test_a_second_case_of_the_same_section_takes_what_is_kept(coarse: Store) -> None:
     told: list[str] = []
     first = calibrate(parse_case(wound()), coarse, told.append)

@@ -129,6 +129,7 @@ def test_a_stiff_braid_on_a_fine_section_converges_to_its_round_off() -> None:
     assert (fine.status, fine.run["cutbacks"]) == ("converged", 0)
 
 
+@pytest.mark.long
 def test_starts_fill_a_slice_of_a_part_of_the_pitch() -> None:
     # n starts in p/n are those in 2p/n: twice half of them, one start further on
     def cell(starts: int, *phases: str) -> RunResult:
@@ -173,6 +174,7 @@ def test_discrete_hoops_come_to_the_smeared_ones() -> None:
     assert off[2] < 0.3 * off[0]
 
 
+@pytest.mark.long
 def test_threads_along_the_floor_and_around_the_wall_alone() -> None:
     # a strip that does not stretch makes it bend further at one pressure; no hoops under the floor
     hoops = family(angle_from_axis="90 deg", spacing="2 mm", around="wall")

@@ -299,6 +299,7 @@ def test_two_sweeps_at_once_share_the_points(lab: Lab) -> None:
     assert lab.starts() == Counter(NAMES)
 
 
+@pytest.mark.long
 def test_a_changed_case_runs_again_and_only_it(lab: Lab) -> None:
     lab.run()
     changed = SWEEP | {"vary": SWEEP["vary"] | {"actuator.wall": ["1.5 mm", "2.0 mm", "3 mm"]}}

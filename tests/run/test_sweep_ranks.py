@@ -185,6 +185,7 @@ def test_mpirun_that_is_stopped_leaves_a_table_and_no_process(lab: Lab, number: 
     assert [row["status"] for row in lab.table()] == ["converged"] * 6
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_a_signal_for_one_rank_ends_all(lab: Lab) -> None:
     """They would wait for it; one line says which one it was."""
@@ -197,6 +198,7 @@ def test_a_signal_for_one_rank_ends_all(lab: Lab) -> None:
     gone(process)
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_points_that_fail_on_ranks_are_listed(lab: Lab) -> None:
     code, out, _ = lab.run(ranks="2", **{NAMES[1]: "fail", NAMES[4]: "raise"})
@@ -220,6 +222,7 @@ def test_a_sweep_by_ranks_shares_the_points_with_another(lab: Lab, other: str) -
     assert lab.starts() == Counter(NAMES)
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_ranks_whose_solver_cannot_be_loaded_end_the_sweep(lab: Lab) -> None:
     (lab.site / "sitecustomize.py").write_text(
@@ -279,6 +282,7 @@ entry()
 """
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_a_folder_that_one_machine_does_not_see_is_refused(
     lab: Lab, mpirun: MpiRun, tmp_path: Path
