@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fiberbend.case.case import Case, Output, Solver
-from fiberbend.case.symmetry import Symmetry
+from fiberbend.case.symmetry import wound
 from fiberbend.effects.effect import Effect
 from fiberbend.schema.problems import CaseError, Problem
 
@@ -51,5 +51,4 @@ def section_guides(case: Case) -> bool:
     alike = case.zones is None and case.inflation is not None
     if not alike or not all(effect.follows_section() for effect in case.effects):
         return False
-    beside = (effect.beside() for effect in case.effects)
-    return Symmetry.of([effect for effect in beside if effect is not None]).plane
+    return wound(case).plane

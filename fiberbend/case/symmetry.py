@@ -91,6 +91,12 @@ def twists(case: Case) -> bool:
     return Symmetry.of(case.acting).twists
 
 
+def wound(case: Case) -> Symmetry:
+    """What the section of a case has by itself, whatever acts on the actuator."""
+    beside = (effect.beside() for effect in case.effects)
+    return Symmetry.of([effect for effect in beside if effect is not None])
+
+
 def upside_down(actuator: ActuatorSpec, materials: Materials) -> bool:
     """Whether a section is its own image turned upside down, in shape and materials.
 

@@ -362,15 +362,12 @@ class Effect(Spec):
             raise NotImplementedError(f"effect {self.name} is not known to act on a rod")
         return OnRod()
 
+    def of_measured(self) -> float:
+        """Load over the greatest with which a rod was put beside a body; those at a tip add up."""
+        return math.inf if self.load and self.inflation() is None else 0.0
+
     def unlike(self, other: Effect) -> str:
-        """Why one mesh cannot have it in one zone and another of its kind in the next.
-
-        Args:
-            other: of the same class.
-
-        Returns:
-            The reason; empty where it can.
-        """
+        """Why no mesh can have it in a zone and another of its class in the next; empty: it can."""
         return f"{self.name} is not known to differ along the length"
 
     def build_along(self, zones: Sequence[Stretch], requests: Requests) -> Built:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Literal
 
@@ -11,6 +12,9 @@ from fiberbend.schema.quantities import Acceleration
 
 if TYPE_CHECKING:
     from geometry.mesh.data import MeshData
+
+_EARTH = 9840.0
+"""mm/s², at the poles, rounded up."""
 
 
 class GravityEffect(Effect):
@@ -70,6 +74,10 @@ class GravityEffect(Effect):
             if region in mesh.regions and material.mass_density is not None
         }
         return Built((Gravity(density, self.weight()),), (Ramp(Gravity.scalar, 1.0, first=1.0),))
+
+    def of_measured(self) -> float:
+        """Nothing of its own up to that of the Earth, with which rods were measured."""
+        return 0.0 if self.acceleration <= _EARTH else math.inf
 
     def on_rod(self, site: RodSite) -> OnRod:
         """Weight of all sections and caps, put on in one step."""

@@ -20,11 +20,12 @@ from fiberbend.case.case import Case
 from fiberbend.case.shapes import SHAPES
 from fiberbend.models.choice import MODELS
 from fiberbend.models.model import MeshedModel, ModelKind
-from fiberbend.plan.estimate import cost_of
+from fiberbend.plan.estimate import cost_of, steps_of_rod
 from fiberbend.plan.memory import needed_mb
 from fiberbend.reader.reader import as_case
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.schema.units import show
+from fiberbend.slender.kept import laws_to_make
 
 BARE = (
     *("output.pictures=false", "output.fields=false", "output.report=false"),
@@ -235,10 +236,8 @@ def _rungs(
     model = MODELS[family.model]
     elements = model.elements()
     others = [rung.family for rung in before]
-    if model.slender() is not None:
-        raise _LeftOutError("a rod lacks what ends do, and no finer mesh of it shows how much")
     if elements is None:
-        if any(other.model == family.model for other in others):
+        if model.line and any(other.model == family.model for other in others):
             raise _LeftOutError("a closed form has no turns: the same as the rung before")
         yield _rung(first, family, changes, model)
         return
@@ -332,10 +331,14 @@ def _up(length: float) -> float:
 
 def _rung(case: Case, family: Family, changes: Sequence[str], model: ModelKind) -> Rung:
     left_out = tuple(f"{path}: {text}" for path, text in model.leaves_out(case))
-    elements = model.elements()
+    elements, rod = model.elements(), model.slender()
     if elements is None:
-        seconds, memory = model.start_s, needed_mb(case)
-        return Rung(family, tuple(changes), case, {}, left_out, 0, seconds, memory)
+        seconds, memory, unknowns = model.start_s, needed_mb(case), 0
+        if rod is not None:
+            steps, (_, law_s) = steps_of_rod(case, rod), laws_to_make([case])
+            seconds += (_STEPS if steps is None else steps) * rod.step_s + law_s
+            unknowns = rod.unknowns(case)
+        return Rung(family, tuple(changes), case, {}, left_out, unknowns, seconds, memory)
     size = elements.size(case)
     cost = cost_of(case, elements, size)
     expected = cost.seconds()

@@ -30,6 +30,9 @@ def choose_model(case: Case) -> tuple[ModelKind, str]:
     for model in MODELS.values():
         if objection(case, model) is None:
             return model, "the cheapest that supports everything"
+    for model in MODELS.values():
+        if _lacks(case, model) is None:
+            return model, "the only one that supports everything"
     return model, "no model supports everything"
 
 
@@ -58,7 +61,7 @@ def problems(case: Case) -> Iterator[Objection]:
         return
     reasons = []
     for name, model in MODELS.items():
-        found = objection(case, model)
+        found = _lacks(case, model)
         if found is None:
             return
         reasons.append(f"{name} not {found[0]} ({found[1]})")
@@ -66,5 +69,10 @@ def problems(case: Case) -> Iterator[Objection]:
 
 
 def objection(case: Case, model: ModelKind) -> Objection | None:
-    """The first reason why a model does not support a case in full, or None where it does."""
+    """The first reason why a model is not known to support a case in full; None where it is."""
+    return _lacks(case, model) or next(model.unproven(case), None)
+
+
+def _lacks(case: Case, model: ModelKind) -> Objection | None:
+    """The first thing that a model leaves out or refuses."""
     return next(itertools.chain(model.leaves_out(case), model.refuses(case)), None)

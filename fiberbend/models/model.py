@@ -172,6 +172,10 @@ class ModelKind(ABC):
                 if what not in self.offers:
                     yield f"effects.{index}.{effect.name}", text
 
+    def unproven(self, case: Case) -> Iterator[Objection]:
+        """Where nobody has put it beside a dearer model: a reason not to choose it, no doubt."""
+        yield from ()
+
     # --- what it makes of a case ---------------------------------------------------------------
 
     def origin(self, case: Case) -> float:

@@ -152,6 +152,7 @@ def _rod(
 ) -> Plan:
     from fiberbend.plan.estimate import drawing_seconds, steps_of_rod
     from fiberbend.plan.memory import gigabytes, needed_mb
+    from fiberbend.slender.kept import laws_to_make
 
     steps, unknowns = steps_of_rod(case, model), model.unknowns(case)
     number = model.pieces + 2 * model.cap_pieces
@@ -161,7 +162,8 @@ def _rod(
     time = f"{1e3 * model.step_s:g} ms a step"
     if seconds is not None:
         time = f"about {seconds:.2g} s"
-    law = f"about {model.law_seconds(case):g} s more if the law of its section is not kept yet"
+    missing, law_s = laws_to_make([case])
+    law = f"about {law_s:g} s more, as the law of its section is not kept yet"
     drawing = drawing_seconds(case, model)
     memory = needed_mb(case)
     body = {
@@ -169,7 +171,7 @@ def _rod(
         "elements": [f"{number} pieces of a line: {within}"],
         "unknowns": [str(unknowns)],
         "steps": [each if steps is None else f"about {steps}, {each}"],
-        "time": [f"{time}; an estimate", law],
+        "time": [f"{time}; an estimate", *([law] if missing else [])],
         "memory": [f"about {gigabytes(memory)}"],
     }
     if drawing:
@@ -207,9 +209,11 @@ def _cheaper(case: Case, model: ModelKind) -> Iterator[str]:
         if against is None:
             yield f"{name} supports everything too: auto would take it"
             return
-        refusal = next(other.refuses(case), None)
-        path, text = refusal or against
-        yield f"{name} {'does not support' if refusal else 'leaves out'} {path}: {text}"
+        refusal, left_out = (next(each(case), None) for each in (other.refuses, other.leaves_out))
+        path, text = refusal or left_out or against
+        verb = "leaves out" if left_out else "is not measured for"
+        verb = "does not support" if refusal else verb
+        yield f"{name} {verb} {path}: {text}"
 
 
 def unused(case: Case, model: ModelKind) -> Iterator[str]:

@@ -19,11 +19,12 @@ _ROUND = 2
 """Elements through a thickness, with which arcs look round."""
 
 
-def body_at_rest(case: Case) -> ModelMesh:
-    """Half of the whole body with its caps; a winding in turns is left to `threads`.
+def body_at_rest(case: Case, half: bool = True) -> ModelMesh:
+    """The whole body with its caps, or half of it; a winding in turns is left to `threads`.
 
     Args:
         case: the case.
+        half: x ≥ 0 stands for all.
 
     Raises:
         CaseError: dimensions of which no mesh can be made.
@@ -34,7 +35,8 @@ def body_at_rest(case: Case) -> ModelMesh:
 
     actuator, site = convert.dimensions(case.actuator), convert.site(case)
     between = borders(case)
-    size = MeshSize(axial=_LAYER * actuator.outer_half_width, section=_ROUND, borders=between)
+    axial = _LAYER * actuator.outer_half_width
+    size = MeshSize(axial=axial, section=_ROUND, half=half, borders=between)
     try:
         mesh = with_regions(hexahedral_body(actuator, size), between, own_regions(case))
     except ValueError as error:

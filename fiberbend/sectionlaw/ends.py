@@ -66,6 +66,12 @@ class Ends:
     coefficients: Floats
     flexibility: float
 
+    def to_tip(self, other: Ends) -> Ends:
+        """Its own root, and the tip of another: of zones the first and the last."""
+        half = len(PARTS) // 2
+        coefficients = np.concatenate([self.coefficients[:half], other.coefficients[half:]])
+        return dataclasses.replace(self, coefficients=coefficients)
+
     def added(self, part: str, pressure: float) -> Floats:
         """Length in mm and three turns in rad of a part, (4,)."""
         powers = pressure ** (1.0 + np.arange(self.coefficients.shape[1]))

@@ -11,7 +11,6 @@ from fiberbend.calibration.calibrate import waits
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import Symmetry, stays_straight
-from fiberbend.case.zones import zone_cases
 from fiberbend.columns import UNIFORM
 from fiberbend.models.choice import choose_model
 from fiberbend.schema.problems import CaseError, Problem
@@ -97,33 +96,6 @@ def law_of(
             made = _made(case, strains, error, least, digest, loads, tell)
             store.keep(made)
     return made
-
-
-def laws_of(
-    case: Case,
-    strains: tuple[str, ...],
-    error: float = ERROR,
-    store: Store | None = None,
-    tell: Callable[[str], None] | None = None,
-) -> list[Made]:
-    """A law for each zone, from root to tip; of a case without zones that of its section.
-
-    Args:
-        case: a checked case of model section or cell, under a pressure.
-        strains: names of those of the rod; see `law_of`.
-        error: asked for, in parts.
-        store: of tables; that of the user unless given.
-        tell: takes lines of progress while they are made.
-
-    Raises:
-        CaseError: see `law_of`; an angle, of which nobody knows what zones have of it.
-    """
-    load = case.inflation
-    if case.zones is not None and (load is None or load.to is None):
-        text = "zones have a pressure in common and no angle, expected to"
-        raise CaseError([Problem("effects.pressure", text)])
-    loads = loads_of(case)
-    return [law_of(zone, strains, error, None, store, tell, loads) for zone in zone_cases(case)]
 
 
 def refuse(case: Case, strains: tuple[str, ...] = PLANE) -> None:

@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.case.zones import lengths, zone_cases
 from fiberbend.effects.records import RodRamp, RodSite
 from fiberbend.models.rod import MODEL
-from fiberbend.slender.laws import SectionLaw, along, cap_law, masses, section_law
+from fiberbend.slender.laws import (
+    SectionLaw,
+    along,
+    cap_law,
+    masses,
+    pieces_of,
+    section_law,
+    strains_of,
+)
 from fiberbend.slender.moments import section_of
 from rod.contact.touch import Touch
 from rod.functions import Floats
@@ -23,7 +32,6 @@ from rod.shape import Shape
 PIECES, CAP_PIECES = MODEL.pieces, MODEL.cap_pieces
 """Of the chamber and of each cap. Under its weight the baseline's angle and tip are those of twice
 as many to 1e-4."""
-PLANE = ("stretch", "curvature")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -36,6 +44,7 @@ class Slender:
         loads: the load whose value is the amount of each term; without a name it acts whole.
         ramps: loads in the order of the case.
         section: the law of the section between the caps.
+        zones: pieces of each zone between the caps.
         obstacles: what it may touch, by names.
     """
 
@@ -44,12 +53,13 @@ class Slender:
     loads: tuple[str, ...]
     ramps: tuple[RodRamp, ...]
     section: SectionLaw
+    zones: tuple[int, ...] = (PIECES,)
     obstacles: tuple[tuple[str, Touch], ...] = ()
 
     @property
     def chamber(self) -> slice:
         """The pieces between the caps."""
-        return slice(CAP_PIECES, CAP_PIECES + PIECES)
+        return slice(CAP_PIECES, CAP_PIECES + sum(self.zones))
 
     def level(self, values: Mapping[str, float]) -> Level:
         """What acts at given values of the loads."""
@@ -69,20 +79,26 @@ class Slender:
         return place
 
 
-def slender(case: Case) -> Slender:
+def slender(case: Case, tell: Callable[[str], None] | None = None) -> Slender:
     """The rod of a case of model rod.
+
+    Args:
+        case: the case.
+        tell: takes lines of progress while the law of its section is made.
 
     Raises:
         fiberbend.schema.problems.CaseError: its section has no law as far as the case goes.
     """
     actuator, section = convert.dimensions(case.actuator), section_of(case)
-    length, cap = actuator.length, actuator.cap
-    lengths = np.repeat(
-        [cap / CAP_PIECES, length / PIECES, cap / CAP_PIECES], [CAP_PIECES, PIECES, CAP_PIECES]
-    )
-    layout = Layout(lengths, PLANE, place=np.array([0.0, section.height, -cap]))
-    hollow, solid = masses(case, section)
-    parts = [solid] * CAP_PIECES + [hollow] * PIECES + [solid] * CAP_PIECES
+    cap, strains = actuator.cap, strains_of(case)
+    counts = pieces_of(case, PIECES)
+    each = [cap, *lengths(case), cap] / np.array([CAP_PIECES, *counts, CAP_PIECES])
+    pieces = np.repeat(each, [CAP_PIECES, *counts, CAP_PIECES])
+    layout = Layout(pieces, strains, place=np.array([0.0, section.height, -cap]))
+    solid = masses(case, section)[1]
+    hollow = [masses(zone, section)[0] for zone in zone_cases(case)]
+    between = [mass for mass, count in zip(hollow, counts, strict=True) for _ in range(count)]
+    parts = [solid] * CAP_PIECES + between + [solid] * CAP_PIECES
     site = RodSite(
         actuator=actuator,
         layout=layout,
@@ -91,9 +107,9 @@ def slender(case: Case) -> Slender:
         weight=convert.site(case).weight,
         body=convert.site(case),
     )
-    made = section_law(case, PLANE)
-    chamber = slice(CAP_PIECES, CAP_PIECES + PIECES)
-    law = along(case, made, cap_law(case, section, PLANE), layout, chamber)
+    made = section_law(case, strains, counts, tell)
+    chamber = slice(CAP_PIECES, CAP_PIECES + sum(counts))
+    law = along(case, made, cap_law(case, section, strains), layout, chamber)
     found = [effect.on_rod(site) for effect in case.effects]
     terms = [term for each in found for term in each.terms]
     inertia = sum((e.inertia for e in found if e.inertia is not None), site.inertia)
@@ -103,5 +119,6 @@ def slender(case: Case) -> Slender:
         loads=tuple(name for name, _ in terms),
         ramps=tuple(ramp for each in found for ramp in each.ramps),
         section=made,
+        zones=counts,
         obstacles=tuple(pair for each in found for pair in each.obstacles),
     )

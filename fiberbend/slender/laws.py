@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import numpy as np
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.case.symmetry import wound
+from fiberbend.case.zones import lengths, zone_cases
 from fiberbend.slender.moments import Section, weighed
+from fiberbend.slender.torsion import torsion
 from materials.material import Material
 from rod.functions import Floats
 from rod.inertia import SectionMass
@@ -20,6 +24,10 @@ ERROR = 1e-3
 """Of the table of a section, as `fiberbend.sectionlaw.table.law_of` has it."""
 
 
+PLANE = ("stretch", "curvature")
+SPACE = (*PLANE, "side_curvature", "twist")
+_FEW = 6
+"""Pieces that a zone has at least."""
 _ROUND, _RADIUS = 32, 0.1
 """Points of a circle about a stretch of one, and its radius."""
 
@@ -31,7 +39,7 @@ class SectionLaw:
     Attributes:
         law: by the strains of the rod.
         free: pressures, MPa, stretches and curvatures, 1/mm, of the section by itself, which
-            trials of it have found, (n, 3).
+            trials of it have found, (n, 3); of zones those of the first.
         model: that solved the section.
         states: how many were solved for it.
         seconds: that took, of processor time, whenever that was.
@@ -48,31 +56,62 @@ class SectionLaw:
     remarks: tuple[str, ...]
 
 
-def section_law(case: Case, strains: tuple[str, ...]) -> SectionLaw:
-    """The law of the section of a rod, from the tables that are kept or anew.
+def strains_of(case: Case) -> tuple[str, ...]:
+    """Strains of a rod: those of a plane where its sections and all that acts leave it there."""
+    zones = zone_cases(case)
+    across = any(effect.mirror_breaker() for effect in case.acting)
+    return SPACE if across or not all(wound(zone).plane for zone in zones) else PLANE
+
+
+def pieces_of(case: Case, pieces: int) -> tuple[int, ...]:
+    """How many pieces each zone has, of so many or a few more in the chamber.
+
+    Args:
+        case: the case.
+        pieces: between the caps.
+    """
+    whole = case.actuator.length
+    return tuple(max(_FEW, round(pieces * each / whole)) for each in lengths(case))
+
+
+def section_law(
+    case: Case,
+    strains: tuple[str, ...],
+    counts: tuple[int, ...] = (),
+    tell: Callable[[str], None] | None = None,
+) -> SectionLaw:
+    """The law of the sections of a rod, from the tables that are kept or anew.
 
     Args:
         case: of model rod.
         strains: of the rod.
+        counts: pieces of each zone.
+        tell: takes lines of progress while a table is made.
 
     Raises:
-        fiberbend.schema.problems.CaseError: the section has no law that reaches as far as the case.
+        fiberbend.schema.problems.CaseError: a section has no law that reaches as far as the case.
     """
+    from fiberbend.sectionlaw.range import loads_of
     from fiberbend.sectionlaw.store import Store
     from fiberbend.sectionlaw.table import law_of
     from fiberbend.slender.beside import section_case
 
-    store = Store()
-    made = law_of(section_case(case), strains, ERROR, store=store)
-    known = made.checked
+    store, loads = Store(), loads_of(case)
+    made = [
+        law_of(section_case(zone), strains, ERROR, store=store, tell=tell, loads=loads)
+        for zone in zone_cases(case)
+    ]
+    laws = [each.law for each in made]
+    pieces = np.repeat(np.arange(len(laws)), counts or 1).tolist()
+    known = [each.checked for each in made]
     return SectionLaw(
-        law=made.law,
-        free=np.array([(p, state.stretch, state.curvature) for p, state in made.free]),
-        model=made.model,
-        states=made.solved,
-        seconds=made.seconds,
-        error=max(known.force, known.moment, known.area),
-        remarks=(*made.remarks, *store.remarks),
+        law=laws[0] if len(laws) == 1 else Zones(laws, pieces),
+        free=np.array([(p, state.stretch, state.curvature) for p, state in made[0].free]),
+        model=made[0].model,
+        states=sum(each.solved for each in made),
+        seconds=sum(each.seconds for each in made),
+        error=max(max(each.force, each.moment, each.area) for each in known),
+        remarks=tuple(dict.fromkeys([r for each in made for r in each.remarks] + store.remarks)),
     )
 
 
@@ -92,7 +131,10 @@ def along(case: Case, made: SectionLaw, cap: Quartic, layout: Layout, chamber: s
     from fiberbend.sectionlaw.ends import ends_of
     from fiberbend.slender.beside import section_case
 
-    ends = ends_of(section_case(case), float(made.free[:, 0].max()))
+    greatest, zones = float(made.free[:, 0].max()), zone_cases(case)
+    ends = ends_of(section_case(zones[0]), greatest)
+    if len(zones) > 1:
+        ends = ends.to_tip(ends_of(section_case(zones[-1]), greatest))
     count, place = len(layout.lengths), layout.strains.index("curvature")
     beam = float(layout.lengths[: chamber.start].sum()) * np.linalg.inv(cap.stiffness)[place, place]
     root = cap.times(beam / ends.flexibility)
@@ -107,7 +149,7 @@ def cap_law(case: Case, section: Section, strains: tuple[str, ...]) -> Quartic:
     A line at (x, y) from the line of centroids stretches by λ + k_x y − k_y x; the materials side
     by side have next to the same Poisson's ratio and press on each other hardly. Far from the floor
     a cap is strained by a tenth, where rubber is softer if it is pulled and stiffer if it is
-    pressed: the energy is taken to the fourth order.
+    pressed: the energy is taken to the fourth order. Twisted, it is Saint-Venant's bar.
 
     Args:
         case: the case.
@@ -115,15 +157,20 @@ def cap_law(case: Case, section: Section, strains: tuple[str, ...]) -> Quartic:
         strains: of the rod.
     """
     levers = {"stretch": (0.0, 0.0, 1.0), "curvature": (0.0, 1.0, 0.0)}
-    levers["side_curvature"] = (-1.0, 0.0, 0.0)
+    levers |= {"side_curvature": (-1.0, 0.0, 0.0), "twist": (0.0, 0.0, 0.0)}
     by = np.array([levers[name] for name in strains])
-    slopes = {name: pulled(each) for name, each in convert.site(case).materials.items()}
+    materials = convert.site(case).materials
+    slopes = {name: pulled(each) for name, each in materials.items()}
     second, third, fourth = (
         weighed(section.fourth, {name: each[order] for name, each in slopes.items()})
         for order in range(3)
     )
+    stiffness = np.einsum("ai,bj,ij->ab", by, by, second[2, 2])
+    if "twist" in strains:
+        moduli = {name: each.initial_shear_modulus for name, each in materials.items()}
+        stiffness[strains.index("twist"), strains.index("twist")] = torsion(section.mesh, moduli)
     return Quartic(
-        np.einsum("ai,bj,ij->ab", by, by, second[2, 2]),
+        stiffness,
         np.einsum("ai,bj,ck,ijk->abc", by, by, by, third[2]),
         np.einsum("ai,bj,ck,dl,ijkl->abcd", by, by, by, by, fourth),
         AT_REST[[STRAINS.index(name) for name in strains]],

@@ -11,6 +11,7 @@ from fiberbend.case import convert
 from fiberbend.case.case import Case
 from geometry.bodies.quads import section_mesh
 from geometry.mesh.centroid import winding_weights
+from geometry.mesh.data import MeshData
 from geometry.mesh.reference import cell_rule, shape_functions
 from geometry.sections.size import MeshSize
 from geometry.sections.table import section_layout
@@ -29,12 +30,14 @@ class Section:
         hollow: between the caps, (3, 3) by region; mm⁴, mm³ and mm².
         filled: in the caps.
         fourth: the same of four factors, in the caps, (3, 3, 3, 3) by region.
+        mesh: of the section in the caps.
     """
 
     height: float
     hollow: Mapping[str, Floats]
     filled: Mapping[str, Floats]
     fourth: Mapping[str, Floats]
+    mesh: MeshData
 
 
 def section_of(case: Case) -> Section:
@@ -60,7 +63,7 @@ def section_of(case: Case) -> Section:
     fourth = {
         n: higher[mesh.cell_region == number].sum(axis=0) for n, number in mesh.regions.items()
     }
-    return Section(height, found[0], found[1], fourth)
+    return Section(height, found[0], found[1], fourth, mesh)
 
 
 def weighed(parts: Mapping[str, Floats], by: Mapping[str, float]) -> Floats:

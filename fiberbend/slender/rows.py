@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -62,7 +63,10 @@ class Rows:
         for name, strain in ((col.SIDE_ANGLE, "side_curvature"), (col.TWIST, "twist")):
             if strain in layout.strains:
                 row[name] = math.degrees(float(np.sum(slender.weights(strain) * strains)))
-        row[col.UNIFORM_ANGLE] = math.degrees(self._middle(strains))
+        if len(slender.zones) > 1:
+            row |= self._zones(strains)
+        else:
+            row[col.UNIFORM_ANGLE] = math.degrees(self._middle(strains))
         length = slender.site.actuator.length
         row[col.AXIS_STRETCH] = float(np.sum(slender.weights("stretch") * strains)) / length
         row[col.WORK] = 0.0
@@ -115,6 +119,20 @@ class Rows:
         near = np.abs(middle - length / 2) <= _MIDDLE * length
         weights = layout.weights("curvature")[near]
         return length * float(np.sum(weights * strains[near])) / float(layout.lengths[near].sum())
+
+    def _zones(self, strains: Floats) -> dict[str, float]:
+        """Angle, twist and stretch of every zone."""
+        slender, row = self._slender, dict[str, float]()
+        ends = slender.chamber.start + np.cumsum([0, *slender.zones])
+        for number, (start, stop) in enumerate(itertools.pairwise(ends.tolist())):
+            for name, strain in (("angle_deg", "curvature"), ("twist_deg", "twist")):
+                if strain in slender.rod.layout.strains:
+                    turn = slender.weights(strain)[start:stop] * strains[start:stop]
+                    row[col.zone(number, name)] = math.degrees(float(turn.sum()))
+            weights = slender.weights("stretch")[start:stop]
+            stretched = float(np.sum(weights * strains[start:stop]) / weights.sum())
+            row[col.zone(number, "stretch")] = stretched
+        return row
 
     def _stored(self, point: Point, inflated: float) -> float:
         """Energy of the sections, and of what acts without a load, N mm."""

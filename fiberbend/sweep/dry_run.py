@@ -11,6 +11,7 @@ from fiberbend.models.costs.price import machine
 from fiberbend.plan.estimate import cold, drawing_seconds, steps_of, steps_of_rod
 from fiberbend.plan.memory import gigabytes, needed_mb, room
 from fiberbend.schema.units import show
+from fiberbend.slender.kept import laws_to_make
 from fiberbend.sweep.fields import shown
 from fiberbend.sweep.points import Point, Sweep
 from fiberbend.sweep.store import MARK, Store
@@ -136,6 +137,10 @@ def _total(left: Sequence[Point], number: int, jobs: int) -> Iterator[str]:
     compiled = max((model.compile_s for model in kinds if model is not None), default=0.0)
     if compiled and cold():
         yield f"about {compiled:g} s more, as nothing is compiled yet"
+    number, law_s = laws_to_make(case for point in left for case in point.cases)
+    if number:
+        noun = "a law of a section is" if number == 1 else f"{number} laws of sections are"
+        yield f"{in_words(law_s / jobs)} more, as {noun} not kept yet"
     memory = math.fsum(sorted(map(_memory, left), reverse=True)[:jobs])
     free = room()
     beside = "" if free is None else f"; {gigabytes(free.mb)} are free {free.source}"

@@ -25,6 +25,7 @@ from tests.cases.bad_cases import BLOCKED, HOOPS, SMEARED, WEIGHT
 ROOT = Path(__file__).resolve().parents[2]
 BASELINE = ROOT / "cases" / "free_bending.yaml"
 SINGLE = "effects.1.winding.pattern=single-helix-left"
+TABLE = "effects.2={contact: {plane: {point: [0 mm, -30 mm, 0 mm], normal: [0, 1, 0]}}}"
 BULK = "materials.wall={name: elastosil-m4601, bulk: 200 MPa}"
 
 
@@ -55,7 +56,23 @@ def winding(case: Case) -> WindingEffect:
         (["effects.2.straight={}", "output={}"], "cell"),
         ([SMEARED, BLOCKED], "body"),
         ([BLOCKED], "body"),
-        ([SMEARED, *WEIGHT], "body"),
+        ([SMEARED, *WEIGHT], "rod"),
+        ([SMEARED, "effects.2={tip-load: {moment: [50 N mm, 0 N mm, 0 N mm]}}"], "rod"),
+        ([SMEARED, "effects.2={tip-load: {moment: [0 N mm, 5 N mm, 0 N mm]}}"], "body"),
+        ([SMEARED, TABLE], "body"),
+        ([SMEARED, *WEIGHT, "effects.2.gravity.direction=+x"], "body"),
+        ([SMEARED, "effects.2={tip-load: {moment: [60 N mm, 0 N mm, 0 N mm]}}"], "body"),
+        ([SMEARED, "effects.2={tip-load: {force: [0 N, -0.2 N, 0 N]}}"], "rod"),
+        ([SMEARED, "effects.2={tip-load: {force: [0 N, -0.2 N, 0.1 N]}}"], "body"),
+        ([SMEARED, "effects.2={tip-load: {force: [0 N, -0.1 N, 0 N], follows: true}}"], "body"),
+        ([SMEARED, *WEIGHT, "effects.3={tip-mass: {mass: 20 g}}"], "rod"),
+        ([SMEARED, *WEIGHT, "effects.3={tip-mass: {mass: 30 g}}"], "body"),
+        ([SMEARED, *WEIGHT, "effects.2.gravity.acceleration=20 m/s^2"], "body"),
+        ([SMEARED, *WEIGHT, "output.fields=true"], "body"),
+        ([SMEARED, *WEIGHT, "output.field_steps=all"], "body"),
+        ([SMEARED, *WEIGHT, "mesh.element=tetrahedron"], "body"),
+        (WEIGHT, "rod"),
+        (["effects.1.winding.as=calibrated", *WEIGHT], "body"),
         ([SMEARED, "mesh.element=tetrahedron"], "body"),
     ],
     ids=str,

@@ -115,7 +115,7 @@ def by_law(monkeypatch: pytest.MonkeyPatch) -> Callable[[Law], None]:
 
     def put(law: Law) -> None:
         made = SectionLaw(law, np.empty((0, 3)), "section", 0, 0.0, 0.0, ())
-        monkeypatch.setattr(actuator, "section_law", lambda _case, _strains: made)
+        monkeypatch.setattr(actuator, "section_law", lambda *_of: made)
         monkeypatch.setattr(actuator, "along", without_ends)
 
     return put

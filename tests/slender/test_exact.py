@@ -18,8 +18,7 @@ from fiberbend.case.case import Case
 from fiberbend.models.result import RunResult
 from fiberbend.reader.reader import parse_case
 from fiberbend.running.runner import run_case
-from fiberbend.slender.actuator import PLANE
-from fiberbend.slender.laws import cap_law, masses, pulled
+from fiberbend.slender.laws import PLANE, cap_law, masses, pulled
 from fiberbend.slender.moments import section_of
 from materials.material import Material
 from rod.law import Law

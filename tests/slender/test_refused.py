@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from fiberbend.case.case import Case
 from fiberbend.models.choice import MODELS, choose_model, objection
+from fiberbend.plan.doubts import doubts
 from fiberbend.plan.plan import make_plan
 from fiberbend.reader.reader import parse_case
 from fiberbend.schema.problems import CaseError
-from tests.slender.rods import QUIET, RUBBER, WOUND, case, spec
+from fiberbend.sectionlaw import store
+from fiberbend.sectionlaw.store import Store
+from fiberbend.slender.kept import laws_to_make
+from tests.slender.rods import QUIET, ROUND, RUBBER, WOUND, case, spec
 
 PRESSED = {"pressure": {"to": "20 kPa"}}
 
@@ -24,18 +29,12 @@ PRESSED = {"pressure": {"to": "20 kPa"}}
         ([{"pressure": {"volume": "9 ml"}}], {}, "effects.0.pressure.volume: model rod does not"),
         ([{"pressure": {"to": "-5 kPa"}}], {}, "of pressures above zero, and no vacuum"),
         ([{"gravity": {"direction": "-y"}}], {}, "expected effect pressure with one"),
-        ([{"gravity": {"direction": "+x"}}, PRESSED], {}, "bending in the plane x = 0: gravity"),
-        (
-            [PRESSED, {"tip-load": {"moment": ["0 N mm", "1 N mm", "0 N mm"]}}],
-            {},
-            "bending in the plane x = 0: a tip moment about y or z",
-        ),
         ([PRESSED], {"output": QUIET | {"fields": True}}, "output.fields: model rod does not"),
         ([PRESSED], {"accuracy": "1 %"}, "but model rod has no known error"),
         (
-            [PRESSED],
+            [{"pressure": {"angle": "20 deg"}}],
             {"zones": [{"length": "50 mm", "floor": RUBBER}, {"length": "50 mm"}]},
-            "zones: model rod does not support it",
+            "effects.0.pressure.angle: model rod does not support it",
         ),
     ],
 )
@@ -49,7 +48,7 @@ def test_what_it_cannot_have_is_refused_by_name(
 
 def test_a_winding_with_a_hand_is_refused() -> None:
     wound = WOUND | {"pattern": "single-helix-left"}
-    with pytest.raises(CaseError, match="is of stretch and curvature: half a turn about y"):
+    with pytest.raises(CaseError, match="that twists by itself is not known: half a turn about y"):
         parse_case(spec() | {"effects": [PRESSED, {"winding": wound}]})
 
 
@@ -81,10 +80,43 @@ def auto(*effects: dict[str, Any]) -> Case:
     return case(*effects, model="auto")
 
 
-def test_auto_does_not_take_it() -> None:
-    weighed = auto({"gravity": {"direction": "-y"}}, PRESSED)
-    assert choose_model(weighed)[0].name == "body"
-    found = objection(weighed, MODELS["rod"])
+def test_auto_takes_it_where_it_is_beside_a_body() -> None:
+    """Under a weight in its plane; not for fields, nor where nobody has measured it."""
+    weight = {"gravity": {"direction": "-y"}}
+    weighed = auto(weight, PRESSED)
+    assert choose_model(weighed)[0].name == "rod"
+    assert not weighed.output.fields
+    assert parse_case(weighed.resolved()) == weighed
+    assert not any("leaves out" in line for line in doubts(weighed))
+    fields = case(weight, PRESSED, model="auto", output=QUIET | {"fields": True})
+    assert choose_model(fields)[0].name == "body"
+    assert fields.output.fields
+    steps = case(weight, PRESSED, model="auto", output=QUIET | {"field_steps": "all"})
+    found = objection(steps, MODELS["rod"])
     assert found is not None
-    assert found[0] == "actuator.cap"
-    assert list(MODELS["rod"].refuses(weighed)) == []
+    assert found[0] == "output.field_steps"
+
+
+def test_the_plan_says_what_is_not_measured() -> None:
+    """A round tube under its weight is no case that has been put beside a body."""
+    actuator = ROUND["actuator"] | {"floor": "1 mm"}
+    tube = case({"gravity": {"direction": "-y"}}, PRESSED, model="auto", actuator=actuator)
+    assert choose_model(tube)[0].name == "body"
+    assert list(MODELS["rod"].refuses(tube)) == []
+    text = " ".join(make_plan(tube).lines())
+    assert "rod is not measured for actuator.section" in text
+
+
+def test_cases_that_share_a_section_share_its_law(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """A law is of section and pressure: a direction of the weight makes no other one."""
+    monkeypatch.setattr(store, "Store", lambda: Store(tmp_path / "tables"))
+    weighed = [case({"gravity": {"direction": d}}, PRESSED) for d in ("-y", "+y", "-z")]
+    one, seconds = laws_to_make(weighed)
+    assert one == 1
+    assert seconds > 0
+    further = case({"gravity": {"direction": "-y"}}, {"pressure": {"to": "30 kPa"}})
+    assert laws_to_make([*weighed, further])[0] == 2
+    body = case({"gravity": {"direction": "-y"}}, PRESSED, model="body")
+    assert laws_to_make([body]) == (0, 0)

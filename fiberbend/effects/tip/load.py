@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -106,6 +107,12 @@ class TipLoadEffect(Effect):
         if self.moment[0]:
             terms.append(TipMoment(self.moment[0]))
         return Built(tuple(terms), (ramp,))
+
+    def of_measured(self) -> float:
+        """Of 0.2 N and 50 N mm that keep their directions."""
+        if self.follows:
+            return math.inf
+        return math.hypot(*self.force) / 0.2 + math.hypot(*self.moment) / 50.0
 
     def on_rod(self, site: RodSite) -> OnRod:
         """Force and moment at the centroid of the tip's outer face."""

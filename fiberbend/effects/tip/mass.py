@@ -62,6 +62,10 @@ class TipMassEffect(Effect):
         x, y, z = (self.mass * acceleration for acceleration in site.weight)
         return Built((TipWeight((x, y, z)),))
 
+    def of_measured(self) -> float:
+        """Of 20 g."""
+        return self.mass / 20e-6
+
     def on_rod(self, site: RodSite) -> OnRod:
         """A point at the centroid of the tip's outer face; heavy as gravity is on."""
         import numpy as np

@@ -103,7 +103,7 @@ class _RodRun:
         case, progress = self.case, self.progress
         known = doubts(case)
         progress.phase("law")
-        rod = slender(case)
+        rod = slender(case, progress.message)
         progress.phase("solve")
         course = self._course(rod)
         maker = Rows(rod, course.tells)
@@ -264,7 +264,8 @@ class _RodRun:
     def _section(self, rod: Slender) -> Curve | None:
         """P(θ) of the section by itself, where that is what the law of the rod was made of."""
         found, length = rod.section, self.case.actuator.length
-        if found.model != "section" or len(found.free) < 2:
+        bends = self.case.zones is None and rod.rod.layout.plane
+        if not bends or found.model != "section" or len(found.free) < 2:
             return None
         pressures = np.concatenate([[0.0], found.free[:, 0]])
         angles = np.concatenate([[0.0], found.free[:, 2] * length])

@@ -27,7 +27,7 @@ class Solid:
 
     def __init__(self, case: Case, slender: Slender) -> None:
         self._slender = slender
-        plain = body_at_rest(case)
+        plain = body_at_rest(case, half=slender.rod.layout.plane)
         title = f"{case.title}: rod, its sections drawn as at rest"
         self.model_mesh: ModelMesh = dataclasses.replace(plain, title=title)
         nodes, root = plain.mesh.nodes, slender.rod.layout.place

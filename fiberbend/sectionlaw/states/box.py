@@ -21,6 +21,10 @@ PRESSURE_MARGIN = 0.05
 SOFT = 0.5
 """Bending stiffness over that at rest below which a section without pressure is left alone: it is
 about to buckle, and a rod with it."""
+FURTHEST = (0.3, 0.1)
+"""Greatest strain by bending or twist on the outside that loads are taken to make, whatever they
+are: of a table of one strain beside the stretch, and of two, which has to be made at more states.
+"""
 _STEPS = 8
 """From rest to the end of a walk."""
 _ACROSS, _UP = (0.0, 0.25, 0.5, 0.75, 1.0), (0.0, 0.1, 0.4, 1.0)
@@ -129,7 +133,8 @@ def _end(reach: Reach, held: Held, number: int, sign: float, part: float, free: 
     stiff = _own(rest, number)
     least = max(MARGIN * float(np.abs(free).max()), BENT / reach.height)
     load = (1 + MARGIN) * reach.moment
-    step = max(least, load / stiff) / _STEPS
+    most = max(least, FURTHEST[min(held.rest.at.size - 3, 1)] / reach.height)
+    step = min(max(least, load / stiff), most) / _STEPS
     state, reached = rest, 0.0
     for _ in range(4 * _STEPS):
         goal = state.at[1:].copy()
@@ -138,7 +143,8 @@ def _end(reach: Reach, held: Held, number: int, sign: float, part: float, free: 
         if new is None or _own(new, number) < SOFT * stiff:
             break
         state, reached = new, abs(float(new.at[number]))
-        if reached >= least * (1 - 1e-9) and abs(float(new.slopes[number])) >= load:
+        far = reached >= least * (1 - 1e-9)
+        if far and (abs(float(new.slopes[number])) >= load or reached >= most * (1 - 1e-9)):
             break
     if not reached:
         raise NoStateError(words(np.array([1.0, *goal])))
