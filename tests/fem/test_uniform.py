@@ -65,7 +65,7 @@ ALL = [
     pytest.param(name, marks=pytest.mark.long if name in ("twisted", "sideways") else ())
     for name in FREEDOMS
 ]
-"""A third of their time compiles kernels; what is free has the terms of the two that are long."""
+"""Each has kernels of its own to compile; "free" has the scalars of the two that are long."""
 
 
 @functools.cache

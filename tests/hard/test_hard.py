@@ -12,7 +12,7 @@ from bench.hard_solve import Record, faults, solve
 
 
 def marks(hard: Hard, model: str) -> pytest.MarkDecorator | tuple[()]:
-    """A section is as fast as its reader, a cell takes two seconds."""
+    """Cells take longer than sections."""
     if model not in hard.fast:
         return pytest.mark.hard
     return () if model == "section" else pytest.mark.long
