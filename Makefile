@@ -15,7 +15,7 @@ export PRTE_MCA_rmaps_default_mapping_policy := :oversubscribe
 .DEFAULT_GOAL := help
 .PHONY: help setup tools demo sweep test browser notebook verify hard survive tables speed accuracy \
     calibration knowledge growth times validate peers robots check format docs pictures schema clean \
-    test-fast test-wheel test-debian13 test-image platforms paper
+    test-fast test-long test-wheel test-debian13 test-image platforms paper
 
 help: ## list the commands
 	@sed -n 's/^\([a-z0-9-]*\):[^#]*## \(.*\)/  make \1	\2/p' $(MAKEFILE_LIST) | expand -t 20
@@ -33,11 +33,14 @@ SWEEP ?= cases/sweeps/radius_length_wall.yaml
 sweep: setup ## solve SWEEP=cases/sweeps/….yaml, resumable; make -j2 sweep or JOBS=2: in parallel
 	$(BIN)/fiberbend sweep $(SWEEP) -j $(or $(JOBS),$(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS))),1)
 
-test: tools ## run the tests, two at a time
+test: tools ## run the tests but the long ones, two at a time; ten minutes
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(RANKS) --dist worksteal
 
+test-long: tools ## the tests marked long: kills, examples, whole pages, wide designs
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(RANKS) --dist worksteal -m 'long and not verify and not hard'
+
 test-fast: setup ## the tests of tests/fast.txt: section, cell, bodies, two ranks, bad input, resume
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(RANKS) --dist worksteal $$(< tests/fast.txt)
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n $(RANKS) --dist worksteal -m 'not verify and not hard' $$(< tests/fast.txt)
 
 test-wheel: ## test-fast with dolfinx as wheels from PyPI, in build/wheel
 	bench/stacks/on.sh wheel test-fast
@@ -51,7 +54,7 @@ test-image: ## follow Dockerfile without Docker in a Debian 13, and run what it 
 browser: tools ## open reports in headless Chromium and use them; part of make test
 	$(BIN)/python -m pytest tests/report/test_browser.py
 
-notebook: tools ## run the notebook in examples/; part of make test
+notebook: tools ## run the notebook in examples/; part of make test-long
 	$(BIN)/jupyter-execute examples/first_actuator.ipynb
 
 verify: setup ## run the slow convergence ladders against exact solutions

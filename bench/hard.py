@@ -104,7 +104,8 @@ HEAD = """\
 # Hard cases
 
 Made by `make hard` (`bench/hard.py`) from the table of cases in `bench/hard_cases.py`; each runs in
-a process of its own, at most {limit} s. What is fast is part of `make test`. The body is
+a process of its own, at most {limit} s. Fast sections are part of `make test`, fast
+cells of `make test-long`. The body is
 80 mm long by default, so that 180° bend it as much as 360° the paper's
 actuator; bodies are coarse (elements of 8 mm) with their winding spread over its surface.
 

@@ -179,6 +179,7 @@ print(json.dumps({"resident": resident, "caught": caught}))
 """
 
 
+@pytest.mark.long
 def test_runs_take_no_more_memory_and_no_signals() -> None:
     command = [sys.executable, "-c", SIXTY, json.dumps(case())]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)

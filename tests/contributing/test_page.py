@@ -53,6 +53,17 @@ def test_every_command_is_said() -> None:
     assert said == set(targets)
 
 
+def test_what_make_test_leaves_out_is_run_by_ci() -> None:
+    """Tests that are long; what everybody needs at once is none of them."""
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert "not long" in settings["tool"]["pytest"]["ini_options"]["addopts"]
+    assert "-m 'long and" in (ROOT / "Makefile").read_text(encoding="utf-8")
+    steps = (ROOT / ".ci" / "run").read_text(encoding="utf-8").splitlines()
+    assert steps.index("step test-long") == steps.index("step test") + 1
+    for name in ("test_regression", "test_run", "test_restart"):
+        assert "mark.long" not in (ROOT / "tests" / "run" / f"{name}.py").read_text("utf-8")
+
+
 def test_every_recipe_is_tested() -> None:
     tests = (Path(__file__).parent / "test_recipes.py").read_text(encoding="utf-8")
     titles = re.findall(r"^### (.+)$", TEXT, re.MULTILINE)

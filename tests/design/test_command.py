@@ -37,6 +37,7 @@ def made(folder: Path) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.long
 def test_ninety_degrees_with_the_least_work(tmp_path: Path) -> None:
     out = tmp_path / "out"
     file = changed(tmp_path, "bend_at_pressure")
@@ -58,6 +59,7 @@ def test_ninety_degrees_with_the_least_work(tmp_path: Path) -> None:
     assert (out / "design_angle.png").exists()
 
 
+@pytest.mark.long
 def test_three_newtons_in_an_envelope(tmp_path: Path) -> None:
     out = tmp_path / "out"
     file = changed(tmp_path, "blocked_force")
@@ -73,6 +75,7 @@ def test_three_newtons_in_an_envelope(tmp_path: Path) -> None:
     assert case.straight
 
 
+@pytest.mark.long
 def test_what_cannot_be_met_names_its_limit(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -90,6 +93,7 @@ def test_what_cannot_be_met_names_its_limit(
     assert found["by"]["outer width"]["value"] <= 20.01
 
 
+@pytest.mark.long
 def test_tables_and_the_trade_off(tmp_path: Path) -> None:
     out = tmp_path / "out"
     parts = {"search": {"starts": 3, "descents": 1, "front": 4}, "confirm": "none"}
@@ -157,6 +161,7 @@ def test_ctrl_c_leaves_what_was_found(tmp_path: Path, monkeypatch: pytest.Monkey
     assert (out / "tries.csv").exists()
 
 
+@pytest.mark.long
 def test_a_trade_off_tells_all_that_its_confirmation_took(tmp_path: Path) -> None:
     out = tmp_path / "out"
     parts = {"search": {"starts": 2, "descents": 1, "front": 3}, "confirm": "cell"}

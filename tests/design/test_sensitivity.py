@@ -34,6 +34,7 @@ def confirmed(made: Design) -> Confirmed:
     return confirmer.confirm(Confirmed(found, tuple(none(made))))
 
 
+@pytest.mark.long
 def test_the_pitch_acts_as_in_the_cell(tmp_path: Path) -> None:
     targets = [{"strain": {"at": "60 kPa", "most": "90 %"}}]
     varied = {"actuator.wall": ["1.5 mm"]}
@@ -54,6 +55,7 @@ def test_the_pitch_acts_as_in_the_cell(tmp_path: Path) -> None:
     assert told > 0
 
 
+@pytest.mark.long
 def test_a_goal_whose_least_the_cell_has_elsewhere_is_doubted(tmp_path: Path) -> None:
     parts = {
         "vary": {"actuator.wall": {"from": "1 mm", "to": "3 mm"}},

@@ -76,6 +76,7 @@ def test_a_job_can_be_read(name: str, tmp_path: Path) -> None:
     assert not any(line.startswith("#SBATCH") for line in lines[count:])
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_the_job_of_a_sweep_goes_on_with_it(tmp_path: Path) -> None:
     slurm = Slurm(tmp_path, 3)
@@ -88,6 +89,7 @@ def test_the_job_of_a_sweep_goes_on_with_it(tmp_path: Path) -> None:
     assert "a sweep file" in slurm.run("bash sweep.sh", 1)
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_the_job_of_a_body_goes_on_with_it(tmp_path: Path) -> None:
     slurm = Slurm(tmp_path, 2)

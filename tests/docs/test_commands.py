@@ -14,7 +14,13 @@ from bench.doc_commands import ROOT, Reader, blocks, pages
 PAGES = {str(page.relative_to(ROOT)): page for page in pages()}
 RECIPES = "CONTRIBUTING.md"
 """Its blocks are recipes that tests/contributing applies."""
-WITH_BLOCKS = [name for name, page in PAGES.items() if name != RECIPES and any(blocks(page))]
+QUICK = ("README.md", "docs/when_it_fails.md")
+"""The pages that `make test` follows; `make test-long` follows the others."""
+WITH_BLOCKS = [
+    pytest.param(name, marks=() if name in QUICK else pytest.mark.long)
+    for name, page in PAGES.items()
+    if name != RECIPES and any(blocks(page))
+]
 
 
 @pytest.mark.parametrize("name", WITH_BLOCKS)

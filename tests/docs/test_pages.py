@@ -65,6 +65,7 @@ def test_the_notebook_has_no_outputs() -> None:
         assert cell.get("execution_count") is None
 
 
+@pytest.mark.long
 def test_the_site_builds_with_the_notebook_run_and_without_a_warning(tmp_path: Path) -> None:
     pytest.importorskip("sphinx", reason="make tools installs it")
     built = subprocess.run(

@@ -135,6 +135,7 @@ def test_states_near_a_crossing_are_none_to_go_on_from() -> None:
     assert not column.march.position.entering
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_two_ranks_take_the_same_branch(mpirun: MpiRun) -> None:
     run = mpirun(2, ["-m", "tests.fem.column"])

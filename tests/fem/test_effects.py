@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+import itertools
+from collections.abc import Callable, Iterable
 
 import numpy as np
 import pytest
@@ -67,11 +68,24 @@ IN_PLACE = {"gravity", "plane", "bar"}
 """What acts on the body depends on where it is."""
 AMPLITUDE = 0.03
 """Of the random displacements in mm: strains of some 5 %."""
+LONG = pytest.mark.long
 STENCIL = ((1, 2 / 3), (2, -1 / 12))
 """Central differences of order 4."""
 
-cases = pytest.mark.parametrize("name", EFFECTS)
-cells = pytest.mark.parametrize("cell", CELLS)
+
+def both(names: Iterable[str]) -> pytest.MarkDecorator:
+    """Effects in both elements.
+
+    A law is the same function in both; compiling its kernels takes seconds in each.
+    """
+    pairs = itertools.product(names, CELLS)
+    return pytest.mark.parametrize(
+        ("name", "cell"),
+        [
+            pytest.param(name, cell, marks=LONG if name in LAWS and cell == "tetrahedron" else ())
+            for name, cell in pairs
+        ],
+    )
 
 
 @functools.cache
@@ -108,8 +122,7 @@ def _times_tangent(scene: Scene, w: Floats, v: Floats) -> Floats:
     return times_tangent(scene, v)
 
 
-@cells
-@cases
+@both(EFFECTS)
 def test_residual_is_the_derivative_of_the_potential(name: str, cell: str) -> None:
     # along R itself plus noise, so that the derivative is not small by chance; a step of 1e-4 mm
     # leaves 1e-9 of truncation and of round-off
@@ -122,8 +135,7 @@ def test_residual_is_the_derivative_of_the_potential(name: str, cell: str) -> No
     assert np.abs(r).max() > 0
 
 
-@cells
-@cases
+@both(EFFECTS)
 def test_tangent_is_the_derivative_of_the_residual(name: str, cell: str) -> None:
     # K is stored as one triangle, so an unsymmetric K would fail here as well
     scene = _scene(name, cell)
@@ -135,8 +147,7 @@ def test_tangent_is_the_derivative_of_the_residual(name: str, cell: str) -> None
     assert (name in LINEAR) == (not np.abs(product).max() > 0)
 
 
-@cells
-@cases
+@both(EFFECTS)
 def test_second_derivative_is_symmetric(name: str, cell: str) -> None:
     # of the residual, without K: a load without a potential would have no symmetric tangent
     scene = _scene(name, cell)
@@ -148,8 +159,7 @@ def test_second_derivative_is_symmetric(name: str, cell: str) -> None:
     assert float(b @ along_a) == pytest.approx(float(a @ along_b), abs=1e-7 * max(scale, 1e-10))
 
 
-@cells
-@pytest.mark.parametrize("name", [name for name in EFFECTS if name not in IN_PLACE])
+@both(name for name in EFFECTS if name not in IN_PLACE)
 def test_rigid_motion_changes_nothing(name: str, cell: str) -> None:
     # Π is objective, and forces turn with the body
     scene = _scene(name, cell)
@@ -253,6 +263,7 @@ def _homogeneous(name: str, parameters: dict[str, float], stretch: Floats) -> tu
     return _potential(scene, w), _residual(scene, w)
 
 
+@LONG
 @pytest.mark.parametrize("stretch", [(1.0, 1.0, 1.0), (0.8, 0.8, 1.5625), (1.4, 0.9, 0.7)])
 def test_ogden_is_the_classical_laws_to_round_off(stretch: tuple[float, float, float]) -> None:
     # the spectral path against the path of the invariants, α = 2 and (2, −2)
@@ -281,7 +292,9 @@ def test_no_forces_beyond_the_limiting_stretch() -> None:
     assert np.isfinite(forces).all()
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name == "yeoh" else LONG) for name in LAWS]
+)
 def test_a_law_acts_in_its_own_regions_alone(name: str) -> None:
     # and changes nothing in those of another law, however far these are stretched
     domain, other = stub("hexahedron"), law("neo-hooke", ["floor"])

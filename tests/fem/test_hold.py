@@ -56,7 +56,9 @@ def _whole(targets: dict[str, float]) -> Scene:
     return Scene(where, [*effects, Hold(targets)], kind)
 
 
-@pytest.mark.parametrize("model", ["section", "cell", "whole section"])
+@pytest.mark.parametrize(
+    "model", ["section", "cell", pytest.param("whole section", marks=pytest.mark.long)]
+)
 def test_bordered_tangent_is_the_derivative_of_the_equations(model: str) -> None:
     whole = Bordered(_whole(ALL | {SIDE_BEND: 0.2}) if "whole" in model else _scene(model, ALL))
     scene, owned = whole.scene, whole.scene.body.owned
@@ -132,7 +134,7 @@ def _solved(scene: Scene, share: float, pressure: float, steps: int = 5) -> None
         assert outcome.converged, outcome.reason
 
 
-@pytest.mark.parametrize("model", ["section", "cell"])
+@pytest.mark.parametrize("model", ["section", pytest.param("cell", marks=pytest.mark.long)])
 def test_energy_is_the_work_of_what_holds_and_of_the_pressure(model: str) -> None:
     # dΠ_stored = N dl + M dθ + T dφ + P dV along a path on which all of them change
     scene = _scene(model, ALL)
@@ -195,6 +197,7 @@ def test_what_is_not_held_costs_nothing() -> None:
     assert (free.kernels, free.body.size) == (held.kernels, held.body.size)
 
 
+@pytest.mark.long
 def test_a_section_that_is_held_to_the_side_bends_as_far_either_way() -> None:
     names = (LENGTHENED, BEND, SIDE_BEND, TWISTED)
     found = []

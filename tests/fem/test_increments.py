@@ -115,6 +115,7 @@ def test_where_a_body_meets_itself_lies_between_two_states(monkeypatch: pytest.M
         assert value == pytest.approx(0.75 * old[name] + 0.25 * new[name], rel=1e-12), name
 
 
+@pytest.mark.long
 def test_the_way_beyond_a_limit_point_ends_by_that_point_alone() -> None:
     # not by another load's limit, or by where the load rises again
     volume = 1e-3

@@ -273,6 +273,7 @@ def test_an_unstable_tower_has_more_negative_pivots() -> None:
     assert counts[1] > counts[0]
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_two_ranks_equal_one(mpirun: MpiRun) -> None:
     run = mpirun(2, ["-m", "tests.fem.layered"])

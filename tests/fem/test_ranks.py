@@ -14,7 +14,10 @@ from tests.fem.spread import measure
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize(("cell", "ranks"), [("hexahedron", 2), ("tetrahedron", 3)])
+@pytest.mark.parametrize(
+    ("cell", "ranks"),
+    [("hexahedron", 2), pytest.param("tetrahedron", 3, marks=pytest.mark.long)],
+)
 def test_ranks_equal_one(cell: str, ranks: int, mpirun: MpiRun) -> None:
     # both converge to 1e-8 of the forces by themselves; what remains is the order of sums
     run = mpirun(ranks, ["-m", "tests.fem.spread", cell])

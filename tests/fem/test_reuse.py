@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from fem.kinematics.uniform import CURVATURE, STRETCH, TWIST
+from fem.kinematics.uniform import CURVATURE, SIDE, STRETCH, TWIST
 from fem.march.increments import next_size
 from fem.march.records import Ramp, Rules
 from fem.scene import Scene
@@ -83,7 +83,7 @@ def test_what_a_step_lacks_is_the_unpredicted_force_along_the_turned_fibers(
     name: str, model: str
 ) -> None:
     # Σ ℓ (EA e − N)(b₀ − b₁), b = ∂e/∂x, for N = 0 and by differences of the strains
-    problem = _Bordered(_scene(name, model, "twisted"))
+    problem = _Bordered(_scene(name, model, "free"))
     scene: Scene = problem.scene
     (fibers,) = scene.discrete.values()
     before, now = problem.start(1), problem.start(2)
@@ -91,7 +91,7 @@ def test_what_a_step_lacks_is_the_unpredicted_force_along_the_turned_fibers(
     v = rng.uniform(-1, 1, len(now))
     v[: scene.body.owned] *= scene.free[: scene.body.owned]
     v[scene.body.owned :] *= [
-        {CURVATURE: 1e-2, STRETCH: 0.1, TWIST: 1e-2}[n] for n in problem.names
+        {CURVATURE: 1e-2, STRETCH: 0.1, SIDE: 1e-2, TWIST: 1e-2}[n] for n in problem.names
     ]
 
     def strain(x: np.ndarray) -> np.ndarray:

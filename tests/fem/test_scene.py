@@ -69,7 +69,15 @@ def test_order_never_matters() -> None:
         assert same == energies
 
 
-@pytest.mark.parametrize("absent", ["gravity", "winding", "pressure", "incompressible", "clamp"])
+LONG = pytest.mark.long
+ABSENT = [
+    "gravity",
+    "incompressible",
+    *(pytest.param(n, marks=LONG) for n in ("winding", "pressure", "clamp")),
+]
+
+
+@pytest.mark.parametrize("absent", ABSENT)
 def test_absent_effects_leave_no_trace(absent: str) -> None:
     # filtered from a full list, against assembled from the others alone
     domain = stub(CELL)
@@ -106,6 +114,7 @@ def test_absent_effects_leave_no_trace(absent: str) -> None:
         assert not filtered.volumetric.any()
 
 
+@LONG
 def test_each_key_names_what_is_missing() -> None:
     # energies are reported per effect that exists, and for no other
     domain = stub(CELL)

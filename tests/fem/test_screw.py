@@ -46,12 +46,12 @@ def _bend(scene: Scene) -> Floats:
 @pytest.mark.parametrize(
     ("name", "model", "freedom"),
     [
-        ("solid", "section", "twisted"),
-        ("smeared", "section", "twisted"),
+        pytest.param("solid", "section", "twisted", marks=pytest.mark.long),
+        pytest.param("smeared", "section", "twisted", marks=pytest.mark.long),
         ("solid", "cell", "in its plane"),
         ("discrete", "cell", "in its plane"),
-        ("solid", "cell", "twisted"),
-        ("discrete", "cell", "twisted"),
+        pytest.param("solid", "cell", "twisted", marks=pytest.mark.long),
+        pytest.param("discrete", "cell", "twisted", marks=pytest.mark.long),
         ("smeared", "section", "free"),
         ("discrete", "cell", "free"),
     ],

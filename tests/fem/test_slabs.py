@@ -142,7 +142,7 @@ def test_rigid_motions_strain_nothing() -> None:
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize("ranks", [2, 3])
+@pytest.mark.parametrize("ranks", [2, pytest.param(3, marks=pytest.mark.long)])
 def test_ranks_find_the_same(mpirun: MpiRun, ranks: int) -> None:
     """Three ranks for two slabs: one has none."""
     run = mpirun(ranks, ["-m", "tests.fem.slabbed"])

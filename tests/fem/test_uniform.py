@@ -61,6 +61,11 @@ FREEDOMS = {
     "sideways": _Freedom(False, False, True),
     "free": _Freedom(False, True, True),
 }
+ALL = [
+    pytest.param(name, marks=pytest.mark.long if name in ("twisted", "sideways") else ())
+    for name in FREEDOMS
+]
+"""Each has kernels of its own to compile; "free" has the scalars of the two that are long."""
 
 
 @functools.cache
@@ -107,7 +112,7 @@ def _scene(name: str, model: str, freedom: str) -> Scene:
 
 
 CASES = [
-    (name, model, freedom)
+    pytest.param(name, model, *freedom.values, marks=freedom.marks)
     for name, models in {
         "solid": ("section", "cell"),
         "pressure": ("section", "cell"),
@@ -118,7 +123,7 @@ CASES = [
         "discrete": ("cell",),
     }.items()
     for model in models
-    for freedom in FREEDOMS
+    for freedom in ALL
 ]
 cases = pytest.mark.parametrize(("name", "model", "freedom"), CASES)
 
@@ -205,7 +210,7 @@ def test_tangent_is_the_derivative_of_the_residual(name: str, model: str, freedo
     assert product[tail] == pytest.approx(slope[tail], abs=1e-6 * np.abs(slope[tail]).max())
 
 
-@pytest.mark.parametrize("freedom", FREEDOMS)
+@pytest.mark.parametrize("freedom", ALL)
 @pytest.mark.parametrize("model", ["section", "cell"])
 def test_volume_of_an_undeformed_section_swept_along_an_arc(model: str, freedom: str) -> None:
     # u = 0: V = λ0 A + k ∫ y dA of the chamber, whatever twist and side curvature, for ∫ x dA = 0;
@@ -237,7 +242,7 @@ def test_volume_of_a_cylinder_that_twists_about_another_axis(model: str) -> None
     assert moved == pytest.approx(scene.conjugate("pressure"), rel=1e-12)
 
 
-@pytest.mark.parametrize("freedom", FREEDOMS)
+@pytest.mark.parametrize("freedom", ALL)
 @pytest.mark.parametrize("model", ["section", "cell", "pitch"])
 def test_angle_is_differentiated_in_fields_and_scalars(model: str, freedom: str) -> None:
     # what Newton borders with where an angle is given; a whole pitch has tied ends
@@ -294,7 +299,7 @@ def test_in_its_plane_the_angle_is_that_of_every_line() -> None:
     assert line.stretch == pytest.approx(0.97 + 0.04 * line.centre[1])
 
 
-@pytest.mark.parametrize("freedom", FREEDOMS)
+@pytest.mark.parametrize("freedom", ALL)
 @pytest.mark.parametrize("model", ["section", "cell"])
 def test_pins_take_every_rigid_motion_away_and_nothing_else(model: str, freedom: str) -> None:
     # as many motions of fields and scalars together have no stiffness at rest as there are pins

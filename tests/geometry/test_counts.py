@@ -60,8 +60,15 @@ FINGER = {"section": "hemicircle", "floor": 2.0, "sheath": 1.0, "length": 160.0,
 TETS = "tetrahedron"
 
 
-@pytest.mark.parametrize("axial", [8.0, 4.0, 2.0])
-@pytest.mark.parametrize(("radius", "wall"), [(8.0, 1.0), (8.0, 3.0), (12.0, 2.0), (6.0, 2.0)])
+@pytest.mark.parametrize("axial", [8.0, 4.0, pytest.param(2.0, marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    ("radius", "wall"),
+    [
+        (8.0, 1.0),
+        (12.0, 2.0),
+        *(pytest.param(*each, marks=pytest.mark.long) for each in [(8.0, 3.0), (6.0, 2.0)]),
+    ],
+)
 @pytest.mark.parametrize("half", [True, False])
 def test_about_as_many_tetrahedra_as_gmsh_makes(
     axial: float, radius: float, wall: float, half: bool

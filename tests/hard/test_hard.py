@@ -10,11 +10,19 @@ import pytest
 from bench.hard_cases import HARD, MODELS, Hard, find
 from bench.hard_solve import Record, faults, solve
 
+
+def marks(hard: Hard, model: str) -> pytest.MarkDecorator | tuple[()]:
+    """Cells take longer than sections."""
+    if model not in hard.fast:
+        return pytest.mark.hard
+    return () if model == "section" else pytest.mark.long
+
+
 ALL = [
     pytest.param(
         hard.name,
         model,
-        marks=() if model in hard.fast else pytest.mark.hard,
+        marks=marks(hard, model),
         id=f"{hard.name}-{model}",
     )
     for hard in HARD

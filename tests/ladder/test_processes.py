@@ -12,6 +12,8 @@ import sys
 import time
 from pathlib import Path
 
+import pytest
+
 from fiberbend.ladder.command import Options
 from fiberbend.ladder.record import FAILED, LATE, Record
 from fiberbend.ladder.rungs import ladder
@@ -35,6 +37,7 @@ def environment() -> dict[str, str]:
     return os.environ | {"PYTHONPATH": str(ROOT), "OPENBLAS_NUM_THREADS": "1"}
 
 
+@pytest.mark.long
 def test_a_real_ladder_end_to_end(tmp_path: Path) -> None:
     done = subprocess.run(
         command(tmp_path / "out"),

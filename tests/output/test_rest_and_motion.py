@@ -146,6 +146,7 @@ def test_pictures_with_obstacles(renderer: Renderer) -> None:
 # --- from the run to its pictures --------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_a_run_marks_the_states_beyond_its_touch(tmp_path: Path) -> None:
     spread = WINDING["winding"] | {"as": "smeared"}
     bent = case(

@@ -31,6 +31,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path / "out"
 
 
+@pytest.mark.long
 def test_a_sweep_leaves_a_page(folder: Path) -> None:
     found = Page((folder / REPORT).read_text(encoding="utf-8"))
     assert {"points", "maps", "trends", "files", "cite"} <= set(found.ids)

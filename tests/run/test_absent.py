@@ -84,6 +84,7 @@ def test_order_of_the_case_does_not_matter(mesh: MeshData) -> None:
     assert one.keys == other.keys
 
 
+@pytest.mark.long
 def test_an_absent_effect_is_not_even_asked() -> None:
     """Calls from assembly to the last step are those of a program that never had the effects."""
     case, *settings = absent.CASES["section"]
@@ -105,6 +106,7 @@ def test_an_absent_effect_is_not_even_asked() -> None:
         absent.counted(case, [*output, f"effects=[{listed}, {{straight: {{}}}}]"], others)
 
 
+@pytest.mark.long
 def test_what_others_compile_is_not_counted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -169,6 +169,7 @@ def test_a_body_without_a_winding_is_bent_by_an_angle() -> None:
     assert found.last("pressure_kPa") == pytest.approx(beside.last("pressure_kPa"), rel=0.15)
 
 
+@pytest.mark.long
 def test_a_body_is_bent_backward_by_vacuum() -> None:
     winding = {"winding": small()["effects"][1]["winding"] | {"as": "smeared"}}
     for name, goal in (("angle", "-3 deg"), ("to", "-20 kPa")):

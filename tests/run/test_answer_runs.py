@@ -117,6 +117,7 @@ def test_a_section_answers_from_its_folder_as_on_the_screen(tmp_path: Path) -> N
     assert log[-1].endswith(f"  report in {tmp_path / 'run' / 'report.html'}")
 
 
+@pytest.mark.long
 def test_a_verbose_run_says_phases_counts_and_comparisons(tmp_path: Path) -> None:
     case = case_of("cell", output={"pictures": False, "fields": False})
     _, printed = ran(case, tmp_path / "run", verbose=True)
@@ -157,7 +158,8 @@ def test_a_closed_form_answers_too(tmp_path: Path) -> None:
 def test_a_resumed_run_goes_on_with_its_log(tmp_path: Path) -> None:
     spread = small()["effects"][1]["winding"] | {"as": "smeared"}
     effects = [{"pressure": {"to": "10 kPa"}}, {"winding": spread}]
-    case = parse_case(small(effects=effects, output={"pictures": False, "fields": False}))
+    output = {"pictures": False, "fields": False}
+    case = parse_case(small(mesh={"axial": "8 mm"}, effects=effects, output=output))
     folder = tmp_path / "run"
     run(case, folder)
     first = (folder / "run.log").read_text(encoding="utf-8")

@@ -135,6 +135,7 @@ def test_it_ends_with_the_process_that_waits_for_it(tmp_path: Path) -> None:
     assert gone(number)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(len(os.sched_getaffinity(0)) < 2, reason="one core: nothing runs beside")
 def test_pictures_are_the_same_by_one_process_or_two(tmp_path: Path) -> None:
     one, two = tmp_path / "one", tmp_path / "two"

@@ -45,6 +45,7 @@ def test_named_rubbers_know_their_tests(tmp_path: Path) -> None:
     assert not warned("elastosil-m4601", tmp_path)[1]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("ratio", [0.45, 0.5])
 def test_an_actuator_of_youngs_modulus_is_one_of_the_moduli_that_follow(
     ratio: float, tmp_path: Path

@@ -79,6 +79,7 @@ def test_the_line_names_pressure_and_branch() -> None:
     assert "the run goes on along it" in line
 
 
+@pytest.mark.long
 def test_a_step_over_a_limit_point_is_taken_back() -> None:
     # before: 'converged' at 98 % of the volume, with an unstable mode, in one step
     coarse, fine = (tube(step, "-0.6 kPa", "12 mm") for step in (COARSE, "0.1 kPa"))
@@ -118,6 +119,7 @@ def crown(divisions: int, slack: bool = False) -> RunResult:
     )
 
 
+@pytest.mark.long
 def test_a_wrinkle_that_the_mesh_gives_is_named() -> None:
     # a thread has no stiffness against bending: pressed, it wrinkles from node to node
     result = crown(4)
@@ -151,6 +153,7 @@ def finger(**mesh: str) -> dict[str, Any]:
     }
 
 
+@pytest.mark.long
 def test_half_a_body_that_cannot_follow_is_solved_whole() -> None:
     result = run(finger())
     assert result.status == "converged"

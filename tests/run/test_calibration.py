@@ -119,6 +119,7 @@ def test_a_step_with_one_tangent_gives_a_neighbour() -> None:
     assert small.read(near).pressure - small.read(state).pressure == pytest.approx(moved, rel=1e-2)
 
 
+@pytest.mark.long
 def test_numbers_that_made_a_section_are_found_again(monkeypatch: pytest.MonkeyPatch) -> None:
     """States of a section in place of a cell's: what is left is round-off."""
     case, reach = parse_case(wound()), Reach.of(0)
@@ -138,6 +139,7 @@ def test_numbers_that_made_a_section_are_found_again(monkeypatch: pytest.MonkeyP
     assert found.pressure == pytest.approx(readings[-1].pressure)
 
 
+@pytest.mark.long
 def test_a_second_case_of_the_same_section_takes_what_is_kept(coarse: Store) -> None:
     told: list[str] = []
     first = calibrate(parse_case(wound()), coarse, told.append)
@@ -148,6 +150,7 @@ def test_a_second_case_of_the_same_section_takes_what_is_kept(coarse: Store) -> 
     assert told == ["winding: its cell is solved to calibrate it"]
 
 
+@pytest.mark.long
 def test_what_is_damaged_is_made_anew(coarse: Store, tmp_path: Path) -> None:
     case = parse_case(wound())
     first = calibrate(case, coarse)
@@ -160,6 +163,7 @@ def test_what_is_damaged_is_made_anew(coarse: Store, tmp_path: Path) -> None:
     assert calibrate(case, Store(tmp_path / FOLDER)).kept
 
 
+@pytest.mark.long
 def test_a_load_beyond_the_states_takes_the_next_class(coarse: Store, tmp_path: Path) -> None:
     case = wound()
     near = calibrate(parse_case(case), coarse)
@@ -197,6 +201,7 @@ def test_a_run_keeps_its_numbers_and_goes_on_with_them(coarse: Store, tmp_path: 
     assert not (tmp_path / FOLDER).exists()
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_two_ranks_have_the_numbers_of_one(mpirun: MpiRun, tmp_path: Path) -> None:
     case = wound("body", mesh={"axial": "8 mm"})

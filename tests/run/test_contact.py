@@ -49,6 +49,10 @@ def _case(contact: dict[str, Any], free: bool = False) -> dict[str, Any]:
     return case
 
 
+LONG = pytest.mark.long
+NAMES = ["held", "table", pytest.param("bar", marks=LONG)]
+
+
 @pytest.fixture(scope="module")
 def held() -> RunResult:
     """Between roof and post without gaps."""
@@ -77,7 +81,7 @@ def test_roof_and_post_push_straight(held: RunResult) -> None:
         assert row["contact_post_z_N"] == row["contact_roof_z_N"] == 0
 
 
-@pytest.mark.parametrize("name", OBSTACLES)
+@pytest.mark.parametrize("name", NAMES)
 def test_the_clamp_takes_what_obstacles_push(name: str, request: pytest.FixtureRequest) -> None:
     # a closed chamber has no resultant, whatever its pressure
     rows = [row for row in request.getfixturevalue(name).rows if "balance_force" in row]
@@ -90,7 +94,7 @@ def test_the_clamp_takes_what_obstacles_push(name: str, request: pytest.FixtureR
             assert row[column] == pytest.approx(-sum(by), abs=BALANCE * np.abs(by).max())
 
 
-@pytest.mark.parametrize("name", ["table", "bar"])
+@pytest.mark.parametrize("name", NAMES[1:])
 def test_an_obstacle_pushes_once_it_is_touched(name: str, request: pytest.FixtureRequest) -> None:
     # away from itself, and ever harder; before touch not at all
     result, (obstacle,) = request.getfixturevalue(name), OBSTACLES[name]
@@ -112,7 +116,7 @@ def test_an_obstacle_pushes_once_it_is_touched(name: str, request: pytest.Fixtur
         assert (along[~apart] > 0).all()
 
 
-@pytest.mark.parametrize("name", OBSTACLES)
+@pytest.mark.parametrize("name", NAMES)
 def test_nothing_goes_through(name: str, request: pytest.FixtureRequest) -> None:
     # a bar of 12 mm is thinner than the tip's way of 15 mm; what lies inside an obstacle is p/k:
     # some 0.1 MPa on an edge over 7.6 MPa/mm
@@ -121,6 +125,7 @@ def test_nothing_goes_through(name: str, request: pytest.FixtureRequest) -> None
             assert row[f"contact_{obstacle}_gap_mm"] > -0.02
 
 
+@LONG
 def test_obstacles_are_stiff_enough(held: RunResult) -> None:
     # an error of first order in 1/k: twice the stiffness takes half of it away (found: 0.06 %)
     stiffness = held.run["contact"]["stiffness_MPa_per_mm"]
@@ -129,7 +134,7 @@ def test_obstacles_are_stiff_enough(held: RunResult) -> None:
     assert stiff.last("tip_force_N") > held.last("tip_force_N")
 
 
-@pytest.mark.parametrize("name", ["table", "bar"])
+@pytest.mark.parametrize("name", NAMES[1:])
 def test_a_force_starts_from_zero_at_touch(name: str, request: pytest.FixtureRequest) -> None:
     # two lines through two rows each: where the gap closes, and where the force ends; found 0.05
     # and 0.01 kPa apart, what the lines' bend may make of 10 kPa between the rows is a few tenths
@@ -161,6 +166,7 @@ def test_without_obstacles_a_march_is_left_alone() -> None:
     assert built.march.hooks == ()
 
 
+@LONG
 @pytest.mark.parametrize("contact", [GAPS, TABLE], ids=["gaps", "table"])
 def test_touch_and_lift_off(contact: dict[str, Any]) -> None:
     """Loaded and unloaded in one march, without a failed step.
@@ -198,6 +204,7 @@ def test_touch_and_lift_off(contact: dict[str, Any]) -> None:
     assert np.abs(w).max() < 1e-8 * case.actuator.length
 
 
+@LONG
 @pytest.mark.mpi
 def test_two_ranks_equal_one(held: RunResult, mpirun: MpiRun, tmp_path: Path) -> None:
     # each converges to 1e-10 of the fiber forces, which are some hundred times the tip's

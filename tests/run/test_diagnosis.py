@@ -32,6 +32,7 @@ def collapsed() -> RunResult:
     return section({"to": "-100 kPa"})
 
 
+@pytest.mark.long
 def test_collapse_under_vacuum_is_named(collapsed: RunResult) -> None:
     # before: 'no convergence in 11 iterations'
     assert collapsed.status == "stopped"
@@ -41,6 +42,7 @@ def test_collapse_under_vacuum_is_named(collapsed: RunResult) -> None:
     assert collapsed.run["critical_points"][0]["pressure_kPa"] == pytest.approx(-17.0, abs=0.1)
 
 
+@pytest.mark.long
 def test_a_falling_branch_is_not_pursued_at_any_price(collapsed: RunResult) -> None:
     # the folded crown needs ever smaller steps; they only show why the load is not reached.
     # One of them is taken back because Newton strayed from the path
@@ -57,6 +59,7 @@ def test_a_body_that_passes_through_itself_is_warned_about() -> None:
     assert "passes through itself" in text
 
 
+@pytest.mark.long
 def test_a_body_that_bends_less_is_not_warned_about() -> None:
     assert section({"angle": "270 deg"}).run["warnings"] == []
 

@@ -9,6 +9,7 @@ import pytest
 from examples import blocked_tip, contact, free_bend, sweep, twist
 
 
+@pytest.mark.long
 def test_free_bend(tmp_path: Path) -> None:
     found = free_bend.main(tmp_path)
     for section, cell in zip(found["section"], found["cell"], strict=True):
@@ -18,12 +19,14 @@ def test_free_bend(tmp_path: Path) -> None:
     assert (tmp_path / "cell" / "pictures" / "bent.png").exists()
 
 
+@pytest.mark.long
 def test_blocked_tip(tmp_path: Path) -> None:
     body, section = blocked_tip.main(tmp_path)
     assert 0 < body < section
     assert (tmp_path / "body" / "pictures" / "tip_force.png").exists()
 
 
+@pytest.mark.long
 def test_contact(tmp_path: Path) -> None:
     touched, force = contact.main(tmp_path)
     assert 0 < touched < 60
@@ -31,6 +34,7 @@ def test_contact(tmp_path: Path) -> None:
     assert (tmp_path / "pictures" / "pressure_angle.png").exists()
 
 
+@pytest.mark.long
 def test_twist(tmp_path: Path) -> None:
     found = twist.main(tmp_path)
     (left, one), (right, other) = found["left"], found["right"]
@@ -40,6 +44,7 @@ def test_twist(tmp_path: Path) -> None:
     assert one > 1
 
 
+@pytest.mark.long
 def test_sweep(tmp_path: Path) -> None:
     found = sweep.main(tmp_path)
     assert len(found) == 9

@@ -107,6 +107,7 @@ def test_mirrored_hands_give_mirrored_answers(model: str, kind: str) -> None:
     assert abs(right.last("twist_deg")) > 1
 
 
+@pytest.mark.long
 def test_a_stiff_braid_on_a_fine_section_converges_to_its_round_off() -> None:
     """Force and moment of its threads round off by 1e-11 of themselves: no more can be asked."""
     tube = {"section": "circle", "radius": "5 mm", "length": "97.344 mm", "wall": "1.5 mm"}
@@ -128,6 +129,7 @@ def test_a_stiff_braid_on_a_fine_section_converges_to_its_round_off() -> None:
     assert (fine.status, fine.run["cutbacks"]) == ("converged", 0)
 
 
+@pytest.mark.long
 def test_starts_fill_a_slice_of_a_part_of_the_pitch() -> None:
     # n starts in p/n are those in 2p/n: twice half of them, one start further on
     def cell(starts: int, *phases: str) -> RunResult:
@@ -153,6 +155,7 @@ def test_where_a_slice_begins_does_not_matter() -> None:
     )
 
 
+@pytest.mark.long
 def test_discrete_hoops_come_to_the_smeared_ones() -> None:
     # the same thread in finer and finer hoops: what rubber bulges between them goes
     def end(spacing: float, kind: str) -> float:
@@ -171,6 +174,7 @@ def test_discrete_hoops_come_to_the_smeared_ones() -> None:
     assert off[2] < 0.3 * off[0]
 
 
+@pytest.mark.long
 def test_threads_along_the_floor_and_around_the_wall_alone() -> None:
     # a strip that does not stretch makes it bend further at one pressure; no hoops under the floor
     hoops = family(angle_from_axis="90 deg", spacing="2 mm", around="wall")
@@ -185,6 +189,7 @@ def test_threads_along_the_floor_and_around_the_wall_alone() -> None:
     assert abs(stretches[0]) < 0.3 * stretches[1]
 
 
+@pytest.mark.long
 def test_threads_along_the_axis_are_the_same_in_section_and_cell() -> None:
     places = [family(angle_from_axis="0 deg", at=["40 deg", "180 deg", "320 deg"], fiber=THREAD)]
     section, discrete, cell = (
@@ -201,6 +206,7 @@ def test_threads_along_the_axis_are_the_same_in_section_and_cell() -> None:
     assert each.last("angle_deg") == pytest.approx(spread.last("angle_deg"), rel=1e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["smeared", "discrete"])
 def test_half_a_body_is_the_whole_one(kind: str) -> None:
     families = [
@@ -226,6 +232,7 @@ def test_half_a_body_is_the_whole_one(kind: str) -> None:
     assert whole.last("twist_deg") == pytest.approx(0, abs=1e-9)
 
 
+@pytest.mark.long
 def test_the_whole_body_of_one_hand_twists_as_its_section() -> None:
     given = family(angle_from_axis="75 deg", hand="right", starts=3)
     section = solved([given], "section", "smeared")
@@ -234,6 +241,7 @@ def test_the_whole_body_of_one_hand_twists_as_its_section() -> None:
     assert section.last("twist_deg") < -5
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "column", "rest", "lost"),
     [

@@ -64,6 +64,7 @@ def test_tip_force() -> None:
     assert _tip(4, pushed=True).last("tip_force_N") == pytest.approx(2.8558, rel=1e-3)
 
 
+@pytest.mark.long
 def test_on_a_level_top_pushed_is_held() -> None:
     """No edge lifts off and nothing has to be seated: the obstacles' softness alone differs.
 
@@ -74,6 +75,7 @@ def test_on_a_level_top_pushed_is_held() -> None:
     assert pushed < held
 
 
+@pytest.mark.long
 def test_on_a_round_top_the_strip_makes_the_difference(
     narrow: tuple[RunResult, RunResult],
 ) -> None:
@@ -87,12 +89,14 @@ def test_on_a_round_top_the_strip_makes_the_difference(
     assert pushed < held
 
 
+@pytest.mark.long
 def test_a_wider_roof_holds_better(narrow: tuple[RunResult, RunResult]) -> None:
     """The sheath yields less under a wider strip, and the tip pushes harder, held or not."""
     for result, pushed in zip(narrow, (False, True), strict=True):
         assert _tip(4, pushed).last("tip_force_N") > result.last("tip_force_N")
 
 
+@pytest.mark.long
 def test_the_body_between_carries_the_moment_of_a_section() -> None:
     """Roof and post beyond half the length turn it as a section of its curvature is turned.
 

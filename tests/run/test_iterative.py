@@ -16,6 +16,7 @@ from fem.solver import slabs
 from fiberbend import run
 from fiberbend.answer.answer import answer
 from fiberbend.models.choice import choose_model
+from fiberbend.models.result import RunResult
 from fiberbend.plan.plan import make_plan, unused
 from fiberbend.reader.reader import as_case
 from fiberbend.results.reading import read_history
@@ -31,9 +32,9 @@ COLUMNS = ("pressure_kPa", "angle_deg", "chamber_mm3", "fiber_max_N", "stored_mJ
 
 
 @pytest.fixture(scope="module")
-def direct() -> list[dict[str, Any]]:
-    """Rows by the direct solver."""
-    return run(CASE).rows
+def direct() -> RunResult:
+    """By the direct solver."""
+    return run(CASE)
 
 
 def _same(rows: list[dict[str, Any]], known: list[dict[str, Any]]) -> None:
@@ -45,14 +46,14 @@ def _same(rows: list[dict[str, Any]], known: list[dict[str, Any]]) -> None:
             assert row[name] == pytest.approx(other[name], rel=1e-6), name
 
 
-def test_the_same_states(direct: list[dict[str, Any]]) -> None:
+def test_the_same_states(direct: RunResult) -> None:
     """Without a count of unstable modes, and with a warning of that."""
     result = run(ITERATIVE)
     assert result.status == "converged"
-    _same(result.rows, direct)
+    _same(result.rows, direct.rows)
     assert any("no stability is told" in line for line in result.run["warnings"])
     assert result.run["stability_checked"] is False
-    assert run(CASE).run["stability_checked"] is True
+    assert direct.run["stability_checked"] is True
     said = answer(as_case(ITERATIVE), result.rows, result.run)
     assert next(e.value for e in said.entries if e.label == "stability") == "not checked"
 
@@ -70,14 +71,13 @@ def test_what_is_not_known_to_be_stable_may_be_lost() -> None:
     assert suspect(state(**{MODES_MEASURE: 0}), Report(critical=[limit]))
 
 
+@pytest.mark.long
 @pytest.mark.mpi
-def test_two_ranks_find_the_same(
-    direct: list[dict[str, Any]], mpirun: MpiRun, tmp_path: Path
-) -> None:
+def test_two_ranks_find_the_same(direct: RunResult, mpirun: MpiRun, tmp_path: Path) -> None:
     case = write_case(tmp_path, ITERATIVE)
     done = mpirun(2, ["-m", "fiberbend", "run", case, "--out", tmp_path / "run"])
     assert done.returncode == 0, done.stderr
-    _same(read_history(tmp_path / "run" / "history.csv"), direct)
+    _same(read_history(tmp_path / "run" / "history.csv"), direct.rows)
 
 
 def test_no_convergence_is_one_line(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -117,6 +117,7 @@ def test_requested_angles_are_hit_on_the_falling_branch(balloon: RunResult) -> N
     assert other.run["warnings"][-1].startswith("the end is unstable")
 
 
+@pytest.mark.long
 def test_a_body_balloons_too(tmp_path: Path, balloon: RunResult) -> None:
     # caps hold the ends of a chamber that is two and a half diameters long: 5 % more pressure
     body = run(SOFT | {"model": "body"}, tmp_path / "run")

@@ -46,7 +46,9 @@ def _case(model: str, length: float, modulus: float) -> dict[str, Any]:
     return case | ({"mesh": {"axial": mm(given["axial"])}} if "axial" in given else {})
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize(
+    "model", [pytest.param(m, marks=() if m == "section" else pytest.mark.long) for m in MODELS]
+)
 def test_scale_and_stiffness_change_no_iteration(model: str) -> None:
     usual: Any = None
     for length, modulus in SCALES:
@@ -66,7 +68,7 @@ def test_scale_and_stiffness_change_no_iteration(model: str) -> None:
 
 
 @pytest.mark.parametrize("winding", [True, False])
-@pytest.mark.parametrize("model", ["section", "cell"])
+@pytest.mark.parametrize("model", ["section", pytest.param("cell", marks=pytest.mark.long)])
 def test_a_load_too_small_to_be_told_from_round_off_bends_in_proportion(
     model: str, winding: bool
 ) -> None:
@@ -101,7 +103,7 @@ def test_a_body_that_rests_on_its_post_touches_it_at_every_scale() -> None:
     assert counts[0] == counts[1] < 20
 
 
-@pytest.mark.parametrize("model", ["section", "cell"])
+@pytest.mark.parametrize("model", ["section", pytest.param("cell", marks=pytest.mark.long)])
 @pytest.mark.parametrize("pressure", ["-5 kPa", "5 kPa"])
 def test_the_first_tangent_knows_whether_threads_tighten_or_slacken(
     model: str, pressure: str

@@ -50,7 +50,9 @@ def _stop(ranks: int, number: int, tmp_path: Path) -> tuple[int, str, dict[str, 
     return code, text, run
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize(
+    "number", [signal.SIGTERM, pytest.param(signal.SIGHUP, marks=pytest.mark.long)]
+)
 def test_a_run_that_is_told_to_stop_keeps_its_steps(number: int, tmp_path: Path) -> None:
     """Also where a library of MPI would take the signal for itself."""
     code, text, run = _stop(1, number, tmp_path)
@@ -84,6 +86,7 @@ def test_told_to_stop_on_two_ranks(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert run["load_steps"] >= 1
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("phase", ["crosscheck", "output", "report"])
 def test_told_to_stop_after_the_last_load_step(phase: str, tmp_path: Path) -> None:
     """The curves are whole, and a run says so; the rest is made by --resume."""

@@ -59,7 +59,10 @@ def _same(result: RunResult, other: RunResult, rel: float) -> None:
         assert result.last(column) == pytest.approx(other.last(column), rel=rel), column
 
 
-@pytest.mark.parametrize("degrees", [90.0, 270.0, 135.0, 225.0, 45.0])
+@pytest.mark.parametrize(
+    "degrees",
+    [90.0, 225.0, *(pytest.param(each, marks=pytest.mark.long) for each in (270.0, 135.0, 45.0))],
+)
 def test_a_tube_bends_toward_its_strip_wherever_that_lies(degrees: float) -> None:
     # the mesh is its own image turned by 45°: half a section in its plane, whole ones to the side
     below, turned = _at(180.0), _at(degrees)
@@ -77,6 +80,7 @@ def test_a_tube_bends_toward_its_strip_wherever_that_lies(degrees: float) -> Non
     assert turned.last("tip_z_mm") == pytest.approx(below.last("tip_z_mm"), rel=1e-10)
 
 
+@pytest.mark.long
 def test_mirrored_it_bends_and_twists_the_other_way() -> None:
     right, left = _at(100.0, "single-helix-right"), _at(-100.0, "single-helix-left")
     for column in ("angle_deg", "tip_y_mm", "tip_z_mm"):
@@ -103,6 +107,7 @@ def test_a_cell_is_the_section_to_round_off() -> None:
     _same(cell, section, 1e-10)
 
 
+@pytest.mark.long
 def test_without_twist_too() -> None:
     section, cell = (_at(135.0, model=model) for model in ("section", "cell"))
     for column in ("angle_deg", "side_angle_deg", "tip_x_mm"):
@@ -110,6 +115,7 @@ def test_without_twist_too() -> None:
     _same(cell, section, 1e-10)
 
 
+@pytest.mark.long
 def test_two_strips_opposite_each_other_keep_it_straight() -> None:
     result = run(_case(_strip("right"), _strip("left")))
     for column in ("angle_deg", "side_angle_deg"):
@@ -117,6 +123,7 @@ def test_two_strips_opposite_each_other_keep_it_straight() -> None:
     assert result.last("axis_stretch") == pytest.approx(1, abs=0.01)
 
 
+@pytest.mark.long
 def test_kept_straight_it_pushes_to_its_side() -> None:
     below, right = (run(_case(_strip(at), {"straight": {}})) for at in ("bottom", "right"))
     moment = below.last("blocked_moment_Nmm")
@@ -144,6 +151,7 @@ def test_a_strip_over_the_whole_floor_is_a_thin_stiff_layer() -> None:
     assert one.last("angle_deg") == pytest.approx(other.last("angle_deg"), rel=0.04)
 
 
+@pytest.mark.long
 def test_a_body_bends_to_the_side_as_its_section() -> None:
     case = _case(_strip("right"), model="body")
     case["mesh"] = {"axial": "5 mm", "section": 1}
@@ -204,6 +212,7 @@ def test_plan_says_which_symmetry_is_left_and_what_took_the_others() -> None:
     )
 
 
+@pytest.mark.long
 def test_a_single_helix_as_a_whole_section_is_what_half_of_it_is(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -293,6 +302,7 @@ def _threaded(*at: str, model: str = "section", kind: str = "smeared") -> dict[s
     return case
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["smeared", "discrete"])
 def test_a_tube_bends_toward_a_thread_along_its_axis(kind: str) -> None:
     # spread, or every turn of the crossing families in a cell

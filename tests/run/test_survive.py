@@ -10,6 +10,7 @@ from bench import survive
 from bench.survive_kill import loop
 
 
+@pytest.mark.long
 def test_killed_at_random_moments_a_section_comes_to_the_same(tmp_path: Path) -> None:
     found = loop(tmp_path, "section", {1: 3}, seed=1)
     assert sum(len(one.moments) for one in found) == 3

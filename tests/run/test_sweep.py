@@ -250,6 +250,7 @@ def test_killed_altogether_it_resumes_with_what_was_not_finished(lab: Lab) -> No
     assert lab.log.read_text().splitlines()[-1].split()[2] == "resumed"
 
 
+@pytest.mark.long
 def test_a_killed_worker_is_replaced(lab: Lab) -> None:
     """Its point is solved by another one, and only that point is begun again."""
     hung = NAMES[2]
@@ -263,6 +264,7 @@ def test_a_killed_worker_is_replaced(lab: Lab) -> None:
     assert [row["status"] for row in lab.table()] == ["converged"] * 6
 
 
+@pytest.mark.long
 def test_a_point_that_kills_its_process_is_given_up(lab: Lab) -> None:
     """Here the first one, which the forms' compilation waits for."""
     code, out, _ = lab.run("-j", "2", **{NAMES[0]: "die"})
@@ -286,6 +288,7 @@ def test_failed_points_are_listed_and_the_others_done(lab: Lab) -> None:
     assert (code, lab.starts()) == (0, Counter(NAMES) + Counter([NAMES[1], NAMES[4]]))
 
 
+@pytest.mark.long
 def test_two_sweeps_at_once_share_the_points(lab: Lab) -> None:
     """What `make -j2` or two terminals do; both wait for the end and tell the whole result."""
     processes = [lab.start(all="slow"), lab.start("-j", "2", all="slow")]
@@ -296,6 +299,7 @@ def test_two_sweeps_at_once_share_the_points(lab: Lab) -> None:
     assert lab.starts() == Counter(NAMES)
 
 
+@pytest.mark.long
 def test_a_changed_case_runs_again_and_only_it(lab: Lab) -> None:
     lab.run()
     changed = SWEEP | {"vary": SWEEP["vary"] | {"actuator.wall": ["1.5 mm", "2.0 mm", "3 mm"]}}

@@ -28,6 +28,7 @@ def lab(tmp_path: Path) -> Lab:
     return Lab(tmp_path)
 
 
+@pytest.mark.long
 def test_a_part_is_solved_and_the_rest_is_not_run(lab: Lab) -> None:
     """The same folder, the same table; the part is all that counts for the exit code."""
     code, out, err = lab.run("--only", "wall=2mm")

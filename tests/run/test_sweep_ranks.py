@@ -92,6 +92,7 @@ class Cube:
         return out
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_27_points_with_one_rank_killed_give_the_table_of_the_pool(tmp_path: Path) -> None:
     """Table, trends and histories byte for byte, but for the times."""
@@ -140,6 +141,7 @@ def test_ranks_share_the_points_and_the_leader_solves_none(lab: Lab) -> None:
     assert (lab.starts(), (lab.out / "sweep.csv").read_bytes()) == (Counter(NAMES), before)
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_a_lost_rank_costs_its_points_which_the_pool_takes_up(lab: Lab) -> None:
     """And what the pool has left when it is killed, ranks take up."""
@@ -165,6 +167,7 @@ def test_a_lost_rank_costs_its_points_which_the_pool_takes_up(lab: Lab) -> None:
     assert lab.log.read_text().splitlines()[-1].split()[2] == "resumed"
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_mpirun_that_is_stopped_leaves_a_table_and_no_process(lab: Lab, number: int) -> None:
@@ -182,6 +185,7 @@ def test_mpirun_that_is_stopped_leaves_a_table_and_no_process(lab: Lab, number: 
     assert [row["status"] for row in lab.table()] == ["converged"] * 6
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_a_signal_for_one_rank_ends_all(lab: Lab) -> None:
     """They would wait for it; one line says which one it was."""
@@ -194,6 +198,7 @@ def test_a_signal_for_one_rank_ends_all(lab: Lab) -> None:
     gone(process)
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_points_that_fail_on_ranks_are_listed(lab: Lab) -> None:
     code, out, _ = lab.run(ranks="2", **{NAMES[1]: "fail", NAMES[4]: "raise"})
@@ -203,6 +208,7 @@ def test_points_that_fail_on_ranks_are_listed(lab: Lab) -> None:
     assert "Traceback" in (lab.out / "points" / NAMES[4] / "error.log").read_text()
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 @pytest.mark.parametrize("other", ["ranks", "processes"])
 def test_a_sweep_by_ranks_shares_the_points_with_another(lab: Lab, other: str) -> None:
@@ -216,6 +222,7 @@ def test_a_sweep_by_ranks_shares_the_points_with_another(lab: Lab, other: str) -
     assert lab.starts() == Counter(NAMES)
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_ranks_whose_solver_cannot_be_loaded_end_the_sweep(lab: Lab) -> None:
     (lab.site / "sitecustomize.py").write_text(
@@ -275,6 +282,7 @@ entry()
 """
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_a_folder_that_one_machine_does_not_see_is_refused(
     lab: Lab, mpirun: MpiRun, tmp_path: Path
@@ -317,6 +325,7 @@ sys.stdout.flush()
 """
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_a_script_sweeps_by_ranks_and_then_shares_a_body(mpirun: MpiRun, tmp_path: Path) -> None:
     """Every rank has the table; what a rank printed elsewhere meanwhile it prints again."""

@@ -196,6 +196,7 @@ def _winding(pitch: str) -> dict[str, str]:
     return {"pattern": "single-helix-left", "pitch": pitch, "fiber": "kevlar", "as": "smeared"}
 
 
+@pytest.mark.long
 def test_a_body_hits_its_angle_and_twists_as_its_section() -> None:
     body, section = _round("body"), _round("section")
     assert min(abs(row["angle_deg"] - 12) for row in body.rows) < 1e-6

@@ -100,6 +100,7 @@ def test_sections_of_equal_zones_are_the_section_without_zones(wound: dict[str, 
             assert other[key] == pytest.approx(row[key], rel=1e-9, abs=1e-9), key
 
 
+@pytest.mark.long
 def test_cells_of_equal_zones_are_the_cell_without_zones() -> None:
     given: dict[str, Any] = {"model": "cell", "mesh": {"section": 1, "axial": "1 mm"}}
     alike = solve(case(wound=TURNS, **given)).rows[-1]
@@ -109,6 +110,7 @@ def test_cells_of_equal_zones_are_the_cell_without_zones() -> None:
         assert other[key] == pytest.approx(alike[key], rel=1e-7), key
 
 
+@pytest.mark.long
 def test_the_order_reversed_is_the_path_reversed() -> None:
     """Seen from the tip, where it is cut off at the caps, the line is the same."""
     bent, straight = {"length": "18 mm", "floor": "elastosil-m4601"}, {"length": "30 mm"}
@@ -215,6 +217,7 @@ def test_an_angle_that_is_not_reached_is_said() -> None:
     assert "170° not reached" in result.reason
 
 
+@pytest.mark.long
 def test_a_zone_that_balloons_ends_the_run() -> None:
     soft = {"length": "18 mm", "winding": "none"}
     rubber = {"wall": {"law": "neo-hooke", "mu": "0.3 MPa"}, "floor": "combined-base"}
@@ -227,6 +230,7 @@ def test_a_zone_that_balloons_ends_the_run() -> None:
     assert 0 < pressures[-1] < 400
 
 
+@pytest.mark.long
 def test_states_are_those_of_the_whole_in_space(tmp_path: Path) -> None:
     zones: list[dict[str, Any]] = [
         {"length": "18 mm", "floor": "elastosil-m4601"},
@@ -258,6 +262,7 @@ def test_states_are_those_of_the_whole_in_space(tmp_path: Path) -> None:
 FINE = {"solver": {"tolerance": 1e-11}}
 
 
+@pytest.mark.long
 def test_a_body_of_equal_zones_is_the_body_without() -> None:
     """Turns begin anew at a border: the first zone is two pitches long, and planes agree."""
     turns = TURNS | {"pitch": "8 mm"}
@@ -297,6 +302,7 @@ def test_steps_of_an_s_are_as_short_as_is_asked() -> None:
     assert np.diff(first).max() < 1.25 * 3
 
 
+@pytest.mark.long
 def test_a_body_on_tetrahedra_has_zones_too() -> None:
     given: dict[str, Any] = {"model": "body", "mesh": {"axial": "6 mm", "element": "tetrahedron"}}
     zones: list[dict[str, Any]] = [{"length": "16 mm", "floor": "elastosil-m4601"}, {}]

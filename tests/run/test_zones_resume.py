@@ -131,7 +131,9 @@ def test_a_kill_in_the_first_zone_leaves_nothing(
     assert_bitwise(again, whole)
 
 
-@pytest.mark.parametrize("damage", [b"", b"no archive", None])
+@pytest.mark.parametrize(
+    "damage", [b"", *(pytest.param(each, marks=pytest.mark.long) for each in (b"no archive", None))]
+)
 def test_a_damaged_zone_is_solved_again(
     damage: bytes | None, whole: RunResult, tmp_path: Path, marched: list[int]
 ) -> None:
@@ -161,6 +163,7 @@ def test_a_sweep_goes_on_with_the_zones_of_its_point(
     assert run["newton_iterations"] == whole.run["newton_iterations"]
 
 
+@pytest.mark.long
 def test_killed_by_a_signal_and_gone_on_with(whole: RunResult, tmp_path: Path) -> None:
     """A process that ends by SIGKILL, and one that is told to stop, in the second zone."""
     case, out = tmp_path / "case.yaml", tmp_path / "run"

@@ -68,6 +68,7 @@ def test_it_is_calibrated_as_far_as_it_is_asked_for() -> None:
     assert 1e3 * far.free[0].pressure == pytest.approx(rows[-1]["pressure_kPa"], rel=1e-9)
 
 
+@pytest.mark.long
 def test_numbers_of_a_like_case_are_taken_over(made: list[Case]) -> None:
     """Within the error that is allowed, which is told; what is found is off by less."""
     case, wanted = checked(DATA), Wanted(radians(100), (), (0.05,))
@@ -88,6 +89,7 @@ def test_numbers_of_a_like_case_are_taken_over(made: list[Case]) -> None:
     assert trials.solve(beyond, wanted).calibration_error == 0
 
 
+@pytest.mark.long
 def test_unlike_cases_have_their_own(made: list[Case]) -> None:
     taken = Calibrations(percent=2.0)
     case = bent(checked(DATA), radians(50))
@@ -126,6 +128,7 @@ def test_what_needs_no_calibration_is_left_alone() -> None:
     assert not ready.error
 
 
+@pytest.mark.long
 def test_derivatives_have_the_change_of_the_calibration_in_them(made: list[Case]) -> None:
     """The pitch acts by the calibration alone, all but; the length not at all."""
     case, wanted, path = checked(DATA), Wanted(radians(90), (), (0.03,)), "effects.1.winding.pitch"
