@@ -40,8 +40,8 @@ class BlockedTipEffect(Effect):
 
     def on_rod(self, site: RodSite) -> OnRod:
         """Both strips keep their height, as far as the sheath under them lets them."""
-        from fiberbend.effects.slender.sheath import under_strip
-        from fiberbend.effects.slender.skins import skin
+        from fiberbend.outline.sheath import under_strip
+        from fiberbend.outline.skins import skin
         from rod.contact.touch import Touch
 
         assert site.body is not None, "strips are as stiff as what is under them"

@@ -249,8 +249,8 @@ class ContactEffect(Effect):
 
     def on_rod(self, site: RodSite) -> OnRod:
         """One penalty for each obstacle; under roof and post the sheath yields too."""
-        from fiberbend.effects.slender.sheath import under_strip
-        from fiberbend.effects.slender.skins import skin
+        from fiberbend.outline.sheath import under_strip
+        from fiberbend.outline.skins import skin
         from rod.contact.touch import Touch
 
         assert site.body is not None, "an obstacle is as stiff as what touches it"

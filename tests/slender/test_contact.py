@@ -13,9 +13,9 @@ from scipy.optimize import brentq
 from fiberbend import columns as col
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.effects.slender.sheath import layer_factor, under_strip
-from fiberbend.effects.slender.skins import skin
 from fiberbend.models.choice import MODELS
+from fiberbend.outline.sheath import layer_factor, under_strip
+from fiberbend.outline.skins import skin
 from fiberbend.running.runner import run_case
 from fiberbend.slender.actuator import slender
 from geometry.sections.size import Strips

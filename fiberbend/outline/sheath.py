@@ -10,10 +10,13 @@ f = (w/h)²/12, which is lubrication's.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Protocol
 
 import numpy as np
 
-from fiberbend.effects.records import Site
+from geometry.actuator import Actuator
+from materials.material import Material
 
 WIDTHS = (0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0)
 """w/h."""
@@ -22,6 +25,18 @@ FACTORS = {
     1: (2.300, 1.960, 1.973, 2.446, 3.152, 4.046, 5.117, 6.355, 9.350, 13.02, 17.36, 28.04),
 }
 """f by the number of sides to which the layer goes on."""
+
+
+class Sheathed(Protocol):
+    """An actuator and what it is of."""
+
+    @property
+    def actuator(self) -> Actuator:
+        """Its dimensions."""
+
+    @property
+    def materials(self) -> Mapping[str, Material]:
+        """Of its parts."""
 
 
 def layer_factor(width: float, sides: int) -> float:
@@ -43,7 +58,7 @@ def layer_factor(width: float, sides: int) -> float:
     return math.exp((1 - part) * found[place - 1] + part * found[place])
 
 
-def under_strip(site: Site, width: float, sides: int, obstacle: float) -> tuple[float, float]:
+def under_strip(site: Sheathed, width: float, sides: int, obstacle: float) -> tuple[float, float]:
     """Stiffness of obstacle and sheath one behind the other.
 
     Args:

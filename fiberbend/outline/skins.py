@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 
-from fiberbend.effects.records import RodSite
 from geometry.actuator import Actuator
 from geometry.sections.size import Strips
 from rod.contact.skin import Outline, Skin, face, ring, side, strip
 from rod.functions import Floats
+from rod.layout import Layout
 
 ALONG, AROUND = 1.0, 2.0
 """Greatest distances of points along the axis and around a section, mm: the first is what turns the
@@ -18,7 +20,19 @@ _FINE = 0.05
 _LEVEL = 1e-9
 
 
-def skin(site: RodSite, surfaces: tuple[str, ...], strips: Strips | None) -> Skin:
+class Sited(Protocol):
+    """An actuator and the pieces that it has as a rod."""
+
+    @property
+    def actuator(self) -> Actuator:
+        """Its dimensions."""
+
+    @property
+    def layout(self) -> Layout:
+        """Its pieces."""
+
+
+def skin(site: Sited, surfaces: tuple[str, ...], strips: Strips | None) -> Skin:
     """Points of named surfaces.
 
     A rod that stays in the plane of its root meets only what is prismatic across that plane: there
@@ -39,12 +53,12 @@ def skin(site: RodSite, surfaces: tuple[str, ...], strips: Strips | None) -> Ski
     return first.joined(*others)
 
 
-def _centred(site: RodSite, places: Floats) -> Floats:
+def _centred(site: Sited, places: Floats) -> Floats:
     """Places of a section from the rod's line."""
     return places - [0.0, float(site.layout.place[1])]
 
 
-def _seen(site: RodSite, outline: Outline) -> Outline:
+def _seen(site: Sited, outline: Outline) -> Outline:
     """By a rod that stays in its plane: points of one height are one."""
     outline = Outline(_centred(site, outline.places), outline.widths)
     if not site.layout.plane:
@@ -61,19 +75,19 @@ def _corners(actuator: Actuator, spacing: float) -> Floats:
     return np.array(actuator.outer_outline(spacing))
 
 
-def _outer(site: RodSite, strips: Strips | None) -> Skin:
+def _outer(site: Sited, strips: Strips | None) -> Skin:
     """The sides, caps and all."""
     outline = _seen(site, ring(_corners(site.actuator, AROUND), AROUND))
     return side(site.layout, outline, ALONG)
 
 
-def _tip(site: RodSite, strips: Strips | None) -> Skin:
+def _tip(site: Sited, strips: Strips | None) -> Skin:
     """The tip cap's outer face."""
     whole = ring(_corners(site.actuator, AROUND), AROUND)
     return face(site.layout, Outline(_centred(site, whole.places), whole.widths))
 
 
-def _roof(site: RodSite, strips: Strips | None) -> Skin:
+def _roof(site: Sited, strips: Strips | None) -> Skin:
     """The strip along the crown, over the chamber."""
     assert strips is not None, "a roof is a strip"
     actuator = site.actuator
@@ -81,7 +95,7 @@ def _roof(site: RodSite, strips: Strips | None) -> Skin:
     return side(site.layout, outline, ALONG, (actuator.cap, actuator.cap + actuator.length))
 
 
-def _crown(site: RodSite, strips: Strips | None) -> Skin:
+def _crown(site: Sited, strips: Strips | None) -> Skin:
     """The highest line, as wide as the roof."""
     assert strips is not None, "a roof is a strip"
     actuator = site.actuator
@@ -89,19 +103,19 @@ def _crown(site: RodSite, strips: Strips | None) -> Skin:
     return side(site.layout, outline, ALONG, (actuator.cap, actuator.cap + actuator.length))
 
 
-def _line(site: RodSite, height: float, half: float) -> Outline:
+def _line(site: Sited, height: float, half: float) -> Outline:
     places = np.array([[0.0, height]])
     return Outline(_centred(site, places), np.array([2 * half]))
 
 
-def _post(site: RodSite, strips: Strips | None) -> Skin:
+def _post(site: Sited, strips: Strips | None) -> Skin:
     """The strip at the end of the tip cap's underside; of a round body as wide as the roof."""
     assert strips is not None, "a post is a strip"
     outline = _seen(site, _strip(site.actuator, _sole_half(site.actuator, strips), top=False))
     return _at_end(site, outline, strips)
 
 
-def _sole(site: RodSite, strips: Strips | None) -> Skin:
+def _sole(site: Sited, strips: Strips | None) -> Skin:
     """The lowest line of the post's strip, as wide as that."""
     assert strips is not None, "a post is a strip"
     actuator = site.actuator
@@ -109,7 +123,7 @@ def _sole(site: RodSite, strips: Strips | None) -> Skin:
     return _at_end(site, outline, strips)
 
 
-def _at_end(site: RodSite, outline: Outline, strips: Strips) -> Skin:
+def _at_end(site: Sited, outline: Outline, strips: Strips) -> Skin:
     end = site.actuator.total_length
     return side(site.layout, outline, ALONG / 2, (end - strips.post_length, end))
 

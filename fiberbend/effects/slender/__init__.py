@@ -1,1 +1,0 @@
-"""What effects make of an actuator that is a rod."""
