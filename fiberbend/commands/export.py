@@ -144,8 +144,10 @@ def _densities(case: Case, given: tuple[str, ...]) -> dict[str, float]:
     Raises:
         CaseError: no such part, or no density.
     """
+    from fiberbend.export.hand import without_density
     from fiberbend.schema.units import parse
 
+    unknown = without_density(case)
     parts = [part for part, spec in dict(case.materials).items() if spec is not None]
     densities = {}
     for item in given:
@@ -157,6 +159,9 @@ def _densities(case: Case, given: tuple[str, ...]) -> dict[str, float]:
             densities[part] = parse(value, "density")
         except ValueError as error:
             raise CaseError([Problem("--density", f"{found(item)}, {error}")]) from None
+        if part not in unknown:
+            text = f"{found(item)}, the case knows the density of {part}, expected none beside it"
+            raise CaseError([Problem("--density", text)])
         if not densities[part] > 0:
             raise CaseError([Problem("--density", f"{found(item)}, expected more than zero")])
     return densities

@@ -73,7 +73,7 @@ def handed(case: Case, densities: Mapping[str, float]) -> Handed:
 
 
 def law_case(case: Case) -> tuple[Case, list[str]]:
-    """The section of a case under its pressure, and the names of the effects that are left out.
+    """The section of a case under its pressure, and the names of what is left out: effects, `time`.
 
     Raises:
         CaseError: no section stands for it.
@@ -100,7 +100,8 @@ def law_case(case: Case) -> tuple[Case, list[str]]:
     else:
         alone = section_case(case)
     there = {effect.name for effect in alone.effects}
-    return alone, [effect.name for effect in case.effects if effect.name not in there]
+    left_out = [effect.name for effect in case.effects if effect.name not in there]
+    return alone, left_out if case.time is None else [*left_out, "time"]
 
 
 def cap_stiffness(case: Case, moments: Section) -> Floats:

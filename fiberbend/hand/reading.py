@@ -25,6 +25,8 @@ from fiberbend.schema.validation import from_pydantic
 _MODEL = "rod"
 _NOT_ASKED = ("output", "compare", "accuracy")
 """Parts of a case that say what a run of it alone is to give."""
+_IDLE = (*_NOT_ASKED, "mesh", "solver")
+"""Parts of a case that say nothing of a finger: to change them for a hand is a mistake."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -148,11 +150,12 @@ def _finger(
     assert case is not None, "checked before"
     base = read_base(case, file.set | spec.set, source, path, settings)
     data = base.source.data
+    pressure = spec.pressure if spec.pressure is not None else file.pressure
+    wrong = list(_idle_changes(base, pressure))
     for part in _NOT_ASKED:
         data.pop(part, None)
     data["model"] = _MODEL
-    wrong = list(_own_effects(data, base))
-    pressure = spec.pressure if spec.pressure is not None else file.pressure
+    wrong += _own_effects(data, base)
     if pressure is not None and not _inflate(data, pressure):
         wrong.append(base.reported(Problem("effects", "no pressure, expected one: {to: …}")))
     if wrong:
@@ -183,6 +186,31 @@ def _own_effects(data: dict[str, Any], base: BaseCase) -> Iterator[Problem]:
         if GravityEffect.name in entry:
             text = "acts in the axes of the finger, expected gravity of the hand"
             yield base.reported(Problem(f"effects.{number}.{GravityEffect.name}", text))
+
+
+def _idle_changes(base: BaseCase, pressure: float | None) -> Iterator[Problem]:
+    """What is set for a hand and would change nothing, and a motion, which no hand has.
+
+    Args:
+        base: the case with its changes.
+        pressure: that takes the place of the case's, or None.
+    """
+    data = base.source.data
+    if "time" in data:
+        text = "no effect in a hand, which is at rest, expected a case without"
+        yield base.reported(Problem("time", text))
+    inflated = [
+        f"effects.{number}.{PressureEffect.name}"
+        for number, entry in _entries(data)
+        if PressureEffect.name in entry
+    ]
+    for path in dict.fromkeys(base.changed):
+        part = path.partition(".")[0]
+        if part in _IDLE or (part == "model" and data.get(part) != _MODEL):
+            yield base.reported(Problem(path, "no effect in a hand, expected no such change"))
+        elif pressure is not None and any(f"{path}.".startswith(f"{own}.") for own in inflated):
+            text = "no effect beside pressure of the hand, expected one of the two"
+            yield base.reported(Problem(path, text))
 
 
 def _inflate(data: dict[str, Any], pressure: float) -> bool:

@@ -107,8 +107,9 @@ class Rod(SlenderModel):
         return case.model_copy(update={"output": output})
 
     def unused(self, case: Case) -> dict[str, set[str]]:
-        """Mesh and solver, but for steps."""
-        steps = {"first_step", "max_step", "max_turn", "max_cutbacks"}
+        """Mesh and solver, but for steps of loads; in motion these are steps in time."""
+        loads = {"first_step", "max_step", "max_turn", "max_cutbacks"}
+        steps = loads if case.time is None else set()
         return {
             "mesh": case.mesh.model_fields_set,
             "solver": case.solver.model_fields_set - steps,

@@ -173,7 +173,9 @@ def steps_of(case: Case, model: MeshedModel) -> int | None:
 
 
 def steps_of_rod(case: Case, model: SlenderModel) -> int | None:
-    """Load steps of a rod, or None where the angle at its end cannot be predicted."""
+    """Steps of a rod, in time or of loads; None where the angle at its end cannot be predicted."""
+    if case.time is not None:
+        return math.ceil(case.time.duration / case.time.step * (1 - 1e-9))
     end = expected_angle(case)
     others = [effect.steps() for effect in case.effects]
     if end is None or None in others:
@@ -181,7 +183,11 @@ def steps_of_rod(case: Case, model: SlenderModel) -> int | None:
     steps = sum(count for count in others if count is not None)
     output, turn = case.output, case.solver.max_turn or model.turn
     goals = [abs(angle) for angle in output.at_angles if 0 < angle / end < 1]
-    return steps + count_steps(turn, turn, [*goals, abs(end)]) + len(output.at_pressures)
+    counted, least = count_steps(turn, turn, [*goals, abs(end)]), 0
+    load = case.inflation
+    if load is not None and load.to is not None and case.solver.max_step is not None:
+        least = math.ceil(abs(load.to) / case.solver.max_step)
+    return steps + max(least, counted + len(output.at_pressures))
 
 
 def count_steps(first: float, most: float, goals: list[float], growth: float = _GROWTH) -> int:

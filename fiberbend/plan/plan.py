@@ -20,6 +20,7 @@ from fiberbend.models.resolution import winding_remark
 from fiberbend.notebook import blocks
 from fiberbend.plan.doubts import doubts, errors
 from fiberbend.plan.memory import shortage
+from fiberbend.schema.units import show
 
 WIDTH = 100
 """Columns of a plan."""
@@ -158,6 +159,8 @@ def _rod(
     number = model.pieces + 2 * model.cap_pieces
     within = f"{model.pieces} between the caps, {model.cap_pieces} in each"
     each = f"at most {math.degrees(case.solver.max_turn or model.turn):.3g}° each"
+    if case.time is not None:
+        each = f"{show(case.time.step, 'time')} each, more where it touches or lifts off"
     seconds = None if steps is None else model.start_s + steps * model.step_s
     time = f"{1e3 * model.step_s:g} ms a step"
     if seconds is not None:

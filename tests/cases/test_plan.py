@@ -186,6 +186,13 @@ def test_plan_says_what_is_not_used_and_left_out() -> None:
     assert row(plan("model=body"), "not used") == ""
 
 
+def test_a_motion_has_steps_in_time() -> None:
+    moving = make_plan(read_case(ROOT / "cases" / "swing.yaml", ["solver.max_turn=5 deg"]))
+    assert row(moving, "steps").startswith("about 300, 5 ms each")
+    assert moving.steps == 300
+    assert row(moving, "not used") == "solver.max_turn"
+
+
 def test_plan_says_whether_the_winding_is_resolved() -> None:
     assert row(plan(), "winding").startswith("resolved (elements of 1.5 mm")
     assert row(plan("mesh.axial=4 mm"), "winding").startswith("NOT resolved")

@@ -119,6 +119,8 @@ def test_wrong_input_is_one_line(
     assert "one of wall, floor, sheath" in said
     said = refused(capsys, str(run), "--to", "json", "--density", "floor=heavy", *out)
     assert "--density" in said
+    said = refused(capsys, str(run), "--to", "json", "--density", "wall=1 g/cm^3", *out)
+    assert "knows the density of wall" in said
     (tmp_path / "file").write_text("", encoding="utf-8")
     said = refused(capsys, str(run), "--to", "json", "--out", str(tmp_path / "file" / "rod"))
     assert "is a file, expected a folder" in said
@@ -137,6 +139,7 @@ def test_what_acts_beside_the_pressure_is_left_out_and_told() -> None:
     assert [effect.name for effect in alone.effects] == ["pressure", "winding"]
     assert left_out == ["contact"]
     assert alone.model == "section"
+    assert law_case(parse_case(shipped("swing")))[1] == ["gravity", "time"]
     alone, left_out = law_case(parse_case(shipped("cell")))
     assert (alone.model, left_out) == ("cell", [])
     effects = [{"gravity": {"direction": "-y"}}]

@@ -185,3 +185,29 @@ def test_a_bar_between_two_fingers_is_the_same_on_both_sides(tmp_path: Path) -> 
     assert not list(out_of_plane(read))
     short = hand(tmp_path, fingers=opposite, objects={"cylinder": bar | {"length": "60 mm"}})
     assert not list(out_of_plane(short))
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("output.stop_at_angle", "30 deg"),
+        ("accuracy", "1 %"),
+        ("model", "body"),
+        ("mesh.element", "tetrahedron"),
+        ("solver.max_turn", "1 deg"),
+        ("effects.0.pressure.to", "20 kPa"),
+    ],
+)
+def test_changes_that_would_change_nothing_are_refused(
+    tmp_path: Path, path: str, value: str
+) -> None:
+    changes = content()["set"] | {path: value}
+    wrong = problems(tmp_path, set=changes, pressure="60 kPa")
+    assert [key.rpartition(": ")[2] for key in wrong] == [path]
+    assert all("no effect" in text for text in wrong.values())
+
+
+def test_a_finger_in_motion_is_refused(tmp_path: Path) -> None:
+    time = {"duration": "1 s", "pressure": {"ramp": {"to": "10 kPa", "over": "1 s"}}}
+    wrong = problems(tmp_path, set=content()["set"] | {"time": time})
+    assert any("at rest" in text for text in wrong.values())
