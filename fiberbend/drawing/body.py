@@ -198,7 +198,7 @@ class BodyPictures:
         return greatest_seen(self._skin, mesh.nodes[mesh.cells], values, FROM_THE_SIDE)
 
     def _strain_label(self) -> str:
-        return "maximum principal logarithmic strain" + self._surfaces.remark
+        return self.model_mesh.strain_named + self._surfaces.remark
 
 
 def draw_pictures(

@@ -29,7 +29,7 @@ class Rod(SlenderModel):
     offers = frozenset({CHAMBER, WOUND, THREAD, TURNS, TWIST, SIDE, LINE, ENDS, MOTION, ZONES})
     fills = ModelKind.fills | {MIDDLE, SOLVED, OBSTACLES, TIMED, OF_ZONES}
     ends = True
-    agreement = 0.5
+    agreement = 2.0
     start_s = 1.0
     pictures_s = (5.0, 1.0)
     turn = math.radians(10)

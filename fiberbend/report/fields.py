@@ -12,12 +12,9 @@ from fiberbend.states.recovery import SplitNodes, recover
 from fiberbend.states.snapshot import ModelMesh, Snapshot
 from geometry.mesh.data import Floats, Ints
 
-QUANTITIES = (
-    ("strain", "maximum principal logarithmic strain", 0),
-    ("stress", "von Mises stress (MPa)", 4),
-)
-"""Name, label, and powers of ten of a logarithmic scale or 0, in the order of all lists: floor and
-sheath differ in stress by a factor of a thousand."""
+_STRESS = ("stress", "von Mises stress (MPa)", 4)
+"""Name, label, and powers of ten of a logarithmic scale or 0: floor and sheath differ in stress by
+a factor of a thousand."""
 _TOP = 255
 _QUANTILE = 0.995
 """The colours end short of single peaks, as those of the pictures do."""
@@ -31,18 +28,25 @@ class Fields:
         nodes: of the recovered fields.
         surfaces: of each surface, place of every point among the recovered fields, and the places
             that are seen from the side.
+
+    Attributes:
+        quantities: name, label, and powers of ten of a logarithmic scale or 0, in the order of all
+            lists.
     """
 
     def __init__(
         self, own: ModelMesh, nodes: SplitNodes, surfaces: Sequence[tuple[Ints, Ints]]
     ) -> None:
         self._own, self._nodes, self._surfaces = own, nodes, surfaces
+        strain = ("strain", own.strain_named, 0)
+        self.quantities = (strain,) if own.carried else (strain, _STRESS)
 
     def at(self, state: Snapshot) -> list[Floats]:
-        """Strain and stress of a state at all recovered nodes."""
+        """The quantities of a state at all recovered nodes."""
         found = recover(self._own, state, self._nodes)
+        both = (found.log_strain, found.von_mises)[: len(self.quantities)]
         # between the points at which an extreme state was solved there may be no stress
-        return [np.nan_to_num(values) for values in (found.log_strain, found.von_mises)]
+        return [np.nan_to_num(values) for values in both]
 
     def tops(self, values: Sequence[Sequence[Floats]]) -> list[list[float]]:
         """What 255 stands for, of each surface and quantity: the most of all steps that is seen.
@@ -55,11 +59,11 @@ class Fields:
         found = [
             [
                 nice_above(max(float(np.quantile(step[i][seen], _QUANTILE)) for step in values))
-                for i in range(len(QUANTITIES))
+                for i in range(len(self.quantities))
             ]
             for _, seen in self._surfaces
         ]
-        for i, (_, _, powers) in enumerate(QUANTITIES):
+        for i, (_, _, powers) in enumerate(self.quantities):
             if powers:
                 most = 10.0 ** np.ceil(np.log10(max(tops[i] for tops in found)))
                 for tops in found:
@@ -77,7 +81,7 @@ class Fields:
             tops: what 255 stands for, of each quantity.
         """
         place, found = self._surfaces[number][0], []
-        for i, (top, (_, _, powers)) in enumerate(zip(tops, QUANTITIES, strict=True)):
+        for i, (top, (_, _, powers)) in enumerate(zip(tops, self.quantities, strict=True)):
             share = np.stack([step[i][place] for step in values]) / top
             if powers:
                 share = 1 + np.log10(np.maximum(share, 10.0**-powers)) / powers

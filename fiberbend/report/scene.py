@@ -15,7 +15,7 @@ from fiberbend.drawing.page import color_of, name_of
 from fiberbend.drawing.renderer import FROM_THE_SIDE
 from fiberbend.drawing.surfaces import BodySurfaces
 from fiberbend.drawing.tessellation import Tessellation, boundary_facets, on_mirror
-from fiberbend.report.fields import QUANTITIES, Fields
+from fiberbend.report.fields import Fields
 from fiberbend.report.laid import Threads, strips
 from fiberbend.report.packing import base64_of, packed
 from fiberbend.report.places import Places
@@ -170,7 +170,8 @@ def scene_data(
             for name, number in space.model_mesh.mesh.regions.items()
         ],
         "quantities": [
-            {"name": name, "label": label, "powers": powers} for name, label, powers in QUANTITIES
+            {"name": name, "label": label, "powers": powers}
+            for name, label, powers in fields.quantities
         ],
         "colors": _colors(),
         "fibers": threads.content | {"positions": placed(lines)},

@@ -163,7 +163,8 @@ class States:
         mesh = MeshData.load(self._path / MESH)
         fibers, smeared = read_fibers(self._path)
         materials = convert.site(self._case).materials
-        elements = choose_model(self._case)[0].elements()
+        model = choose_model(self._case)[0]
+        elements = model.elements()
         return ModelMesh(
             mesh=mesh,
             materials={name: materials[name] for name in mesh.regions},
@@ -172,6 +173,7 @@ class States:
             title=self._case.title,
             uniform=elements is not None and elements.repeats(self._case),
             families=convert.looks(self._case),
+            carried=model.slender() is not None,
         )
 
     def read(self, kept: Kept) -> Snapshot | None:

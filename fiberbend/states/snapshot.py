@@ -48,6 +48,8 @@ class ModelMesh:
             given in the turning frame.
         families: of the winding, by the numbers that its segments have; empty where pictures do not
             tell them apart.
+        carried: sections are those at rest, carried along by a line: what is strained is that along
+            the axis, and no stress is known.
 
     Raises:
         ValueError: a region without material, or a section that is taken for a solid.
@@ -60,6 +62,14 @@ class ModelMesh:
     title: str
     uniform: bool = False
     families: tuple[FamilyLook, ...] = ()
+    carried: bool = False
+
+    @property
+    def strain_named(self) -> str:
+        """What its strain is, as pictures call it."""
+        if self.carried:
+            return "logarithmic strain along the axis, of sections as at rest"
+        return "maximum principal logarithmic strain"
 
     def __post_init__(self) -> None:
         if self.mesh.nodes.shape[1] != 3 and not self.uniform:

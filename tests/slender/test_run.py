@@ -71,6 +71,10 @@ def test_a_folder_has_what_a_run_leaves(folder: tuple[RunResult, Path]) -> None:
     assert {"conjugate_gravity_mJ", "load_gravity", "unstable_modes"} <= set(rows[0])
     page = (path / "report.html").read_text(encoding="utf-8")
     assert "rod model" in page
+    # its sections are carried along: no stress is known, and what is strained is the axis
+    assert "logarithmic strain along the axis" in page
+    assert "von Mises" not in page
+    assert "maximum principal" not in page
 
 
 def test_its_states_are_the_line_with_its_sections(folder: tuple[RunResult, Path]) -> None:

@@ -44,6 +44,7 @@ class Animation:
         self, model_mesh: ModelMesh, renderer: Renderer, scenery: Scenery | None = None
     ) -> None:
         self._title, self._mesh = model_mesh.title, model_mesh.mesh
+        self._named = model_mesh.strain_named
         self._surfaces, self._renderer = BodySurfaces(model_mesh, scenery), renderer
         self._scenery = scenery or Scenery()
         self._skin = Tessellation(self._mesh, self._surfaces.outside(self._surfaces.bare, False), 2)
@@ -85,7 +86,7 @@ class Animation:
         page = Page(SIZE, self._title)
         blank = np.full((_BAND, SIZE[0], 3), 255, dtype=np.uint8)
         page.scale(page.image(blank, (0.0, _LOW / SIZE[1], 1.0, _BAND / SIZE[1]), view), 14)
-        page.color_bar(limits, "maximum principal logarithmic strain" + self._surfaces.remark)
+        page.color_bar(limits, self._named + self._surfaces.remark)
 
         def frames() -> Iterator[Image]:
             for state, value in zip(again(), values, strict=True):

@@ -29,7 +29,7 @@ class Solid:
         self._slender = slender
         plain = body_at_rest(case, half=slender.rod.layout.plane)
         title = f"{case.title}: rod, its sections drawn as at rest"
-        self.model_mesh: ModelMesh = dataclasses.replace(plain, title=title)
+        self.model_mesh: ModelMesh = dataclasses.replace(plain, title=title, carried=True)
         nodes, root = plain.mesh.nodes, slender.rod.layout.place
         self._z, self._level = np.unique(nodes[:, 2], return_inverse=True)
         self._arms: Floats = np.column_stack([nodes[:, :2] - root[:2], np.zeros(len(nodes))])
