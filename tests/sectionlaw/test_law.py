@@ -33,7 +33,7 @@ def places(count: int) -> Floats:
 
 
 def test_derivatives_are_those_of_differences(law: SectionLaw) -> None:
-    strains, pressure, h = places(6), 0.03, 1e-5
+    strains, pressure, h = places(6), 0.03, 1e-6
     points = [(strains + h * e[:2], pressure + h * e[2]) for e in np.eye(3)]
     back = [(strains - h * e[:2], pressure - h * e[2]) for e in np.eye(3)]
     for number, (ahead, behind) in enumerate(zip(points, back, strict=True)):
