@@ -13,6 +13,7 @@ from rod.loads import TipForce
 from rod.rod import Level, Rod
 from rod.shape import Shape
 from rod.statics import Path, solve
+from rod.term import Term
 from tests.rod.bars import PLANE, SPACE, Bar, bent
 from tests.rod.contact.differences import errors
 
@@ -50,7 +51,10 @@ def test_an_obstacle_that_is_not_moved_yet_stands_where_it_is(amounts: tuple[flo
     """Its amount is a way: zero of it is not nothing of the obstacle."""
     layout = BAR.layout(5)
     obstacle = Plane((0.0, -4.0, 60.0), (0.2, 1.0, -0.3))
-    terms = [Touch(skin(layout), obstacle, 0.3, (0.1, 1.0, 0.3)), TipForce((0.0, 0.001, 0.0))]
+    terms: list[Term] = [
+        Touch(skin(layout), obstacle, 0.3, (0.1, 1.0, 0.3)),
+        TipForce((0.0, 0.001, 0.0)),
+    ]
     rod, still = Rod(layout, BAR.law(PLANE), terms=terms), Touch(skin(layout), obstacle, 0.3)
     shape, level = rod.shape(bent(layout, seed=3, most=0.15)), Level(amounts=amounts)
     whole = Rod(layout, BAR.law(PLANE), terms=[still, terms[1]])
