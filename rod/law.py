@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
 
-from rod.functions import Floats
+from rod.functions import Bools, Floats
 
 
 class Law(Protocol):
@@ -126,14 +127,25 @@ class Zones:
             raise ValueError(f"zones: a law from 0 to {len(self.laws) - 1} for each piece expected")
 
     def _each(self, what: str, strains: Floats, pressure: float, *shape: int) -> Floats:
-        pieces = np.asarray(self.pieces)
-        if len(strains) != len(pieces):
-            raise ValueError(f"zones of {len(pieces)} pieces for a rod of {len(strains)}")
+        if len(strains) != len(self.pieces):
+            raise ValueError(f"zones of {len(self.pieces)} pieces for a rod of {len(strains)}")
         out = np.empty((len(strains), *shape))
+        for law, mine in self._runs:
+            out[mine] = getattr(law, what)(strains[mine], pressure)
+        return out
+
+    @functools.cached_property
+    def _runs(self) -> list[tuple[Law, slice | Bools]]:
+        """Each law with its pieces: a slice of those that follow each other, which is quicker."""
+        out: list[tuple[Law, slice | Bools]] = []
+        pieces = np.asarray(self.pieces)
         for place, law in enumerate(self.laws):
             mine = pieces == place
-            if mine.any():
-                out[mine] = getattr(law, what)(strains[mine], pressure)
+            if not mine.any():
+                continue
+            first, count = int(mine.argmax()), int(mine.sum())
+            run = slice(first, first + count)
+            out.append((law, run if mine[run].all() else mine))
         return out
 
     def value(self, strains: Floats, pressure: float) -> Floats:

@@ -38,17 +38,25 @@ class Offset:
         )
         return moved, first, second
 
+    def _turned(self, pressure: float) -> Floats:
+        """δ alone, which is asked for most."""
+        first, *others = self.coefficients
+        out: Floats = pressure * first
+        for power, coefficient in enumerate(others, 2):
+            out = out + pressure**power * coefficient
+        return out
+
     def value(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""
-        return self.law.value(strains - self._moved(pressure)[0], pressure)
+        return self.law.value(strains - self._turned(pressure), pressure)
 
     def gradient(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""
-        return self.law.gradient(strains - self._moved(pressure)[0], pressure)
+        return self.law.gradient(strains - self._turned(pressure), pressure)
 
     def hessian(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""
-        return self.law.hessian(strains - self._moved(pressure)[0], pressure)
+        return self.law.hessian(strains - self._turned(pressure), pressure)
 
     def chamber(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""
@@ -79,7 +87,7 @@ class Offset:
 
     def outside(self, strains: Floats, pressure: float) -> str:
         """See `rod.law.Law`: of the law of the forces."""
-        return self.law.outside(strains - self._moved(pressure)[0], pressure)
+        return self.law.outside(strains - self._turned(pressure), pressure)
 
 
 def _times(matrices: Floats, vectors: Floats) -> Floats:

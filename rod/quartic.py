@@ -36,22 +36,25 @@ class Quartic:
     def _bent(self, strains: Floats) -> tuple[Floats, Floats, Floats]:
         """e, and L e and Q e e, (n, m, m) each."""
         e = strains - self.rest
-        cubic = np.einsum("ijk,nk->nij", self.cubic, e)
-        quartic = np.einsum("ijkl,nk,nl->nij", self.quartic, e, e)
+        n, m = e.shape
+        # products of matrices: einsum takes longer for so few numbers
+        cubic = (e @ self.cubic.reshape(m * m, m).T).reshape(n, m, m)
+        pairs = (e[:, :, None] * e[:, None, :]).reshape(n, m * m)
+        quartic = (pairs @ self.quartic.reshape(m * m, m * m).T).reshape(n, m, m)
         return e, cubic, quartic
 
     def value(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""
         e, cubic, quartic = self._bent(strains)
         whole = self.stiffness / 2 + cubic / 6 + quartic / 24
-        out: Floats = np.einsum("ni,nij,nj->n", e, whole, e)
+        out: Floats = np.sum((whole @ e[:, :, None])[..., 0] * e, axis=1)
         return out
 
     def gradient(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""
         e, cubic, quartic = self._bent(strains)
-        out: Floats = np.einsum("nij,nj->ni", self.stiffness + cubic / 2 + quartic / 6, e)
-        return out
+        out: Floats = (self.stiffness + cubic / 2 + quartic / 6) @ e[:, :, None]
+        return out[..., 0]
 
     def hessian(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""

@@ -13,7 +13,7 @@ from rod.functions import Floats, Ints
 from rod.law import Law
 from rod.layout import Layout
 from rod.shape import Shape
-from rod.term import Iterate, Iterated, Term
+from rod.term import Iterate, Iterated, Standing, Term
 
 
 @dataclasses.dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Level:
 
     Attributes:
         pressure: P of the chamber, MPa.
-        amounts: one for each term of the rod, in order; of those that are missing nothing acts.
+        amounts: one for each term of the rod, in order; those that are missing are zero.
     """
 
     pressure: float = 0.0
@@ -75,6 +75,7 @@ class Rod:
             raise ValueError(f"inertia: one of (4, 4) for each of {frames} frames expected")
         self.layout, self.law, self.terms = layout, law, tuple(terms)
         self.inertia: Floats = np.zeros((frames, 4, 4)) if inertia is None else inertia
+        self._stands = [isinstance(each, Standing) and bool(each.share(0.0)) for each in terms]
 
     @property
     def sizes(self) -> Floats:
@@ -134,7 +135,12 @@ class Rod:
         """
         if len(level.amounts) > len(self.terms):
             raise ValueError(f"{len(level.amounts)} amounts for {len(self.terms)} terms")
-        return [pair for pair in zip(self.terms, level.amounts, strict=False) if pair[1]]
+        pairs = itertools.zip_longest(self.terms, level.amounts, fillvalue=0.0)
+        return [
+            (term, amount)
+            for (term, amount), stands in zip(pairs, self._stands, strict=True)
+            if amount or stands
+        ]
 
     def elastic(self, strains: Floats, pressure: float) -> float:
         """∫ Φ ds, N mm; the work of the air is in it."""

@@ -60,7 +60,9 @@ class Axis:
         # few calls: numpy needs a microsecond for each
         place = self._inner.searchsorted(x, side="right")
         u = (x - self.lines[place]) / self._widths[place]
-        powers = np.vander(u, self.degree + 1, increasing=True)
+        powers = np.empty((len(x), self.degree + 1))
+        powers[:, 0], powers[:, 1:] = 1.0, u[:, None]
+        np.multiply.accumulate(powers, axis=1, out=powers)
         found = (self._polynomials[place] @ powers[:, :, None])[..., 0]
         return place, found.reshape(len(x), 3, -1).transpose(1, 0, 2)
 

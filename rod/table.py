@@ -7,6 +7,7 @@ the chamber are exact derivatives: a rod by a table keeps its energy as by a for
 from __future__ import annotations
 
 import dataclasses
+import functools
 import itertools
 import math
 from collections.abc import Callable, Sequence
@@ -73,7 +74,10 @@ class Table:
             turned = (values.transpose(1, 0, 2) @ flat).reshape(n, 3, *part.shape[2:])
             part = np.moveaxis(turned, 1, -1)
         # now (n, 3 by the pressure, 3 by each strain): moved to the end one after the other
-        return np.stack([part[(slice(None), order[-1], *order[:-1])] for order in orders])
+        digits = 3 ** np.arange(len(axes), -1, -1)
+        wanted = np.array([(order[-1], *order[:-1]) for order in orders]) @ digits
+        found_all: Floats = part.reshape(len(strains), -1).T[wanted]
+        return found_all
 
     def _unit(self, *strains: int, pressure: int = 0) -> tuple[int, ...]:
         order = [0] * len(self.axes)
@@ -88,19 +92,23 @@ class Table:
         orders = [*(self._unit(i) for i in range(m)), self._unit(pressure=1)]
         return self._at(strains, pressure, orders).T
 
-    def both(self, strains: Floats, pressure: float) -> tuple[Floats, Floats]:
-        """∂Φ, (n, m + 1), and ∂²Φ by the strains and the pressure, (n, m + 1, m + 1), at once."""
-        m = strains.shape[1]
-        pairs = list(itertools.combinations_with_replacement(range(m), 2))
-        orders = [*(self._unit(i) for i in range(m)), self._unit(pressure=1)]
-        orders += [self._unit(*pair) for pair in pairs]
-        orders += [self._unit(i, pressure=1) for i in range(m)]
-        found = self._at(strains, pressure, [*orders, self._unit(pressure=2)])
-        second = np.empty((len(strains), m + 1, m + 1))
-        pairs += [(i, m) for i in range(m + 1)]
-        for (i, j), values in zip(pairs, found[m + 1 :], strict=True):
-            second[:, i, j] = second[:, j, i] = values
-        return found[: m + 1].T, second
+    def all(self, strains: Floats, pressure: float) -> tuple[Floats, Floats, Floats]:
+        """Φ, ∂Φ and ∂²Φ by the strains and the pressure at once.
+
+        Returns:
+            (n,), (n, m + 1) and (n, m + 1, m + 1).
+        """
+        n, m = strains.shape
+        found = self._at(strains, pressure, self._orders)
+        second = found[m + 2 :].T.reshape(n, m + 1, m + 1)
+        return found[0], found[1 : m + 2].T, second
+
+    @functools.cached_property
+    def _orders(self) -> list[tuple[int, ...]]:
+        """Of the value and of all derivatives that `all` gives."""
+        units = np.eye(len(self.axes), dtype=int)
+        both = (units[:, None] + units).reshape(-1, len(self.axes))
+        return [tuple(order) for order in [0 * units[0], *units, *both]]
 
     def value(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""

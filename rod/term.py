@@ -41,6 +41,14 @@ class Dead(Term, Protocol):
         """A on the frames, (n + 1, 3, 4); see `Shape.pulled`."""
 
 
+@runtime_checkable
+class Standing(Term, Protocol):
+    """A term that may act whole where its amount is zero: an obstacle that is not moved yet."""
+
+    def share(self, amount: float) -> float:
+        """Of it that acts: 0 nothing, 1 all."""
+
+
 class Iterate(Term, Protocol):
     """A term within one search by Newton's method, of which it remembers something."""
 

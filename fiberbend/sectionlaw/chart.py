@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import numpy as np
 
@@ -62,15 +63,7 @@ class Chart:
 
     def first(self, strains: Floats, pressure: float) -> Floats:
         """∂(u, P)/∂(λ, c, P), (n, m + 1, m + 1), at strains, (n, m)."""
-        n, m = strains.shape
-        h = self.sizes(pressure)
-        out = np.zeros((n, m + 1, m + 1))
-        inner = np.arange(m)
-        out[:, inner, inner], out[:, m, m] = 1.0 / h, 1.0
-        out[:, 0, 1:] -= self.unpulled.first(_beside(strains, pressure)) / h[0]
-        away = self._away(strains, pressure)
-        out[:, :m, m] -= np.array(self.drifts) / h + away * np.array(self.growths) / h**2
-        return out
+        return self.placed(strains, pressure)[1]
 
     def second(self, strains: Floats, slopes: Floats, pressure: float) -> Floats:
         """Σ_j f_j ∂²u_j/∂(λ, c, P)², (n, m + 1, m + 1).
@@ -80,21 +73,39 @@ class Chart:
             slopes: f, derivatives by u of what is carried over, (n, m).
             pressure: P, MPa.
         """
+        return self.placed(strains, pressure)[2](slopes)
+
+    def placed(
+        self, strains: Floats, pressure: float
+    ) -> tuple[Floats, Floats, Callable[[Floats], Floats]]:
+        """`place`, `first` and, by f, `second`, which share what is dear."""
         n, m = strains.shape
-        h, growths, y = self.sizes(pressure), np.array(self.growths), _beside(strains, pressure)
-        rise = self.unpulled.first(y)
-        out = np.zeros((n, m + 1, m + 1))
-        by_z = slopes / h
-        out[:, 1:, 1:] = -by_z[:, :1, None] * self.unpulled.second(y)
-        # z_j/h_j: a part in ∂z and ∂h, which hangs on P alone
-        mixed = -by_z * growths / h
-        out[:, np.arange(m), m] += mixed
-        out[:, m, np.arange(m)] += mixed
-        out[:, 1:, m] -= mixed[:, :1] * rise
-        out[:, m, 1:] -= mixed[:, :1] * rise
-        moved = np.array(self.drifts) + self._away(strains, pressure) * growths / h
-        out[:, m, m] += np.sum(2 * by_z * moved * growths / h, axis=1)
-        return out
+        h, growths = self.sizes(pressure), np.array(self.growths)
+        unpulled, rise, bent = self.unpulled.all(_beside(strains, pressure))
+        away = strains - self._least(pressure)
+        away[:, 0] -= unpulled
+        inner = np.arange(m)
+        moved = np.array(self.drifts) + away * growths / h
+        first = np.zeros((n, m + 1, m + 1))
+        first[:, inner, inner], first[:, m, m] = 1.0 / h, 1.0
+        first[:, 0, 1:] -= rise / h[0]
+        first[:, :m, m] -= moved / h
+
+        def second(slopes: Floats) -> Floats:
+            out = np.zeros((n, m + 1, m + 1))
+            by_z = slopes / h
+            out[:, 1:, 1:] = -by_z[:, :1, None] * bent
+            # z_j/h_j: a part in ∂z and ∂h, which hangs on P alone
+            mixed = -by_z * growths / h
+            own = mixed.copy()
+            own[:, 1:] -= mixed[:, :1] * rise[:, :-1]
+            out[:, inner, m] += own
+            out[:, m, inner] += own
+            out[:, m, m] -= 2 * mixed[:, 0] * rise[:, -1]
+            out[:, m, m] -= 2 * np.sum(mixed * moved, axis=1)
+            return out
+
+        return away / h, first, second
 
     def back(self, points: Floats) -> Floats:
         """∂(λ, c, P)/∂(u, P), (n, m + 1, m + 1)."""

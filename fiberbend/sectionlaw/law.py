@@ -18,6 +18,10 @@ _FURTHEST, _OUTSIDE = 0.2, 1e-9
 """Parts of the range: by which a step to a free state may go, and beyond which it is another."""
 
 
+_PLACES, _KEPT = 3, 1000
+"""Places that a law remembers, of no more sections."""
+
+
 class Free(NamedTuple):
     """A section on which no force acts.
 
@@ -32,6 +36,16 @@ class Free(NamedTuple):
     curvature: float
     side_curvature: float = 0.0
     twist: float = 0.0
+
+
+class _Known(NamedTuple):
+    """Φ, (n,), and its derivatives by strains and P at strains, (n, m), and a pressure."""
+
+    pressure: float
+    strains: Floats
+    value: Floats
+    first: Floats
+    second: Floats
 
 
 class Derived:
@@ -79,24 +93,35 @@ class SectionLaw(Derived):
     table: Table
     chart: Chart
     strains: tuple[str, ...] = PLANE
+    _known: list[_Known] = dataclasses.field(
+        default_factory=list, init=False, repr=False, compare=False
+    )
+
+    def _at(self, strains: Floats, pressure: float) -> _Known:
+        """All of Φ somewhere. A step of a motion asks for its parts one by one at a few places."""
+        for known in self._known:
+            if known.pressure == pressure and np.array_equal(known.strains, strains):
+                return known
+        place, turn, bent = self.chart.placed(strains, pressure)
+        value, slopes, own = self.table.all(place, pressure)
+        first = (slopes[:, None] @ turn)[:, 0]
+        second = turn.transpose(0, 2, 1) @ own @ turn + bent(slopes[:, :-1])
+        found = _Known(pressure, strains.copy(), value, first, second)
+        if len(strains) <= _KEPT:
+            self._known[:] = [found, *self._known[: _PLACES - 1]]
+        return found
 
     def first(self, strains: Floats, pressure: float) -> Floats:
         """∂Φ by strains and P, (n, m + 1)."""
-        slopes = self.table.first(self.chart.place(strains, pressure), pressure)
-        found: Floats = np.einsum("ni,nij->nj", slopes, self.chart.first(strains, pressure))
-        return found
+        return self._at(strains, pressure).first.copy()
 
     def second(self, strains: Floats, pressure: float) -> Floats:
         """∂²Φ by strains and P, (n, m + 1, m + 1)."""
-        slopes, own = self.table.both(self.chart.place(strains, pressure), pressure)
-        turn = self.chart.first(strains, pressure)
-        bent = self.chart.second(strains, slopes[:, :-1], pressure)
-        found: Floats = turn.transpose(0, 2, 1) @ own @ turn + bent
-        return found
+        return self._at(strains, pressure).second.copy()
 
     def value(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""
-        return self.table.value(self.chart.place(strains, pressure), pressure)
+        return self._at(strains, pressure).value.copy()
 
     def outside(self, strains: Floats, pressure: float) -> str:
         """See `rod.law.Law`."""

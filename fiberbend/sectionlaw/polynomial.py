@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import itertools
 import math
 
 import numpy as np
+import numpy.typing as npt
 
 from rod.functions import Floats
 
@@ -39,6 +41,41 @@ class Polynomial:
         z, d = self._powers(y), range(y.shape[1])
         rows = [np.stack([self._derived(z, i, j) for j in d], axis=-1) for i in d]
         return np.stack(rows, axis=-2)
+
+    def all(self, y: Floats) -> tuple[Floats, Floats, Floats]:
+        """Value, first and second derivatives at once: (n,), (n, d) and (n, d, d)."""
+        monomials, rows = self._plan
+        n, d = y.shape
+        z = self._powers(y)
+        out = z[monomials[0], 0]
+        for i in range(1, d):
+            out = out * z[monomials[i], i]
+        found = (rows @ out).T
+        return found[:, 0], found[:, 1 : d + 1], found[:, d + 1 :].reshape(n, d, d)
+
+    @functools.cached_property
+    def _plan(self) -> tuple[npt.NDArray[np.intp], Floats]:
+        """What `all` needs.
+
+        Returns:
+            Powers of all terms and of their derivatives, (d, k), and their coefficients in value,
+            first and second derivatives, (1 + d + d², k).
+        """
+        d = len(self.sizes)
+        orders = [(), *((i,) for i in range(d)), *itertools.product(range(d), repeat=2)]
+        parts: list[dict[tuple[int, ...], float]] = []
+        for order in orders:
+            part: dict[tuple[int, ...], float] = {}
+            for powers, coefficient in zip(self.powers, self.coefficients, strict=True):
+                left = list(powers)
+                for i in order:
+                    coefficient *= left[i] / self.sizes[i]
+                    left[i] = max(left[i] - 1, 0)
+                part[tuple(left)] = part.get(tuple(left), 0.0) + coefficient
+            parts.append(part)
+        known = sorted(set().union(*parts))
+        rows = np.array([[part.get(powers, 0.0) for powers in known] for part in parts])
+        return np.array(known, dtype=np.intp).reshape(-1, d).T, rows
 
     def terms(self, y: Floats) -> Floats:
         """All terms with coefficients of one, (n, t)."""

@@ -98,9 +98,10 @@ def timed(case: Case, slender: Slender) -> Timed:
         time.damping.drag,
         air,
     )
+    names = {id(term): name for name, term in slender.obstacles}
     watches = tuple(
-        Watch(name or "contact", _gap(term, number, level))
-        for number, (term, name) in enumerate(zip(slender.rod.terms, slender.loads, strict=True))
+        Watch(names.get(id(term), "contact"), _gap(term, number, level))
+        for number, term in enumerate(slender.rod.terms)
         if isinstance(term, Gapped)
     )
     return Timed(slender, motion, start, _times(time), watches, tuple(corners))

@@ -78,7 +78,7 @@ class Penalty(abc.ABC):
         """Where no point is near: a lower bound of all gaps, mm."""
 
     def share(self, amount: float) -> float:
-        """Of the stiffness that acts."""
+        """Of the stiffness that acts; see `rod.term.Standing`."""
         return amount
 
     def grown(self, contacts: Contacts, amount: float) -> Floats:
@@ -165,6 +165,10 @@ class Pressed:
 
     def __init__(self, penalty: Penalty, pressure: Floats) -> None:
         self._penalty, self._pressure = penalty, pressure
+
+    def share(self, amount: float) -> float:
+        """See `rod.term.Standing`."""
+        return self._penalty.share(amount)
 
     def _held(self, shape: Shape, amount: float) -> Contacts:
         return self._penalty.held(shape, amount, self._pressure)

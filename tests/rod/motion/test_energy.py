@@ -62,6 +62,7 @@ def test_every_part_of_the_energy_is_accounted_for(strains: tuple[str, ...]) -> 
         drag=0.7,
     )
     worst, moving = drift(motion, motion.at(rod.layout.at_rest()), 2e-3, 150)
+    print(f"balance of everything at once: {worst:.1e} of the greatest kinetic energy")
     assert worst < 1e-9
     work = moving.work
     assert min(abs(work.air), abs(work.loads), work.viscous, work.drag) > 1e-4
@@ -76,10 +77,12 @@ def test_contact_keeps_the_energy() -> None:
     rod = Rod(layout, BAR.law(PLANE), inertia, [Weight(inertia, DOWN), floor])
     motion = Motion(rod, lambda time: ON)
     start, touched = motion.at(layout.at_rest()), []
-    worst = 0.0
+    worst = most = 0.0
     for moving in motion.run(start, 1e-3, 400):
         worst = max(worst, abs(moving.energy.total - start.energy.total))
+        most = max(most, moving.energy.kinetic)
         touched.append(floor.touched(moving.shape, 1.0).area > 0)
+    print(f"contact: {worst:.1e} mJ of {most:.2g} mJ of motion")
     assert worst < 1e-8
     assert 0.05 < np.mean(touched) < 0.9
 
@@ -96,6 +99,8 @@ def test_it_runs_back_in_time() -> None:
         there, velocity=-there.velocity, rate=-there.rate, ahead=-there.rate
     )
     *_, back = motion.run(turned, 2e-3, 100)
+    apart = np.linalg.norm(back.frames[:, :, 3] - start.frames[:, :, 3], axis=1).max()
+    print(f"back in time: {apart:.1e} mm")
     np.testing.assert_allclose(back.frames, start.frames, atol=2e-7)
     np.testing.assert_allclose(back.velocity, -start.velocity, atol=1e-4)
 
@@ -131,6 +136,7 @@ def test_a_pendulum_has_its_period_and_momentum() -> None:
     assert angle[count // 2 - 1] == pytest.approx(most, abs=1e-3)
     momentum = 1e-5 * np.linalg.norm(states[count // 4 - 1].velocity[-1, :, 3])
     exact = 1e-5 * math.sqrt(2 * 9810 * length * (1 - math.cos(most)))
+    print(f"pendulum: {abs(angle[-1] + most):.1e} rad, momentum {abs(momentum / exact - 1):.1e}")
     assert momentum == pytest.approx(exact, rel=1e-4)
 
 
@@ -177,6 +183,7 @@ def test_air_in_a_closed_chamber_is_a_spring() -> None:
             for s in (start, moving)
         ]
         assert amounts[1] == pytest.approx(amounts[0], rel=1e-9)
+    print(f"closed air: {max(map(abs, balance)) / abs(moving.work.air):.1e} of the air's work")
     assert abs(moving.pressure - 0.02) > 1e-4
     assert max(map(abs, balance)) < 1e-9 < abs(moving.work.air)
     changes = [np.linalg.norm(b - a) for a, b in itertools.pairwise(states)]
