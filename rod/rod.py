@@ -135,12 +135,8 @@ class Rod:
         """
         if len(level.amounts) > len(self.terms):
             raise ValueError(f"{len(level.amounts)} amounts for {len(self.terms)} terms")
-        pairs = itertools.zip_longest(self.terms, level.amounts, fillvalue=0.0)
-        return [
-            (term, amount)
-            for (term, amount), stands in zip(pairs, self._stands, strict=True)
-            if amount or stands
-        ]
+        three = zip(self.terms, self.amounts(level), self._stands, strict=True)
+        return [(term, amount) for term, amount, stands in three if amount or stands]
 
     def elastic(self, strains: Floats, pressure: float) -> float:
         """∫ Φ ds, N mm; the work of the air is in it."""
