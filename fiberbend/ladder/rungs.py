@@ -158,6 +158,9 @@ def ladder(source: Path | dict[str, Any], settings: Sequence[str] = ()) -> Ladde
     if base.zones is not None:
         text = "no error is known of an actuator with zones, expected a case without"
         raise CaseError([Problem("zones", text)])
+    if base.time is not None:
+        text = "no error is known of an actuator in motion, expected a case without"
+        raise CaseError([Problem("time", text)])
     rungs: list[Rung] = []
     missing: list[Missing] = []
     for family, changes in _families(base):

@@ -357,8 +357,8 @@ UNFIT_MODELS = [
         'model: "auto", expected effects that one model supports: '
         "analytic not effects.2.blocked-tip "
         "(roof and post are no surfaces of it: closed forms fix the tip rigidly, of a rod the "
-        "sheath yields); section not "
-        "effects.1.hoops (",
+        "sheath alone yields, and no section shears: tip force up to 11 % too great, the roof's up "
+        "to 30 % (docs/contact.md)); section not effects.1.hoops (",
     ),
 ]
 """Settings that leave a case right by itself and ask for a model that does not support it."""

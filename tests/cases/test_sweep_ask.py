@@ -202,7 +202,7 @@ def test_a_body_is_named_where_no_cheaper_model_can(read: Read) -> None:
     ("vary", "model", "remedy"),
     [
         ({"mesh.axial": ["1 mm", "2 mm"]}, "section", "model cell sees it"),
-        ({"actuator.cap": ["10 mm", "15 mm"]}, "section", "model body sees it"),
+        ({"actuator.cap": ["10 mm", "15 mm"]}, "section", "model rod sees it"),
         ({"mesh.section": [1, 2]}, "analytic", "model section sees it"),
         ({PITCH: ["2 mm", "3 mm"]}, "analytic", "model cell sees it"),
         ({"effects.1.winding.fiber.modulus": ["5 GPa", "50 GPa"]}, "cell", "no model sees more"),

@@ -43,7 +43,16 @@ def test_no_error_is_known_of_zones(path: Path) -> None:
         of_case(path)
 
 
-ALIKE = [path for path in CASES if path not in ZONED]
+TIMED = [path for path in CASES if read_case(path).time is not None]
+
+
+@pytest.mark.parametrize("path", TIMED, ids=lambda path: path.stem)
+def test_no_error_is_known_of_motions(path: Path) -> None:
+    with pytest.raises(CaseError, match="time: no error is known of an actuator in motion"):
+        of_case(path)
+
+
+ALIKE = [path for path in CASES if path not in ZONED + TIMED]
 
 
 @pytest.mark.parametrize("path", ALIKE, ids=lambda path: path.stem)
