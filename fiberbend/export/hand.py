@@ -15,12 +15,12 @@ from fiberbend.case.case import Case
 from fiberbend.columns import UNIFORM
 from fiberbend.export.law import known
 from fiberbend.export.section import Handed
-from fiberbend.export.torsion import twisting_stiffness
 from fiberbend.models.choice import choose_model
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.slender.beside import section_case
 from fiberbend.slender.laws import masses, pulled
 from fiberbend.slender.moments import Section, section_of, weighed
+from fiberbend.slender.torsion import torsion
 from fiberbend.version import __version__
 from geometry.bodies.extrude import section_quadrilaterals
 from geometry.bodies.quads import section_mesh
@@ -116,7 +116,7 @@ def cap_stiffness(case: Case, moments: Section) -> Floats:
     out[:3, :3] = by @ (sums + sums.T) / 2 @ by.T
     layout = section_layout(convert.dimensions(case.actuator), MeshSize(section=2, half=False))
     shear = {name: each.initial_shear_modulus for name, each in materials.items()}
-    out[3, 3] = twisting_stiffness(section_mesh(layout), shear)
+    out[3, 3] = torsion(section_mesh(layout), shear)
     return out
 
 

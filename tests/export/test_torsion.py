@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from fiberbend.export.torsion import twisting_stiffness
+from fiberbend.slender.torsion import torsion
 from geometry.bodies.quads import section_mesh
 from geometry.mesh.data import MeshData
 from geometry.sections.size import MeshSize
@@ -25,9 +25,9 @@ def test_a_solid_circle() -> None:
     """GJ = π G R⁴/2, and of two materials one within the other the sum of both."""
     radius, middle, shell = 8.0, 0.4, 0.1
     mesh = filled(section="circle", radius=5.0, sheath=1.0)
-    told = twisting_stiffness(mesh, dict.fromkeys(mesh.regions, middle))
+    told = torsion(mesh, dict.fromkeys(mesh.regions, middle))
     assert told == pytest.approx(math.pi * middle * radius**4 / 2, rel=1e-4)
-    told = twisting_stiffness(mesh, {"wall": middle, "sheath": shell})
+    told = torsion(mesh, {"wall": middle, "sheath": shell})
     inner = (radius - 1.0) ** 4
     exact = math.pi / 2 * (middle * inner + shell * (radius**4 - inner))
     assert told == pytest.approx(exact, rel=1e-4)
@@ -40,5 +40,5 @@ def test_a_solid_rectangle() -> None:
     odd = np.arange(1, 100, 2)
     series = float(np.sum(np.tanh(odd * math.pi * a / (2 * b)) / odd**5))
     exact = a * b**3 / 3 * (1 - 192 * b / (math.pi**5 * a) * series)
-    told = twisting_stiffness(mesh, dict.fromkeys(mesh.regions, 1.0))
+    told = torsion(mesh, dict.fromkeys(mesh.regions, 1.0))
     assert told == pytest.approx(exact, rel=1e-3)
