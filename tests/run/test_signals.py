@@ -46,7 +46,8 @@ def _stop(ranks: int, number: int, tmp_path: Path) -> tuple[int, str, dict[str, 
         assert time.monotonic() - begin < LIMIT, "a rank goes on"
         time.sleep(0.05)
     run = json.loads((out / "run.json").read_text())
-    assert not any(".part" in name for name in files(out))
+    if run["status"] != "running":  # else killed by mpirun, maybe while it wrote
+        assert not any(".part" in name for name in files(out))
     return code, text, run
 
 
