@@ -224,7 +224,7 @@ def _lines(name: str, text: str, preface: bool) -> tuple[str, list[tuple[int, st
         bare = line.strip(" \ufeff")
         if not bare.strip():
             continue
-        if bare.startswith(_COMMENT):
+        if bare.startswith(_COMMENT) and not (preface and lines and _units(bare)):
             comment = comment if lines else bare.lstrip("#%/ ")
         elif not lines and re.fullmatch(r"sep=.", bare):
             said = bare[-1]
@@ -246,6 +246,12 @@ def _lines(name: str, text: str, preface: bool) -> tuple[str, list[tuple[int, st
             raise ValueError(f"{name}, line {lines[0][0]}: {shown!r}, expected names of columns")
         return comment, lines, said
     return lines[0][1], lines[1:], said
+
+
+def _units(line: str) -> bool:
+    """Whether a line has nothing but units, such as %;kPa, and so is no comment."""
+    rows = [line.split(mark) for mark in "\t;,|" if mark in line]
+    return any(all(_UNIT.fullmatch(cell.strip()) for cell in row) for row in rows)
 
 
 def _below_preface(comment: str, lines: list[tuple[int, str]]) -> tuple[str, list[tuple[int, str]]]:

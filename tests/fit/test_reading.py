@@ -54,6 +54,10 @@ FILES = {
     "units below without brackets": lines(
         "Time,Eng Strain,Eng Stress\ns,-,N/mm2", np.arange(5.0), STRETCH - 1, STRESS
     ),
+    # a percent sign begins comments too
+    "percent below": lines(
+        "Eng Strain;Eng Stress\n%;kPa", 100 * (STRETCH - 1), 1e3 * STRESS, mark=";"
+    ),
     "of several": lines(
         "true stress [MPa],true strain,engineering strain,engineering stress [MPa]",
         STRESS * STRETCH,
