@@ -23,6 +23,10 @@ _WORD = re.compile(r'"[^"]*"|[^\s"\[(]+(?:\s*(?:\[[^\]]*\]|\([^)]*\)))?|\[[^\]]*
 """A name between spaces, with its unit in brackets behind it."""
 _NUMBERS = re.compile(r'(?:[\s.,;|:+\-−eE"]|nan|inf)*\d(?:[\s\d.,;|:+\-−eE"]|nan|inf)*', re.I)
 """A line of numbers."""
+_UNIT = re.compile(
+    r"[\[(].*[\])]|-|%|mm/mm|m/m|[kMG]?Pa|N/mm\^?2|N/mm²|psi|bar|[mcµ]?m|m?N|m?s|min|°C|"
+)
+"""A cell of a line of units below the names: in brackets, one of those of such tests, or empty."""
 _LISTED = 8
 
 
@@ -220,7 +224,7 @@ def _lines(name: str, text: str, preface: bool) -> tuple[str, list[tuple[int, st
         bare = line.strip(" \ufeff")
         if not bare.strip():
             continue
-        if bare.startswith(_COMMENT):
+        if bare.startswith(_COMMENT) and not (preface and lines and _units(bare)):
             comment = comment if lines else bare.lstrip("#%/ ")
         elif not lines and re.fullmatch(r"sep=.", bare):
             said = bare[-1]
@@ -231,14 +235,23 @@ def _lines(name: str, text: str, preface: bool) -> tuple[str, list[tuple[int, st
     if not lines:
         raise ValueError(f"{name}: no rows, expected a line of names and lines of numbers")
     if preface:
-        head, lines = _below_preface(comment, lines)
-        return head, lines, said
+        head, below = _below_preface(comment, lines)
+        if not below and len(lines) > 1:
+            shown = repr(lines[-1][1][:40])
+            raise ValueError(f"{name}: no lines of numbers, the last line is {shown}")
+        return head, below, said
     if re.fullmatch(r'[\s\d.,;|:+\-−eE"]+', lines[0][1]):
         if not comment:
             shown = lines[0][1][:40]
             raise ValueError(f"{name}, line {lines[0][0]}: {shown!r}, expected names of columns")
         return comment, lines, said
     return lines[0][1], lines[1:], said
+
+
+def _units(line: str) -> bool:
+    """Whether a line has nothing but units, such as %;kPa, and so is no comment."""
+    rows = [line.split(mark) for mark in "\t;,|" if mark in line]
+    return any(all(_UNIT.fullmatch(cell.strip()) for cell in row) for row in rows)
 
 
 def _below_preface(comment: str, lines: list[tuple[int, str]]) -> tuple[str, list[tuple[int, str]]]:
@@ -259,8 +272,9 @@ def _below_preface(comment: str, lines: list[tuple[int, str]]) -> tuple[str, lis
     if first > 1 and marks:
         mark = max(marks, key=head.count)
         names, units = (_cells(mark, lines[i][1]) for i in (first - 2, first - 1))
-        if len(names) == len(units) and all(re.fullmatch(r"([\[(].*[\])])?", u) for u in units):
-            head = mark.join(f"{n} {u}".strip() for n, u in zip(names, units, strict=True))
+        if len(names) == len(units) and any(units) and all(map(_UNIT.fullmatch, units)):
+            shown = [u if u[:1] in ("", "[", "(") else f"[{u}]" for u in units]
+            head = mark.join(f"{n} {u}".strip() for n, u in zip(names, shown, strict=True))
     return head, lines[first:]
 
 

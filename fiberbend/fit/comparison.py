@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -97,6 +98,7 @@ def compared(asked: Asked) -> Comparison:
             # errors would be those of twice as many points
             raise CaseError([Problem(str(path), "given more than once, expected each test once")])
     every = [(mode, read_test(file_of(path), mode, asked.wanted)) for mode, path in asked.files]
+    _each_once([read for _, read in every])
     reads = tuple(read for mode, read in every if not asked.only or mode in asked.only)
     beside = tuple(read for mode, read in every if asked.only and mode not in asked.only)
     if not reads:
@@ -114,6 +116,22 @@ def compared(asked: Asked) -> Comparison:
         raise CaseError([Problem("fiberbend fit", left_out[0])])
     fits.sort(key=lambda fit: (fit.loose, fit.criterion, len(fit.values), fit.rms))
     return Comparison(reads, tuple(fits), tuple(left_out), beside)
+
+
+def _each_once(reads: Sequence[Read]) -> None:
+    """Refuse the points of one test in two files, or in two modes.
+
+    Raises:
+        CaseError: two tests with the same points.
+    """
+    import numpy as np
+
+    tests = [read.measurement for read in reads]
+    points = [np.unique(np.stack([t.stretch, t.stress], axis=1), axis=0) for t in tests]
+    for (i, one), (k, other) in itertools.combinations(enumerate(points), 2):
+        if np.array_equal(one, other):
+            text = f"the same points as {tests[i].name}, expected each test once, in one mode"
+            raise CaseError([Problem(tests[k].name, text)])
 
 
 def law_names(given: Sequence[str]) -> tuple[str, ...]:

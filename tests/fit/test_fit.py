@@ -15,6 +15,7 @@ from fiberbend.api.fitting import Fitted
 from fiberbend.fit.comparison import Asked, compared
 from fiberbend.fit.words import with_error
 from fiberbend.tensile.reading import Wanted
+from fiberbend.tensile.shipped import file_of
 from materials.fit.modes import UNIAXIAL
 from tests.conftest import ROOT
 
@@ -237,6 +238,16 @@ def test_words_that_are_not_known_are_refused(words: dict[str, Any], line: str) 
 def test_densities_below_zero_and_a_test_twice_are_refused(tmp_path: Path) -> None:
     with pytest.raises(fiberbend.CaseError, match="given more than once, expected each test once"):
         fiberbend.fit([RUBBER, RUBBER], "neo-hooke")
+    again = tmp_path / "again.csv"
+    again.write_bytes(file_of(Path(RUBBER)).read_bytes())
+    given: list[dict[str, Any]] = [
+        {"uniaxial": [RUBBER, str(again)]},
+        {"uniaxial": RUBBER, "equibiaxial": str(again)},
+    ]
+    for words in given:
+        with pytest.raises(fiberbend.CaseError, match="the same points as dragon-skin-30"):
+            fiberbend.fit(law="neo-hooke", **words)
+    again.unlink()
     found = fiberbend.fit(RUBBER, "neo-hooke")
     with pytest.raises(fiberbend.CaseError, match="expected a density zero or above"):
         found.save(tmp_path / "rubber.yaml", density="-1 g/cm^3")

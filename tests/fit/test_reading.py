@@ -51,6 +51,13 @@ FILES = {
         STRESS,
         mark=";",
     ),
+    "units below without brackets": lines(
+        "Time,Eng Strain,Eng Stress\ns,-,N/mm2", np.arange(5.0), STRETCH - 1, STRESS
+    ),
+    # a percent sign begins comments too
+    "percent below": lines(
+        "Eng Strain;Eng Stress\n%;kPa", 100 * (STRETCH - 1), 1e3 * STRESS, mark=";"
+    ),
     "of several": lines(
         "true stress [MPa],true strain,engineering strain,engineering stress [MPa]",
         STRESS * STRETCH,
@@ -127,6 +134,11 @@ REFUSED = {
         lines("engineering strain,engineering stress [MPa]", 100 * STRETCH, STRESS),
         Wanted(),
         "has no unit, expected [%] or [1]",
+    ),
+    "signs in cells": (
+        "engineering strain,engineering stress [MPa]\n10 %,0.021\n20 %,0.039\n",
+        Wanted(),
+        "no lines of numbers, the last line is '20 %,0.039'",
     ),
     "two stresses": (
         lines("stretch,eng stress 1 [MPa],eng stress 2 [MPa]", STRETCH, STRESS, STRESS),
