@@ -32,11 +32,12 @@ _KINDS = {
 
 
 def declarations() -> str:
-    """The types of kernels for cffi: those that this FFCx declares itself."""
-    parts = ("HEADER", "ELEMENT", "DOFMAP", "INTEGRAL", "FORM", "EXPRESSION")
-    given = (getattr(jit, f"UFC_{part}_DECL", "") for part in parts)
-    header, *others = (text or "" for text in given)
-    return "\n".join([header.format("double"), *others])
+    """The types of kernels for cffi: all that this FFCx declares."""
+    given = {name: text for name, text in vars(jit).items() if re.fullmatch(r"UFC_\w+_DECL", name)}
+    header = given.pop("UFC_HEADER_DECL").format("double")
+    # these two have the others in them
+    last = [given.pop(f"UFC_{name}_DECL") for name in ("FORM", "EXPRESSION")]
+    return "\n".join([header, *given.values(), *last])
 
 
 def compiler() -> list[str]:
