@@ -46,7 +46,7 @@ def compiler() -> list[str]:
     return given or shlex.split(str(sysconfig.get_config_var("CC")))
 
 
-class _Builder:
+class Builder:
     """What FFCx asks of `cffi.FFI`."""
 
     def set_source(
@@ -123,7 +123,7 @@ def plain(ffi: Any) -> Iterator[None]:
         return None, None
 
     replaced = {
-        "cffi": types.SimpleNamespace(FFI=_Builder),
+        "cffi": types.SimpleNamespace(FFI=Builder),
         "get_cached_module": find,
         "_load_objects": load,
     }
@@ -133,3 +133,29 @@ def plain(ffi: Any) -> Iterator[None]:
         yield
     finally:
         vars(jit).update(original)
+
+
+@contextlib.contextmanager
+def together(forms: Sequence[Any]) -> Iterator[None]:
+    """Forms that dolfinx has compiled one by one meanwhile come from one library of them all.
+
+    What they share is written and compiled once: elements and their numbering, headers, the link.
+
+    Args:
+        forms: UFL forms; none else is compiled meanwhile.
+    """
+    original, made = jit.compile_forms, list[tuple[Any, ...]]()
+
+    def compile_forms(wanted: Sequence[Any], **settings: Any) -> tuple[Any, ...]:
+        if not made:
+            made.append(original(list(forms), **settings))
+        objects, *rest = made[0]
+        (form,) = wanted
+        place = next(i for i, each in enumerate(forms) if each is form)
+        return ([objects[place]], *rest)
+
+    jit.compile_forms = compile_forms
+    try:
+        yield
+    finally:
+        jit.compile_forms = original
