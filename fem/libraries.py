@@ -72,7 +72,7 @@ class Builder:
             if _KINDS.get(name.partition("_")[0]) != kind:
                 raise NotImplementedError(f"{kind} {name}: FFCx names its objects otherwise")
 
-    def compile(self, tmpdir: str | Path, verbose: bool = False, debug: Any = None) -> None:
+    def compile(self, tmpdir: str | Path, **_: Any) -> None:
         """Compile and link it.
 
         Raises:
