@@ -266,8 +266,8 @@ def test_what_it_leaves_and_answers(tmp_path: Path, by_law: Put) -> None:
 
     with Image.open(folder / "pictures" / "animation.gif") as film:
         durations = [frame.info["duration"] for frame in ImageSequence.Iterator(film)]
-    # 20 ms from frame to frame of 0.1 s, in real time but for the first and the last one
-    assert set(durations[1:-1]) == {20}
+    # 10 ms from frame to frame of 0.1 s, in real time but for the first and the last one
+    assert set(durations[1:-1]) == {10}
     text = "\n".join(lines(answer(given, found.rows, found.run)))
     assert "greatest angle" in text
     assert "at rest under the last pressure" in text
