@@ -11,6 +11,8 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 export OMPI_MCA_rmaps_base_oversubscribe := 1
 # the same for Open MPI 5
 export PRTE_MCA_rmaps_default_mapping_policy := :oversubscribe
+# containers often forbid it; then each process compiles all modules of Python again
+unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
 .PHONY: help setup tools demo sweep test browser notebook verify hard survive tables speed accuracy \

@@ -12,7 +12,6 @@ import os
 import platform
 import shutil
 import sys
-import sysconfig
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -28,6 +27,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from ufl.corealg.traversal import traverse_unique_terminals
 
+from fem import libraries
 from machine import folders
 from machine.folders import MachineError
 
@@ -39,7 +39,7 @@ COMPILER_FLAGS = [
 ]
 
 _SUM = ".sum"
-_MADE = (".c", ".c.cached", ".o", str(sysconfig.get_config_var("EXT_SUFFIX")))
+_MADE = (".c", ".c.cached", ".o", libraries.SUFFIX)
 """Endings of what the compiler makes: a folder of hundreds of kernels is slow to list."""
 
 for _name in ("FFCx", "ffcx", "UFL", "UFL_LEGACY"):
@@ -109,11 +109,19 @@ def compiling(comm: MPI.Comm) -> Iterator[None]:
 
 
 def compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
-    """What `make` compiles with the options of the compiler that it is given; collective.
+    """What FFCx compiles in `make` with the options of the compiler that it is given; collective.
 
     Raises:
         MachineError: no C compiler, or it failed.
     """
+    with compiling(comm):
+        known = library(comm, [], libraries.declarations(), "#include <ufcx.h>", "types")
+        with libraries.plain(known.ffi):
+            return _compiled(comm, make)
+
+
+def _compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
+    """What `make` compiles, each file once and whole; see `compiled`."""
     options = {
         "cache_dir": str(cache_folder()),
         "cffi_extra_compile_args": COMPILER_FLAGS,
@@ -128,8 +136,7 @@ def compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
         # on several ranks dolfinx hands on the text of the error only
         if "compil" not in f"{type(error).__name__} {error}".lower():
             raise
-        given = os.environ.get("CC", "").split()
-        name = (given or str(sysconfig.get_config_var("CC")).split())[0]
+        name = libraries.compiler()[0]
         if shutil.which(name) is None:
             text = f"no C compiler: {name} is not found; install gcc, or set CC or PATH"
             raise MachineError(text) from error
@@ -139,7 +146,9 @@ def compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
         logging.disable(previous)
 
 
-def library(comm: MPI.Comm, sources: Sequence[Path], declarations: str, head: str = "") -> Any:
+def library(
+    comm: MPI.Comm, sources: Sequence[Path], declarations: str, head: str = "", title: str = ""
+) -> Any:
     """C files of ours as a cffi module with `lib` and `ffi`, kept beside the forms; collective.
 
     Args:
@@ -147,12 +156,14 @@ def library(comm: MPI.Comm, sources: Sequence[Path], declarations: str, head: st
         sources: the C files, compiled as one, in this order.
         declarations: of its functions and types, for cffi.
         head: C before the files.
+        title: how its name begins; else that of the last file.
 
     Raises:
         MachineError: no C compiler, or it failed.
     """
     text = "\n".join([head, *(source.read_text() for source in sources)])
-    name = f"{sources[-1].stem}_{hashlib.sha1((declarations + text).encode()).hexdigest()}"
+    title = title or sources[-1].stem
+    name = f"{title}_{hashlib.sha1((declarations + text).encode()).hexdigest()}"
 
     @dolfinx.jit.mpi_jit_decorator
     def load(options: dict[str, Any]) -> Any:
@@ -161,7 +172,8 @@ def library(comm: MPI.Comm, sources: Sequence[Path], declarations: str, head: st
         if found[0] is None:
             builder = cffi.FFI()
             flags = options["cffi_extra_compile_args"]
-            builder.set_source(name, text, extra_compile_args=flags)
+            place = [ffcx.codegeneration.get_include_path()]
+            builder.set_source(name, text, extra_compile_args=flags, include_dirs=place)
             builder.cdef(declarations)
             with contextlib.redirect_stdout(io.StringIO()):
                 builder.compile(tmpdir=str(folder), verbose=True)
@@ -169,7 +181,7 @@ def library(comm: MPI.Comm, sources: Sequence[Path], declarations: str, head: st
             found = jit._load_objects(folder, name, [])
         return found[1]
 
-    return compiled(comm, lambda options: load(comm, options))
+    return _compiled(comm, lambda options: load(comm, options))
 
 
 @contextlib.contextmanager

@@ -19,6 +19,7 @@ from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
 from fem.kinematics.kinematics import Kinematics
 from fem.kinematics.place import Place, place
+from fem.libraries import together
 from fem.matrix import may_free
 from fem.own_code import OwnCode
 from fem.ranks import total
@@ -162,9 +163,8 @@ class Scene(OwnCode):
 
     def _compile(self, potentials: dict[str, Any]) -> None:
         body, mesh = self.body, self.domain.mesh
-        outside = {key for key, effect in self.effects.items() if effect.outside}
-        forms = derivatives(body, potentials, outside)
-        with compiling(mesh.comm):
+        forms = derivatives(body, potentials, {k for k, e in self.effects.items() if e.outside})
+        with compiling(mesh.comm), together(list(forms.values())):
             self._forms = {name: compat.compile_form(mesh, form) for name, form in forms.items()}
         self.signatures = {name: form.signature() for name, form in forms.items()}
         self.kernels = sum(len(form.integrals()) for form in forms.values())

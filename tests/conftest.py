@@ -17,6 +17,12 @@ from fiberbend.process.ranks import launcher
 
 ROOT = Path(__file__).resolve().parent.parent
 MpiRun = Callable[..., "subprocess.CompletedProcess[str]"]
+BESIDE_OTHERS = {
+    "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMPI_MCA_hwloc_base_binding_policy": "none",
+    "PRTE_MCA_hwloc_default_binding_policy": "none",  # of Open MPI 5
+}
+"""Ranks that wait leave their core to the tests that run beside them, and none is tied to one."""
 
 
 def killed_by(number: int) -> int:
@@ -42,7 +48,7 @@ def mpirun() -> MpiRun:
     def launch(
         ranks: int, arguments: Sequence[str | Path], cwd: Path = ROOT, timeout: float = 300.0
     ) -> subprocess.CompletedProcess[str]:
-        environment = os.environ | MPIRUN
+        environment = os.environ | MPIRUN | BESIDE_OTHERS
         command = [launcher(), "-n", str(ranks), sys.executable, *map(str, arguments)]
         return subprocess.run(
             command, cwd=cwd, env=environment, timeout=timeout, capture_output=True, text=True

@@ -18,7 +18,7 @@ from fiberbend import CaseError, Result
 from fiberbend.models.result import RunResult
 from fiberbend.results.folder import HISTORY_COLUMNS
 from fiberbend.states.snapshot import Snapshot
-from tests.conftest import ROOT, MpiRun
+from tests.conftest import ROOT
 from tests.run.conftest import small
 
 SECTION = ROOT / "cases" / "section.yaml"
@@ -382,32 +382,6 @@ def test_plot_is_drawn_by_its_own_module(
     assert one == ("A short actuator", bent.case.resolved(), bent.rows)
     assert (two[0], three) == ("run", "runs/x")
     assert rest == ["pressure_kPa", "tip_y_mm", (), "a.pdf", "paper", ()]
-
-
-def test_two_ranks_each_have_the_states(mpirun: MpiRun, tmp_path: Path) -> None:
-    script = tmp_path / "script.py"
-    script.write_text(
-        "import json, sys\n"
-        "from pathlib import Path\n"
-        "import fiberbend\n"
-        "from fiberbend.process.ranks import rank\n"
-        "case = json.loads(Path(sys.argv[1]).read_text())\n"
-        "r = fiberbend.run(case)\n"
-        "grid = r.mesh('last')\n"
-        "found = rank(), grid.n_cells, r.last('angle_deg'), r.kept_in\n"
-        "sys.stdout.write(' '.join(map(str, found)) + '\\n')  # at once, so that lines stay whole\n"
-    )
-    case = small(mesh={"axial": "6 mm"}, output={})
-    case["effects"][0] = {"pressure": {"to": "10 kPa"}}
-    case["effects"][1]["winding"]["as"] = "smeared"
-    (tmp_path / "case.json").write_text(json.dumps(case))
-    done = mpirun(2, [script, tmp_path / "case.json"])
-    assert done.returncode == 0, done.stderr
-    first, second = sorted(line.split() for line in done.stdout.splitlines() if "kPa" not in line)
-    assert first[1:3] == second[1:3]
-    assert first[3] != second[3]
-    assert not Path(first[3]).exists()
-    assert not Path(second[3]).exists()
 
 
 def test_a_damaged_state_is_named(folder: Path, tmp_path: Path) -> None:

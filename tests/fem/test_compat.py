@@ -11,12 +11,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import cffi
 import numpy as np
 import pytest
 import ufl
 
 from fem import compat
+from fem.libraries import Builder
 from machine.folders import MachineError
 from tests.conftest import ROOT
 from tests.fem.parts import sector
@@ -150,6 +150,6 @@ def test_values_at_points_are_compiled_once(monkeypatch: pytest.MonkeyPatch) -> 
         return compat.PointValues(mesh, place[2] ** 2, np.full((1, 3), 0.25))()
 
     first, compiled = values(), list[str]()
-    monkeypatch.setattr(cffi.FFI, "compile", lambda *_, **given: compiled.append(str(given)))
+    monkeypatch.setattr(Builder, "compile", lambda *_, **given: compiled.append(str(given)))
     assert np.array_equal(values(), first)
     assert compiled == []

@@ -17,10 +17,14 @@ CASE = ROOT / "cases" / "free_bending.yaml"
 Values = Callable[[Rung, Asked], float]
 
 
+whole = functools.cache(ladder)
+"""The ladder of a case, made once."""
+
+
 @functools.cache
 def of_case(path: Path = CASE) -> Ladder:
     """The ladder of a case, calibrated windings left out: two kinds of windings are enough here."""
-    found = ladder(path)
+    found = whole(path)
     rungs = tuple(rung for rung in found.rungs if rung.family.winding != "calibrated")
     return dataclasses.replace(found, rungs=rungs)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import io
 import itertools
 from typing import Any
@@ -14,17 +15,17 @@ from fiberbend.ladder import picture
 from fiberbend.ladder.advice import pareto
 from fiberbend.ladder.asked import asked
 from fiberbend.ladder.errors import Judgement, judge
-from fiberbend.ladder.rungs import Rung, ladder
+from fiberbend.ladder.rungs import Rung
 from fiberbend.ladder.words import WINDINGS, short, short_mesh
 from tests.conftest import ROOT
-from tests.ladder.parts import CASE, judged, record, truth
+from tests.ladder.parts import CASE, judged, record, truth, whole
 
 CASES = (CASE, ROOT / "cases" / "blocked_tip.yaml")
 
 
 def calibrated() -> Judgement:
     """The baseline's ladder with its calibrated windings, which stand on those of every turn."""
-    rungs = ladder(CASE).rungs
+    rungs = whole(CASE).rungs
     pairs = []
     for rung in rungs:
         turns = dataclasses.replace(rung.family, winding="turns")
@@ -38,7 +39,13 @@ def calibrated() -> Judgement:
     return judge(asked(rungs[0].case), pairs, rungs)
 
 
-JUDGED = {"free": judged(), "blocked": judged(path=CASES[1]), "calibrated": calibrated()}
+LADDERS = {"free": judged, "blocked": lambda: judged(path=CASES[1]), "calibrated": calibrated}
+
+
+@functools.cache
+def judgement_of(name: str) -> Judgement:
+    """One of them, made once, and not where tests are collected."""
+    return LADDERS[name]()
 
 
 def drawn(judgement: Judgement) -> Any:
@@ -50,10 +57,10 @@ def drawn(judgement: Judgement) -> Any:
     return pages[0]
 
 
-@pytest.fixture(scope="module", params=JUDGED)
+@pytest.fixture(scope="module", params=LADDERS)
 def found(request: pytest.FixtureRequest) -> tuple[Any, Judgement]:
     """A ladder and its page."""
-    judgement = JUDGED[request.param]
+    judgement = judgement_of(request.param)
     return drawn(judgement), judgement
 
 
@@ -93,7 +100,7 @@ def test_the_front_is_named_and_no_texts_overlap(found: tuple[Any, Judgement]) -
 
 def test_every_family_looks_otherwise_and_everywhere_the_same() -> None:
     looks: dict[str, Any] = {}
-    for judgement in JUDGED.values():
+    for judgement in map(judgement_of, LADDERS):
         families = {each.rung.family.discretisation for each in judgement.rungs}
         for family in families:
             look = picture._look(family)

@@ -34,7 +34,8 @@ FAMILIES = {
 }
 
 
-ZONED = [path for path in CASES if read_case(path).zones is not None]
+READ = {path: read_case(path) for path in CASES}
+ZONED = [path for path, case in READ.items() if case.zones is not None]
 
 
 @pytest.mark.parametrize("path", ZONED, ids=lambda path: path.stem)
@@ -43,7 +44,7 @@ def test_no_error_is_known_of_zones(path: Path) -> None:
         of_case(path)
 
 
-TIMED = [path for path in CASES if read_case(path).time is not None]
+TIMED = [path for path, case in READ.items() if case.time is not None]
 
 
 @pytest.mark.parametrize("path", TIMED, ids=lambda path: path.stem)
@@ -69,7 +70,7 @@ def test_every_shipped_case_has_a_ladder(path: Path) -> None:
     models = {rung.family.model for rung in found.rungs}
     assert models | {each.name.partition("-")[0] for each in found.missing} == set(MODELS)
     words = {rung.family.winding for rung in found.rungs}
-    assert ("" in words) == (read_case(path).turns is None)
+    assert ("" in words) == (READ[path].turns is None)
 
 
 @pytest.mark.parametrize(("name", "families"), FAMILIES.items(), ids=FAMILIES)

@@ -28,7 +28,9 @@ def store(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Store:
     return Store(path)
 
 
-@pytest.mark.parametrize("name", ["twist", "braid", "unequal"])
+@pytest.mark.parametrize(
+    "name", ["twist", "braid", pytest.param("unequal", marks=pytest.mark.long)]
+)
 def test_the_section_gives_what_its_cell_gives(name: str, store: Store) -> None:
     example = EXAMPLES[name]
     section, cell = example.solved(CALIBRATED), example.solved(CELL, layers=2)
@@ -45,6 +47,7 @@ def _case(name: str = "braid", mirrored: bool = False, **changes: Any) -> dict[s
     return (EXAMPLES | MORE)[name].case(CALIBRATED, mirrored=mirrored) | changes
 
 
+@pytest.mark.long
 def test_mirrored_hands_have_the_same_bed_and_mirrored_answers(store: Store) -> None:
     one, other = (run(_case("twist", mirrored=each)) for each in (False, True))
     numbers = ("normal_MPa", "along_MPa", "across", "pressure")

@@ -80,6 +80,7 @@ def test_the_clamp_makes_the_root_stiffer_than_a_beam(free: Ends) -> None:
     assert free.flexibility == pytest.approx(turn / 1.15, rel=0.02)
 
 
+@pytest.mark.long
 def test_a_tube_turns_about_its_line_and_its_mirror_image_the_other_way(store: Kept) -> None:
     left = ends_of(checked(TUBE), 0.02, store)
     (family,) = TUBE["effects"][1]["winding"]["families"]

@@ -60,9 +60,10 @@ def test_stopped_it_keeps_its_rows(tmp_path: Path, by_law: Put) -> None:
     assert f"stopped at {float(rows[-1]['time_s']):.4g} s" in run["reason"]
 
 
+@pytest.mark.long
 @pytest.mark.mpi
 def test_two_ranks_move_as_one(mpirun: MpiRun, tmp_path: Path) -> None:
-    settings = ["time.duration=50 ms", "output={pictures: false}"]
+    settings = ["time.duration=50 ms", "output={pictures: false, report: false}"]
     given = [part for each in settings for part in ("--set", each)]
     folder = tmp_path / "run"
     done = mpirun(2, ["-m", "fiberbend", "run", SHIPPED, *given, "--out", folder])

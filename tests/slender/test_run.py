@@ -107,7 +107,7 @@ def test_it_is_solved_again_where_it_is_resumed(
 
 @pytest.mark.mpi
 def test_two_ranks_have_the_history_of_one(mpirun: MpiRun, tmp_path: Path) -> None:
-    settings = ["--set", "output={pictures: false}"]
+    settings = ["--set", "output={pictures: false, report: false}"]
     done = mpirun(2, ["-m", "fiberbend", "run", SHIPPED, *settings, "--out", tmp_path / "run"])
     assert done.returncode == 0, done.stderr
     run = json.loads((tmp_path / "run" / "run.json").read_text(encoding="utf-8"))

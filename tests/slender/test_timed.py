@@ -253,21 +253,21 @@ def test_beyond_the_law_it_fails_and_says_when(by_law: Put) -> None:
 def test_what_it_leaves_and_answers(tmp_path: Path, by_law: Put) -> None:
     by_law(BENT)
     output = {"pictures": True, "report": True, "animation": True}
-    given = case(WEIGHT, PRESSED, time=TIME, output=output)
+    given = case(WEIGHT, PRESSED, time=TIME | {"duration": "100 ms"}, output=output)
     found = run_case(given, tmp_path / "run")
     folder = tmp_path / "run"
     with (folder / "history.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert float(rows[-1]["time_s"]) == pytest.approx(0.4)
+    assert float(rows[-1]["time_s"]) == pytest.approx(0.1)
     entry = json.loads((folder / "run.json").read_text(encoding="utf-8"))["motion"]
-    assert entry["time_s"] == pytest.approx(0.4)
+    assert entry["time_s"] == pytest.approx(0.1)
     assert (folder / "pictures" / "over_time.png").stat().st_size > 10_000
     from PIL import Image, ImageSequence
 
     with Image.open(folder / "pictures" / "animation.gif") as film:
         durations = [frame.info["duration"] for frame in ImageSequence.Iterator(film)]
-    # 20 ms from frame to frame of 0.4 s, in real time but for the first and the last one
-    assert set(durations[1:-1]) == {20}
+    # 10 ms from frame to frame of 0.1 s, in real time but for the first and the last one
+    assert set(durations[1:-1]) == {10}
     text = "\n".join(lines(answer(given, found.rows, found.run)))
     assert "greatest angle" in text
     assert "at rest under the last pressure" in text
