@@ -13,12 +13,10 @@ from fiberbend.answer.motion import SEEN, STRETCH, STRETCHED, Reading
 from fiberbend.answer.moves import moves
 from fiberbend.case.case import Case
 from fiberbend.schema.units import show
-from fiberbend.sweep.quantities import kilopascals, pressure_column
+from fiberbend.sweep.quantities import kilopascals, motion_column, pressure_column
 
 _SAME = 1e-6
 """Part of an asked value by which a row may miss it."""
-_LETTERS = str.maketrans({"°": "deg", "%": "percent", " ": "_"})
-"""From words and units to the name of a column."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -131,6 +129,5 @@ def _read(reading: Reading, pressure: float | None) -> Asked:
         kind = {"rest": 1.0, "factor": 100.0, "least": 100 * STRETCHED}
     elif unit == "°":
         kind = {"together": f"turn at {at}", "least": SEEN}
-    words, unit_words = name.translate(_LETTERS), unit.translate(_LETTERS)
-    named = f"end_{words}" if pressure is None else f"{words}_{kilopascals(pressure)}"
-    return Asked(f"{named}_{unit_words}", f"{name} at {at}", unit, column, **place, **kind)
+    named = motion_column(dataclasses.replace(reading, name=name, unit=unit), pressure)
+    return Asked(named, f"{name} at {at}", unit, column, **place, **kind)

@@ -196,7 +196,7 @@ def test_what_is_held_is_asked_for_its_force() -> None:
     assert names == {
         f"{force}_{kPa}kPa_{unit}"
         for kPa in (10, 20, 30)
-        for force, unit in (("axial_force", "N"), ("torque", "N_mm"))
+        for force, unit in (("axial_force", "N"), ("torque", "Nmm"))
     }
 
 
