@@ -63,6 +63,14 @@ radius has other luck. Of several answers, such as the pressures at several angl
 counts. The limit of the finest family is itself not known exactly: below the dashed line, in the
 grey band, runs cannot be told apart. The advice adds what is not known of it to every error.
 
+What is compared is what the case asks for. Of a pressure it is what the actuator may do by its
+symmetry: bend, twist, bend to the side; where it can do none of these, how far it lengthens; where
+an effect holds a motion, the force or moment on what holds it; of zones what each zone does. Angles
+of one state are judged together, in percent of the greatest: of what bends by 90° and twists by 1°,
+half a degree more of twist is 0.6 %. Zones, strips and loads at the tip have the rungs of the models
+that know them, and the ladder says by name what the others refuse. A motion in time has none: a rod
+alone moves, and nothing is there to compare it with.
+
 The limits are those of equations, not of rubber: how far the model is from an experiment is on
 [the cross-check of every run](crosscheck.md). Half and whole body give the same answers; the
 whole one shows what the mirror plane saves. Times are those of one process on one core, with

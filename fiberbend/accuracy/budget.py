@@ -20,7 +20,9 @@ from fiberbend.accuracy.table import (
     reaches,
     up_to,
 )
+from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.case.symmetry import stays_straight
 from fiberbend.models.model import MeshedModel, Rung
 from fiberbend.models.resolution import CALIBRATED
 
@@ -76,6 +78,7 @@ class Estimate:
         outside: why, a number or a reason each.
         unknown: why no error can be promised; empty where one can.
         sources: where each part comes from.
+        tells: the parts say something of the case; else the table is of other actuators.
     """
 
     parts: Mapping[str, float]
@@ -84,6 +87,7 @@ class Estimate:
     outside: tuple[str, ...] = ()
     unknown: tuple[str, ...] = ()
     sources: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    tells: bool = True
 
     @property
     def total(self) -> float:
@@ -145,6 +149,9 @@ def estimate(
     states = states or [State(each) for each in curvatures(case, table)]
     furthest = max(state.curvature for state in states)
     factor, reasons, beyond = _widening(case, entries, furthest, table)
+    # of what does not bend, and of families of threads, the table has nothing
+    known = (case.straight or not stays_straight(case)) and not beyond
+    tells = known and not (case.turns and case.turns.pitch is None)
     unknown += beyond
     worst: Estimate | None = None
     for state in states:
@@ -169,7 +176,7 @@ def estimate(
         parts = {name: state.factor * value for name, value in parts.items()}
         angle = None if case.straight else here * case.actuator.length / radius(case)
         why = tuple(dict.fromkeys(unknown))
-        found = Estimate(parts, angle, factor, reasons, why, _sources(case, state))
+        found = Estimate(parts, angle, factor, reasons, why, _sources(case, state), tells)
         if worst is None or found.total > worst.total:
             worst = found
     assert worst is not None
@@ -358,7 +365,7 @@ def _widening(
         if times > BEYOND:
             beyond.append(f"more than twice outside of what is known: {text}")
         factor *= min(times, BEYOND) ** 2
-    laws = {_law(case, part) for part, spec in dict(case.materials).items() if spec is not None}
+    laws = {convert.material(spec).law for _, spec in case.materials if spec is not None}
     if other := sorted(laws - _LAWS):
         reasons.append(f"law {', '.join(other)} (known: {', '.join(sorted(_LAWS))})")
         factor *= OTHER_LAW
@@ -366,12 +373,6 @@ def _widening(
         reasons.append("a winding with a hand (known: double helix)")
         factor *= OTHER_PATTERN
     return factor, tuple(reasons), beyond
-
-
-def _law(case: Case, part: str) -> str:
-    from fiberbend.case import convert
-
-    return convert.material(getattr(case.materials, part)).law
 
 
 def _unknown(case: Case, model: MeshedModel, entries: Sequence[Known]) -> Iterator[str]:
@@ -384,7 +385,8 @@ def _unknown(case: Case, model: MeshedModel, entries: Sequence[Known]) -> Iterat
     if case.turns is None:
         yield "nothing is known of actuators without a winding"
     elif case.turns.pitch is None:
-        yield "nothing is known of windings by families"
+        few = "three cells of families were 0.2, 1.5 and 2 % off finer ones"
+        yield f"{few} (docs/evidence/families.md), which are too few to promise by"
     load = case.inflation
     if load is None:
         yield "nothing inflates it"

@@ -60,7 +60,7 @@ class Candidate:
         words = [self.model.name, f"section {mesh.section}"]
         rung = self.model.rung(self.case)
         if rung is not None and (rung.axial or rung.layers):
-            words.append(f"axial {show(mesh.axial, 'length')}")
+            words.append(f"axial {mesh.axial:.4g} mm")
         turns = self.case.turns
         if turns is not None:
             words.append(f"winding {wound(turns)}")

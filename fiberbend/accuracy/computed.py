@@ -65,8 +65,9 @@ def missed(run: Mapping[str, Any]) -> list[str]:
     if not block or block["promised"]:
         return []
     asked = show(block["asked"], "accuracy")
-    estimated = f"{percent(block['estimated'])} % is estimated"
-    return [f"accuracy: {asked} {MISSED}, {estimated}: {block['reason']}"]
+    known = block["estimated"]
+    estimated = "nothing" if known is None else f"{percent(known)} %"
+    return [f"accuracy: {asked} {MISSED}, {estimated} is estimated: {block['reason']}"]
 
 
 def _estimate(

@@ -15,6 +15,7 @@ from fiberbend.schema.units import show
 
 PAGE = "docs/models.md"
 MISSED = "cannot be promised"
+MEASURED = "fiberbend accuracy measures it"
 
 
 def expected_lines(case: Case) -> Iterator[str]:
@@ -26,6 +27,9 @@ def expected_lines(case: Case) -> Iterator[str]:
     verdict = "promised" if found.meets(case.accuracy) else MISSED
     reason = "" if found.meets(case.accuracy) else f": {why_not(found, case)}"
     asked = show(case.accuracy, "accuracy")
+    if not found.tells:
+        yield f"{asked} asked: {verdict}{reason}"
+        return
     yield f"{asked} asked, about {found.short()} expected{where}: {verdict}{reason}"
     if picked(case):
         why = "the cheapest that does" if found.meets(case.accuracy) else "the best affordable"
@@ -74,7 +78,9 @@ def why_not(found: Estimate, case: Case) -> str:
     asked = case.accuracy
     assert asked is not None
     reasons = list(found.unknown)
-    if found.total > asked:
+    if reasons and case.inflation is not None:
+        reasons[-1] += f" ({MEASURED})"
+    if found.tells and found.total > asked:
         remedies = {
             MESH: "shorter or more elements lower it",
             WINDING: _more_turns(case),
@@ -109,8 +115,8 @@ def entry(case: Case, found: Estimate) -> dict[str, Any]:
     promised = found.meets(asked)
     return {
         "asked": asked,
-        "estimated": round(found.total, 3),
-        "parts": {name: round(value, 3) for name, value in found.parts.items()},
+        "estimated": round(found.total, 3) if found.tells else None,
+        "parts": {n: round(value, 3) for n, value in found.parts.items()} if found.tells else {},
         "promised": promised,
         "reason": "" if promised else why_not(found, case),
         "angle_deg": None if found.angle is None else round(math.degrees(found.angle), 3),
@@ -125,6 +131,8 @@ def answered(run: Mapping[str, Any]) -> tuple[str, str] | None:
     block = run.get("accuracy")
     if not block:
         return None
+    if block["estimated"] is None:
+        return "not known", MEASURED
     parts = ", ".join(f"{name} {percent(value)}" for name, value in block["parts"].items())
     return f"{percent(block['estimated'])} %", parts
 

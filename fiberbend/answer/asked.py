@@ -16,7 +16,7 @@ Told = tuple[str, str, str]
 
 _SAME = 1e-6
 """Part of an asked angle or pressure by which a row may miss it."""
-_HELD = {
+HELD = {
     col.AXIS_STRETCH: Reading((col.AXIAL_FORCE,), "axial force", "N"),
     col.ANGLE: Reading((col.MOMENT_X,), "bending moment", "N mm"),
     col.SIDE_ANGLE: Reading((col.MOMENT_Y,), "side moment", "N mm"),
@@ -50,9 +50,9 @@ def asked(case: Case, model: ModelKind, rows: Sequence[col.Row]) -> Iterator[Tol
     held = {key: text for effect in case.acting for key, text in effect.held().items()}
     yield from _motions(case, rows, held)
     for motion, text in held.items():
-        force = _HELD[motion].told(rows[-1])
+        force = HELD[motion].told(rows[-1])
         if force:
-            yield _HELD[motion].name, force, f"at the end, on what holds {text}"
+            yield HELD[motion].name, force, f"at the end, on what holds {text}"
 
 
 def _at(rows: Sequence[col.Row], key: Reading, goal: float, wanted: Reading) -> Told:
@@ -81,7 +81,7 @@ def _motions(case: Case, rows: Sequence[col.Row], held: Mapping[str, str]) -> It
         return
     for angle in dict.fromkeys(case.output.at_angles):
         yield _at(rows, BEND, math.degrees(angle), _PRESSURE)
-    told = [*told_by(rows, held), *(_HELD[motion] for motion in held)]
+    told = [*told_by(rows, held), *(HELD[motion] for motion in held)]
     for pressure in dict.fromkeys(case.output.at_pressures):
         yield from (_at(rows, _PRESSURE, 1e3 * pressure, wanted) for wanted in told)
 

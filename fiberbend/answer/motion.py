@@ -11,7 +11,7 @@ from fiberbend.answer.numbers import quantity
 
 SEEN = 5e-3
 """Degrees and millimetres that are shown; less is round-off."""
-_STRETCHED = 1e-4
+STRETCHED = 1e-4
 """Change of the stretch that is shown."""
 
 
@@ -36,7 +36,7 @@ class Reading:
 
     def made(self, row: col.Row) -> bool:
         """Whether it does it at all."""
-        rest, seen = (1.0, _STRETCHED) if self == STRETCH else (0.0, SEEN)
+        rest, seen = (1.0, STRETCHED) if self == STRETCH else (0.0, SEEN)
         return any(abs((row.get(key) or rest) - rest) > seen for key in self.columns)
 
 

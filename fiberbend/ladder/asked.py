@@ -5,11 +5,15 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 from fiberbend import columns as col
+from fiberbend.answer.asked import HELD
+from fiberbend.answer.motion import SEEN, STRETCH, STRETCHED, Reading
+from fiberbend.answer.moves import moves
 from fiberbend.case.case import Case
 from fiberbend.schema.units import show
-from fiberbend.sweep.quantities import angle_column, kilopascals, pressure_column
+from fiberbend.sweep.quantities import kilopascals, motion_column, pressure_column
 
 _SAME = 1e-6
 """Part of an asked value by which a row may miss it."""
@@ -26,6 +30,11 @@ class Asked:
         column: of history.csv, that has the value.
         key: column in which the row is found; empty for the last row.
         goal: value of that column.
+        rest: value at rest, from which it counts.
+        factor: of its unit over that of the column.
+        together: quantities with the same word are judged in parts of the greatest of them; of one
+            that is empty in parts of itself.
+        least: size of the greatest from which an error in parts of it means anything.
     """
 
     name: str
@@ -34,6 +43,10 @@ class Asked:
     column: str
     key: str = ""
     goal: float = 0.0
+    rest: float = 0.0
+    factor: float = 1.0
+    together: str = ""
+    least: float = 0.0
 
     def value(self, rows: Sequence[col.Row], ended: bool) -> float | None:
         """Its value: the first that the run comes to; None where it does not.
@@ -52,7 +65,8 @@ class Asked:
                 if row.get(self.key) is not None and abs(row[self.key] - self.goal) <= slack
             ]
         values = (row.get(self.column) for row in found)
-        return next((float(value) for value in values if value is not None), None)
+        first = next((float(value) for value in values if value is not None), None)
+        return None if first is None else self.factor * (first - self.rest)
 
 
 def asked(case: Case) -> tuple[Asked, ...]:
@@ -82,11 +96,38 @@ def _bending(case: Case) -> Iterator[Asked]:
         label = f"pressure at {degrees:.6g}°"
         yield Asked(pressure_column(angle), label, "kPa", col.PRESSURE, col.ANGLE, degrees)
     for pressure in output.at_pressures:
-        label = f"angle at {show(pressure, 'pressure')}"
-        goal = 1e3 * pressure
-        yield Asked(angle_column(pressure), label, "°", col.ANGLE, col.PRESSURE, goal)
+        yield from _moved(case, pressure)
     if angles or output.at_pressures:
         return
-    yield Asked("end_angle_deg", "angle at the end", "°", col.ANGLE)
+    yield from _moved(case, None)
     if load is not None and load.to is None:
         yield Asked("end_pressure_kPa", "pressure at the end", "kPa", col.PRESSURE)
+
+
+def _moved(case: Case, pressure: float | None) -> Iterator[Asked]:
+    """How far it moves at a pressure, or at the end; and what it exerts on what holds a motion.
+
+    Angles at one state are judged together, in parts of the greatest: of what bends by 90° and
+    twists by 1° half a degree more is not half of its answer.
+    """
+    held = {key for effect in case.acting for key in effect.held()}
+    for motion in moves(case):
+        yield _read(motion, pressure)
+    for key in HELD:
+        if key in held:
+            yield _read(HELD[key], pressure)
+
+
+def _read(reading: Reading, pressure: float | None) -> Asked:
+    """What is read off a row, at a pressure or at the end."""
+    (column,), name, unit = reading.columns, reading.name, reading.unit
+    place = {} if pressure is None else {"key": col.PRESSURE, "goal": 1e3 * pressure}
+    at = "the end" if pressure is None else show(pressure, "pressure")
+    kind: dict[str, Any] = {}
+    if not unit:
+        name, unit = name.replace(STRETCH.name, "lengthening"), "%"
+        kind = {"rest": 1.0, "factor": 100.0, "least": 100 * STRETCHED}
+    elif unit == "°":
+        kind = {"together": f"turn at {at}", "least": SEEN}
+    named = motion_column(dataclasses.replace(reading, name=name, unit=unit), pressure)
+    return Asked(named, f"{name} at {at}", unit, column, **place, **kind)

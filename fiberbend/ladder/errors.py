@@ -16,7 +16,7 @@ from fiberbend.case.shapes import SHAPES
 from fiberbend.ladder.asked import Asked
 from fiberbend.ladder.record import Record
 from fiberbend.ladder.richardson import Limit, extrapolate, observed_order
-from fiberbend.ladder.rungs import Family, Rung
+from fiberbend.ladder.rungs import Family, Rung, wound
 from fiberbend.models.choice import MODELS
 
 _FEW = 3
@@ -40,7 +40,7 @@ class FamilyLimit:
 
 @dataclasses.dataclass(frozen=True)
 class RungError:
-    """How far a quantity of a rung is off, in percent of the reference; signed.
+    """How far a quantity of a rung is off, in percent of its scale in the reference; signed.
 
     Attributes:
         total: the value against the reference.
@@ -113,11 +113,8 @@ class Judgement:
 
     def known_to(self) -> float:
         """Percent within which the reference itself is known, over all quantities."""
-        found = self.limits[self.reference].values() if self.reference else ()
-        return max(
-            (100 * each.limit.uncertainty / abs(each.limit.value) for each in found),
-            default=math.inf,
-        )
+        found = self.limits[self.reference] if self.reference else {}
+        return max(_uncertain(self.asked, found), default=math.inf)
 
 
 def judge(
@@ -126,23 +123,54 @@ def judge(
     """Compare rungs with each other.
 
     Args:
-        asked: the quantities; one of which the reference has no limit, or zero, is left out.
+        asked: the quantities; one of which the reference has no limit, or zero, is left out, and
+            so is what hardly moves there.
         solved: the rungs that have an answer.
         every: all rungs of the case, solved or not; for `finest`.
     """
     limits = _limits(asked, solved)
-    reference = _reference(limits, solved)
+    reference = _reference(asked, limits, solved)
     judged = []
     for rung, record in solved:
         own = limits.get(rung.family.discretisation, {})
-        found = dict(_errors(record, own, limits[reference])) if reference else {}
+        wanted = limits[reference] if reference else {}
+        found = dict(_errors(record, own, wanted, scales(asked, wanted)))
         flaw = ""
-        if reference is None or found.keys() != limits[reference].keys():
+        if reference is None or found.keys() != scales(asked, wanted).keys():
             flaw = "not all that is asked for"
         elif not all(math.isfinite(error.mesh) for error in found.values()):
             flaw = "mesh error not known"
         judged.append(Judged(rung, record, found, flaw))
     return Judgement(tuple(asked), reference, limits, tuple(judged), finest(every))
+
+
+def scales(asked: Sequence[Asked], found: Mapping[str, FamilyLimit]) -> dict[str, float]:
+    """What the error of each quantity is a part of, with the sign of the quantity.
+
+    Its own limit, or the greatest of those that are judged together with it.
+
+    Args:
+        asked: the quantities; left out is one without a limit, and one that is too small to tell.
+        found: the limits of a family.
+    """
+    sizes: dict[str, float] = {}
+    for each in asked:
+        if each.name in found:
+            key = each.together or each.name
+            sizes[key] = max(sizes.get(key, 0.0), abs(found[each.name].limit.value))
+    return {
+        each.name: math.copysign(sizes[each.together or each.name], found[each.name].limit.value)
+        for each in asked
+        if each.name in found and sizes[each.together or each.name] > each.least
+    }
+
+
+def _uncertain(asked: Sequence[Asked], found: Mapping[str, FamilyLimit]) -> list[float]:
+    """Percent by which limits of a family may be off, of those that have a scale."""
+    return [
+        100 * found[name].limit.uncertainty / abs(scale)
+        for name, scale in scales(asked, found).items()
+    ]
 
 
 def finest(rungs: Sequence[Rung]) -> Family | None:
@@ -166,24 +194,27 @@ def _shape(family: Family) -> int:
 
 
 def _discrete(rung: Rung) -> bool:
-    return rung.case.turns is not None and rung.case.turns.discrete
+    return any(turns.discrete for turns in wound(rung.case))
 
 
 def _errors(
-    record: Record, own: Mapping[str, FamilyLimit], reference: Mapping[str, FamilyLimit]
+    record: Record,
+    own: Mapping[str, FamilyLimit],
+    reference: Mapping[str, FamilyLimit],
+    scale: Mapping[str, float],
 ) -> Iterator[tuple[str, RungError]]:
-    for name, wanted in reference.items():
-        goal, value = wanted.limit.value, record.values.get(name)
+    for name, size in scale.items():
+        goal, value = reference[name].limit.value, record.values.get(name)
         if value is None:
             continue
         limit = own[name].limit if name in own else Limit(math.nan, math.inf)
         known = math.isfinite(limit.uncertainty)
-        mesh = (value - limit.value) / goal if known else math.nan
-        model = (limit.value - goal) / goal if known else math.nan
-        unsure = limit.uncertainty / abs(goal) if known and own is not reference else 0.0
+        mesh = (value - limit.value) / size if known else math.nan
+        model = (limit.value - goal) / size if known else math.nan
+        unsure = limit.uncertainty / abs(size) if known and own is not reference else 0.0
         yield (
             name,
-            RungError(*(100 * part for part in ((value - goal) / goal, mesh, model, unsure))),
+            RungError(*(100 * part for part in ((value - goal) / size, mesh, model, unsure))),
         )
 
 
@@ -308,7 +339,9 @@ def _corner(
 
 
 def _reference(
-    limits: Mapping[Family, Mapping[str, FamilyLimit]], solved: Sequence[Solved]
+    asked: Sequence[Asked],
+    limits: Mapping[Family, Mapping[str, FamilyLimit]],
+    solved: Sequence[Solved],
 ) -> Family | None:
     """The finest family: of the dearest model, every turn by itself, most known, sharpest limit.
 
@@ -316,14 +349,14 @@ def _reference(
     """
     rank = {}
     for family, found in limits.items():
-        sizes = [each.limit for each in found.values()]
         if MODELS[family.model].elements() is None:
             # a closed form knows itself to all digits, and nothing else
             continue
-        if not all(limit.value and math.isfinite(limit.uncertainty) for limit in sizes):
+        unsure = _uncertain(asked, found)
+        if not unsure or not all(map(math.isfinite, unsure)):
             continue
         own = (rung for rung, _ in solved if rung.family.discretisation == family)
         discrete = any(map(_discrete, own))
-        sharp = max(limit.uncertainty / abs(limit.value) for limit in sizes)
-        rank[family] = (ORDER.index(family.model), discrete, len(found), -_shape(family), -sharp)
+        sharp = max(unsure)
+        rank[family] = (ORDER.index(family.model), discrete, len(unsure), -_shape(family), -sharp)
     return max(rank, key=lambda family: rank[family], default=None)

@@ -18,6 +18,8 @@ from typing import Any, Literal, get_args, get_origin
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.shapes import SHAPES
+from fiberbend.case.zones import effects_of, zone_cases
+from fiberbend.effects.wound.turns import Turns
 from fiberbend.models.choice import MODELS
 from fiberbend.models.model import MeshedModel, ModelKind
 from fiberbend.plan.estimate import cost_of, steps_of_rod
@@ -155,11 +157,8 @@ def ladder(source: Path | dict[str, Any], settings: Sequence[str] = ()) -> Ladde
         CaseError: the case itself is wrong.
     """
     base = as_case(source, settings)
-    if base.zones is not None:
-        text = "no error is known of an actuator with zones, expected a case without"
-        raise CaseError([Problem("zones", text)])
     if base.time is not None:
-        text = "no error is known of an actuator in motion, expected a case without"
+        text = "a rod alone moves, and nothing is there to compare it with, expected a case without"
         raise CaseError([Problem("time", text)])
     rungs: list[Rung] = []
     missing: list[Missing] = []
@@ -181,7 +180,7 @@ class _LeftOutError(Exception):
 
 def _families(base: Case) -> Iterator[tuple[Family, list[str]]]:
     """Every combination of model, winding, elements and halves, with its changes to the case."""
-    path, words = representations(base)
+    paths, words = representations(base)
     # a case that asks for an accuracy would choose its mesh itself where a rung is typed by hand
     own = ["accuracy=null"] if base.accuracy is not None else []
     for name, model in MODELS.items():
@@ -193,26 +192,37 @@ def _families(base: Case) -> Iterator[tuple[Family, list[str]]]:
             for word in words:
                 changes = [*own, f"model={name}"]
                 if word:
-                    changes.append(f"{path}={word}")
+                    changes += [f"{path}={word}" for path in paths]
                 if shape:
                     changes.append(f"mesh.element={shape}")
                 yield Family(name, _WORDS.get(word, word), shape), changes
 
 
-def representations(case: Case) -> tuple[str, tuple[str, ...]]:
-    """Path of the key that says how a winding is represented, and what it takes.
+def representations(case: Case) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Paths of the keys that say how windings are represented, and what they take.
 
     Returns:
-        The path, and one empty word for a case without a winding.
+        The paths, that of the case and those of zones with their own, and the words; one empty
+        word for a case without a winding.
     """
-    for index, effect in enumerate(case.effects):
+    every = {f"effects.{n}.{effect.name}": effect for n, effect in enumerate(case.effects)}
+    for number in range(len(case.zones or ())):
+        every |= effects_of(case, number)
+    paths: list[str] = []
+    words: tuple[str, ...] = ("",)
+    for path, effect in every.items():
         if not effect.winds():
             continue
         for field in type(effect).model_fields.values():
             if field.alias == "as":
                 words = tuple(_literals(field.annotation))
-                return f"effects.{index}.{effect.name}.as", words
-    return "", ("",)
+                paths.append(f"{path}.as")
+    return tuple(paths), words
+
+
+def wound(case: Case) -> list[Turns]:
+    """The windings of a case, or of all its zones."""
+    return [zone.turns for zone in zone_cases(case) if zone.turns is not None]
 
 
 def _literals(annotation: Any) -> Iterator[str]:
@@ -271,8 +281,8 @@ def _read(source: Path | dict[str, Any], settings: Sequence[str], changes: Seque
 
 def _refuse_twice(case: Case, family: Family, model: MeshedModel, others: Sequence[Family]) -> None:
     """Leave out a uniform model whose slice is alike along the axis: a cheaper one is the same."""
-    turns = case.turns
-    alike = not model.ends and model.layers_a_pitch > 0 and not (turns and turns.discrete)
+    resolved = any(turns.discrete for turns in wound(case))
+    alike = not model.ends and model.layers_a_pitch > 0 and not resolved
     for other in others:
         cheaper = MODELS[other.model].elements()
         if alike and cheaper is not None and not cheaper.ends and other.winding == family.winding:
@@ -300,7 +310,7 @@ def _meshes(case: Case, model: MeshedModel) -> Iterator[dict[str, str]]:
     if _one_size(case):
         return
     base = axials[0]
-    if case.turns is not None and case.turns.discrete:
+    if any(turns.discrete for turns in wound(case)):
         # where elements are too long for turns, what those of the section change is another thing:
         # of the baseline's body 1.1 % with one layer a half pitch, of its cell 0.03 % with four
         base = axials[-1] if model.shared else axials[1]
@@ -315,10 +325,11 @@ def _one_size(case: Case) -> bool:
 
 def _axials(case: Case, model: MeshedModel) -> list[str]:
     """Lengths of the elements, halved twice: of a pitch's parts, or of the section's size."""
-    turns = case.turns
-    if turns is not None and turns.discrete:
+    spacings = [turns.spacing for turns in wound(case) if turns.discrete]
+    least = min(spacings, default=math.inf)
+    if math.isfinite(least):
         parts = _EDGES if _one_size(case) else _LAYERS
-        lengths = [turns.spacing / (model.layers_a_pitch * factor) for factor in parts]
+        lengths = [least / (model.layers_a_pitch * factor) for factor in parts]
     else:
         width = convert.dimensions(case.actuator).outline_half_width
         count = max(1, round(case.actuator.length / (_SPREAD * width)))
@@ -359,6 +370,9 @@ def _rung(case: Case, family: Family, changes: Sequence[str], model: ModelKind) 
 
 def _length(case: Case, model: MeshedModel) -> float:
     """Length of the elements along the axis as they are made, mm."""
+    if case.zones is not None and not model.ends:
+        # each zone has a slice of its own, whose layers differ by less than one
+        return case.mesh.axial
     axial = model.mesh_size(case, model.half(case)[0]).axial
     if not model.ends:
         return axial

@@ -29,7 +29,8 @@ def zone_problems(case: Case, known: Collection[Problem]) -> Iterator[Problem]:
         yield Problem("zones", "no zone, expected at least one, or no value")
         return
     if case.accuracy is not None:
-        yield Problem("accuracy", "no error is known of an actuator with zones, expected no value")
+        text = "nothing is promised of an actuator with zones, expected no value"
+        yield Problem("accuracy", f"{text}; fiberbend accuracy measures its error")
     wrong = list(_lengths(case))
     yield from wrong
     yield from _idle(case)

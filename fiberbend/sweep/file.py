@@ -30,7 +30,8 @@ class ReportSpec(Spec):
     angles: tuple[Angle, ...] = Field(default=(), strict=False)
     """Bending angles at which the pressure is reported; every point hits them exactly."""
     pressures: tuple[SignedPressure, ...] = Field(default=(), strict=False)
-    """Pressures at which the bending angle is reported; every point hits them exactly."""
+    """Pressures at which the motion is reported, bending angle, twist and side angle as symmetry
+    allows, else the stretch; every point hits them exactly."""
     force_at: Pressure | None = None
     """Pressure at which the blocked force is reported; none by default."""
     history: tuple[str, ...] = Field(default=(), strict=False)

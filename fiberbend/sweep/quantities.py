@@ -12,6 +12,8 @@ from typing import Any
 
 from analytic.stress import CALIBRATED_MODULUS
 from fiberbend import columns as col
+from fiberbend.answer.motion import BEND, SIDE, TWIST, Reading
+from fiberbend.answer.motion import STRETCH as LENGTH
 from fiberbend.models import lines
 from fiberbend.models.choice import MODELS
 from fiberbend.schema.units import show
@@ -37,8 +39,10 @@ CAPTIONS = {
     "winding_force": "closed form, pressure acting up to the winding",
 }
 """Captions of the analytical lines that are drawn."""
+MOTIONS = (BEND, TWIST, SIDE, LENGTH)
+"""What is told of a pressure, of those that some point may make."""
 _DRAWN = ("zero_fit", "paper")
-_PLAIN = str.maketrans({"°": "deg", "²": "2", "³": "3", " ": None})
+_PLAIN = str.maketrans({"°": "deg", "²": "2", "³": "3", "%": "percent", " ": None})
 """From a unit to its letters in the name of a column."""
 _AT_END = " at the end"
 """End of the label of what a run has at its end."""
@@ -135,6 +139,17 @@ def angle_column(pressure: float, line: str = "") -> str:
     return f"{line and line + '_'}angle_{kilopascals(pressure)}_deg"
 
 
+def motion_column(motion: Reading, pressure: float | None) -> str:
+    """Column of how far an actuator does it at a pressure in MPa, or at the end of a run: None."""
+    words, unit = _letters(motion.name), motion.unit.translate(_PLAIN)
+    at = f"end_{words}" if pressure is None else f"{words}_{kilopascals(pressure)}"
+    return f"{at}_{unit}" if unit else at
+
+
+def _letters(words: str) -> str:
+    return words.replace(" ", "_")
+
+
 def _drawn(solved: Sequence[str]) -> list[str]:
     """Closed forms beside a run: not the one that is the run."""
     own = {MODELS[name].line for name in solved}
@@ -149,10 +164,13 @@ def _states(report: ReportSpec, run: str, drawn: Sequence[str]) -> Iterator[Repo
         label = f"pressure at {math.degrees(angle):.6g}°"
         yield ReportedQuantity("pressure", f"pressure_{degrees(angle)}", label, "kPa", found)
     for pressure in report.pressures:
-        found = {run: angle_column(pressure)}
-        found |= {CAPTIONS[line]: angle_column(pressure, line) for line in drawn}
-        label = f"angle at {show(pressure, 'pressure')}"
-        yield ReportedQuantity("angle", f"angle_{kilopascals(pressure)}", label, "°", found)
+        for motion in MOTIONS:
+            found = {run: motion_column(motion, pressure)}
+            if motion == BEND:
+                found |= {CAPTIONS[line]: angle_column(pressure, line) for line in drawn}
+            label = f"{motion.name} at {show(pressure, 'pressure')}"
+            name = f"{_letters(motion.name)}_{kilopascals(pressure)}"
+            yield ReportedQuantity("angle", name, label, motion.unit, found)
 
 
 def _force(report: ReportSpec, rows: Sequence[TableRow]) -> Iterator[ReportedQuantity]:
@@ -178,13 +196,13 @@ def _history(report: ReportSpec, run: str) -> Iterator[ReportedQuantity]:
 
 def _ends(run: str, rows: Sequence[TableRow]) -> Iterator[ReportedQuantity]:
     """Where nothing is asked for: what is not given at the end of the runs."""
-    for kind, name, unit in (
-        ("angle", "end_angle_deg", "°"),
-        ("pressure", "end_pressure_kPa", "kPa"),
-    ):
+    ends = [(_letters(each.name), motion_column(each, None), each.unit) for each in MOTIONS]
+    for words, name, unit in (*ends, ("pressure", "end_pressure_kPa", "kPa")):
+        kind = "pressure" if words == "pressure" else "angle"
         values = [row[name] for row in rows if row.get(name) is not None]
         if values and max(values) - min(values) > _LEVEL * max(map(abs, values)):
-            yield ReportedQuantity(kind, f"end_{kind}", f"{kind}{_AT_END}", unit, {run: name})
+            label = f"{words.replace('_', ' ')}{_AT_END}"
+            yield ReportedQuantity(kind, f"end_{words}", label, unit, {run: name})
 
 
 def _stretch(report: ReportSpec, run: str) -> ReportedQuantity:

@@ -13,6 +13,8 @@ from typing import Any
 from analytic.bending import Hemicircle
 from analytic.inverse import first_angle
 from fiberbend import columns as col
+from fiberbend.answer.motion import BEND, Reading
+from fiberbend.answer.moves import bends, moves
 from fiberbend.case.case import Case
 from fiberbend.models.choice import MODELS
 from fiberbend.models.closed_form import analytic_curves, lever_arm
@@ -24,10 +26,12 @@ from fiberbend.sweep.quantities import (
     FORCE,
     FORCE_MODEL,
     LINES,
+    MOTIONS,
     STRETCH,
     ReportedQuantity,
     TableRow,
     angle_column,
+    motion_column,
     pressure_column,
 )
 from fiberbend.sweep.store import MARK, NOT_RUN, Store
@@ -54,11 +58,11 @@ _MOST_ROWS = 20
 
 def collect(sweep: Sweep, store: Store) -> list[TableRow]:
     """One row a point, in the order of the sweep; what is not known is None."""
-    rows = []
+    rows, motions = [], _motions(sweep.points)
     for index, point in enumerate(sweep.points):
         row: TableRow = {"point": point.name}
         row |= {column.name: column.values[index] for column in sweep.columns}
-        found = _results(point, sweep.report, store)
+        found = _results(point, sweep.report, store, motions)
         rows.append(row | {name: _settled(name, value) for name, value in found.items()})
     return rows
 
@@ -188,7 +192,17 @@ def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
     ]
 
 
-def _results(point: Point, report: ReportSpec, store: Store) -> TableRow:
+def _motions(points: Sequence[Point]) -> tuple[Reading, ...]:
+    """What some point may do; where none bends no angle tells anything."""
+    cases = [point.case for point in points]
+    made = {motion for case in cases for motion in moves(case)}
+    made |= {BEND} if bends(cases) else set()
+    return tuple(motion for motion in MOTIONS if motion in made)
+
+
+def _results(
+    point: Point, report: ReportSpec, store: Store, motions: Sequence[Reading]
+) -> TableRow:
     run = store.result(point)
     history = store.history(point) if run is not None else []
     end = history[-1] if history else {}
@@ -200,9 +214,13 @@ def _results(point: Point, report: ReportSpec, store: Store) -> TableRow:
     for angle in report.angles:
         row[pressure_column(angle)] = where(history, col.ANGLE, math.degrees(angle), col.PRESSURE)
     for pressure in report.pressures:
-        row[angle_column(pressure)] = where(history, col.PRESSURE, 1e3 * pressure, col.ANGLE)
+        for motion in motions:
+            (column,), goal = motion.columns, 1e3 * pressure
+            row[motion_column(motion, pressure)] = where(history, col.PRESSURE, goal, column)
     row["end_pressure_kPa"] = end.get(col.PRESSURE)
     row["end_angle_deg"] = end.get(col.ANGLE)
+    for motion in motions:
+        row[motion_column(motion, None)] = end.get(motion.columns[0])
     row["greatest_stretch"] = _stretch(history, report)
     row[col.TIP_FORCE] = end.get(col.TIP_FORCE)
     if report.force_at is not None:

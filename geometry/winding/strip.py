@@ -74,12 +74,13 @@ def arc_at(actuator: Actuator, angle: float) -> float:
 
 
 def lay(mesh: MeshData, actuator: Actuator, window: Window) -> EmbeddedFibers:
-    """Spread fabric over a window: at each quadrature point a bit of its warp and of its weft.
+    """Spread fabric over a window: on each facet three pieces of its warp and three of its weft.
 
     A facet that the window's edge crosses is integrated over the part inside, by a rule of its own:
     the area is that of the window, whatever the mesh. Warp runs along the axis, weft around; each
     is a thread for every mm across it, so that a point stands for as many mm of either as it has
-    mm² of area (of a section mm² for every mm of z).
+    mm² of area (of a section mm² for every mm of z). Points of a facet on one line are one piece
+    with one strain: with a strain each, stiff fabric locks, and goes slack point by point.
 
     Args:
         mesh: hexahedra, tetrahedra or quadrilaterals with the surface "winding"; half, full, or a
@@ -88,7 +89,7 @@ def lay(mesh: MeshData, actuator: Actuator, window: Window) -> EmbeddedFibers:
         window: where it lies.
 
     Returns:
-        Segments with one point each; `curve` is 0 of the warp and 1 of the weft.
+        Pieces; `curve` is 0 of the warp and 1 of the weft. On triangles each point is one.
     """
     facets = develop(mesh, actuator)
     parts = [
@@ -96,6 +97,9 @@ def lay(mesh: MeshData, actuator: Actuator, window: Window) -> EmbeddedFibers:
         for low, high in window.intervals(actuator.winding_perimeter)
     ]
     facet, flat, weight = (np.concatenate([part[i] for part in parts]) for i in range(3))
+    # the second part of a window over the top has lines of its own
+    starts = np.cumsum([0, *(len(part[0]) for part in parts[:-1])])
+    lines = np.concatenate([part[3] + n for part, n in zip(parts, starts, strict=True)])
     edges, cell = facets.edges[facet], facets.cell[facet]
     points = (facets.base[facet] + np.einsum("nk,nkd->nd", flat, edges))[:, None]
     spans = np.einsum("nij,nkj->nki", jacobians(mesh, cell, points)[1][:, 0], edges)
@@ -103,31 +107,44 @@ def lay(mesh: MeshData, actuator: Actuator, window: Window) -> EmbeddedFibers:
     solid = mesh.nodes.shape[1] == 3
     across = np.cross(spans[:, 0], spans[:, 1]) if solid else spans[:, 0]
     area = weight * np.linalg.norm(across, axis=1)
+    pieces = [_grouped(own) for own in lines.T]
+    most = max(piece.shape[1] for piece in pieces)
     threads = []
-    for number, direction in enumerate(np.eye(2)[::-1]):
+    for number, (piece, direction) in enumerate(zip(pieces, np.eye(2)[::-1], strict=True)):
         local = np.linalg.inv(facets.axes[facet]) @ direction[: 2 if solid else 1]
         rise = 0.0 if solid else direction[1]
         speed = np.hypot(np.linalg.norm(np.einsum("nk,nki->ni", local, spans), axis=1), rise)
-        scale = area / speed
+        # each point has its own area; of a piece with n points the parameter runs n times as fast
+        scale = area / speed * piece.shape[1]
+        tangents = np.einsum("nk,nkd->nd", local, edges) * scale[:, None]
+        # all pieces have as many points: those with fewer have them again
+        again = np.tile(piece, (1, most // piece.shape[1]))
+        first = piece[:, 0]
         threads.append(
             {
-                "cell": cell,
-                "facet": facets.facet[facet],
-                "points": points,
-                "tangents": (np.einsum("nk,nkd->nd", local, edges) * scale[:, None])[:, None],
-                "axial": (rise * scale)[:, None],
-                "weights": np.ones((len(cell), 1)),
-                "length": area,
-                "share": np.ones(len(cell)),
-                "curve": np.full(len(cell), number),
-                "z": developed[:, 1] if solid else np.zeros(len(cell)),
-                "s": developed[:, 0],
-                "family": np.full(len(cell), number),
+                "cell": cell[first],
+                "facet": facets.facet[facet[first]],
+                "points": points[again, 0],
+                "tangents": tangents[again],
+                "axial": (rise * scale)[again],
+                "weights": np.full(again.shape, 1 / most),
+                "length": area[piece].sum(axis=1),
+                "share": np.ones(len(piece)),
+                "curve": np.full(len(piece), number),
+                "z": developed[piece, 1].mean(axis=1) if solid else np.zeros(len(piece)),
+                "s": developed[piece, 0].mean(axis=1),
+                "family": np.full(len(piece), number),
             }
         )
     return EmbeddedFibers(
         **{name: np.concatenate([thread[name] for thread in threads]) for name in threads[0]}
     )
+
+
+def _grouped(lines: Ints) -> Ints:
+    """Numbers of the points of each line, (lines, points); all lines have as many."""
+    order = np.argsort(lines, kind="stable")
+    return order.reshape(len(np.unique(lines)), -1)
 
 
 def covered(mesh: MeshData, actuator: Actuator, window: Window, level: int) -> tuple[Ints, Floats]:
@@ -155,7 +172,7 @@ def covered(mesh: MeshData, actuator: Actuator, window: Window, level: int) -> t
 
 def _cut(
     facets: Facets, flat: Floats, weights: Floats, low: float, high: float
-) -> tuple[Ints, Floats, Floats]:
+) -> tuple[Ints, Floats, Floats, Ints]:
     """Quadrature of the parts of all facets with low ≤ s ≤ high.
 
     Args:
@@ -166,8 +183,8 @@ def _cut(
         high: mm.
 
     Returns:
-        For each of n points its facet, its coordinates in the reference facet, (n, k), and its
-        weight.
+        For each of n points its facet, its coordinates in the reference facet, (n, k), its weight,
+        and the numbers of the lines along z and around on which it lies, (n, 2).
     """
     along = facets.axes[:, 0, :]
     if facets.triangle:
@@ -185,12 +202,27 @@ def _cut(
         ends[here, :1] + share[here, None] * own
     )
     weight = share[here, None] * weights
-    return np.repeat(here, len(flat)), points.reshape(-1, flat.shape[1]), weight.ravel()
+    lines = _lines(flat, which)
+    return np.repeat(here, len(flat)), points.reshape(-1, flat.shape[1]), weight.ravel(), lines
+
+
+def _lines(flat: Floats, axis: Ints) -> Ints:
+    """Numbers of the lines along z and around on which the points of facets lie, (n q, 2).
+
+    Args:
+        flat: points of a rule that is a product of rules along the axes, (q, k).
+        axis: of each of n facets that which runs around.
+    """
+    levels = np.column_stack([np.unique(c, return_inverse=True)[1] for c in flat.T])
+    along = levels[:, axis].T
+    around = levels[:, 1 - axis].T if flat.shape[1] == 2 else np.zeros_like(along)
+    start = len(flat) * np.arange(len(axis))[:, None]
+    return np.stack([start + along, start + around], axis=-1).reshape(-1, 2)
 
 
 def _cut_triangles(
     facets: Facets, flat: Floats, weights: Floats, low: float, high: float
-) -> tuple[Ints, Floats, Floats]:
+) -> tuple[Ints, Floats, Floats, Ints]:
     """`_cut` of triangles: a part is a polygon, and a fan of triangles."""
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     s = facets.origin[:, :1] + facets.axes[:, 0, :] @ corners.T
@@ -205,8 +237,11 @@ def _cut_triangles(
             points.append(polygon[0, :2] + flat @ spans)
             weight.append(size * weights)
     if not facet:
-        return np.zeros(0, dtype=np.int64), np.zeros((0, 2)), np.zeros(0)
-    return np.concatenate(facet), np.concatenate(points), np.concatenate(weight)
+        none = np.zeros(0, dtype=np.int64)
+        return none, np.zeros((0, 2)), np.zeros(0), np.zeros((0, 2), dtype=np.int64)
+    found = np.concatenate(facet)
+    alone = np.repeat(np.arange(len(found))[:, None], 2, axis=1)
+    return found, np.concatenate(points), np.concatenate(weight), alone
 
 
 def _clip(polygon: Floats, edge: float, side: float) -> Floats:

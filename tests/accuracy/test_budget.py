@@ -26,8 +26,10 @@ from fiberbend.accuracy.budget import (
     lacking,
     percent,
 )
+from fiberbend.accuracy.computed import missed
 from fiberbend.accuracy.numbers import curvature, numbers
 from fiberbend.accuracy.table import BEYOND, at, knowledge
+from fiberbend.accuracy.words import MEASURED, answered, entry, expected_lines
 from fiberbend.case.case import Case
 from fiberbend.models.choice import meshed
 from fiberbend.reader.reader import read_case
@@ -263,3 +265,19 @@ def test_two_digits() -> None:
     assert [percent(v) for v in (12.345, 1.96, 0.3049, 0.05, 0.0123, 0.004)] == [
         "12", "2", "0.3", "0.05", "0.012", "0",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["twisting", "extending"])
+def test_of_what_does_not_bend_no_figure_is_given(name: str) -> None:
+    """The table is of actuators that bend: a percent of it would say nothing of a twist."""
+    settings = ["accuracy=2 %", "model=section", "effects.1.winding.as=smeared"]
+    made = read_case(ROOT / "cases" / f"{name}.yaml", settings)
+    found = estimate(made, meshed(made))
+    assert not found.tells
+    assert any("families" in reason for reason in found.unknown)
+    (line,) = expected_lines(made)
+    assert line.startswith("2 % asked: cannot be promised: ")
+    assert "(fiberbend accuracy measures it)" in line
+    assert entry(made, found)["estimated"] is None
+    assert answered({"accuracy": entry(made, found)}) == ("not known", MEASURED)
+    assert "nothing is estimated" in missed({"accuracy": entry(made, found)})[0]

@@ -9,6 +9,7 @@ import pytest
 
 from geometry.bodies.extrude import hexahedral_body, hexahedral_slice, section_quadrilaterals
 from geometry.mesh.data import MeshData
+from geometry.mesh.reference import jacobians
 from geometry.mesh.tets import to_tetrahedra
 from geometry.sections.circle import CircleActuator
 from geometry.sections.hemicircle import HemicircleActuator
@@ -88,11 +89,31 @@ def test_warp_runs_along_the_axis_and_weft_around(kind: str) -> None:
 
     mesh = _mesh(kind, BOX)
     laid = lay(mesh, BOX, Window(5.0, 8.0))
-    moved = push(mesh, laid.cell, laid.points, laid.tangents)[:, 0]
-    size = np.hypot(np.linalg.norm(moved, axis=1), laid.axial[:, 0])
-    assert size == pytest.approx(laid.length, rel=1e-9)
-    rise = laid.axial[:, 0] if kind == "section" else moved[:, 2]
-    assert rise / size == pytest.approx(np.where(laid.curve == 0, 1.0, 0.0), abs=1e-9)
+    moved = push(mesh, laid.cell, laid.points, laid.tangents)
+    size = np.hypot(np.linalg.norm(moved, axis=2), laid.axial)
+    assert np.sum(laid.weights * size, axis=1) == pytest.approx(laid.length, rel=1e-9)
+    rise = laid.axial if kind == "section" else moved[..., 2]
+    wanted = np.broadcast_to(np.where(laid.curve == 0, 1.0, 0.0)[:, None], rise.shape)
+    assert rise / size == pytest.approx(wanted, abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["section", "cell", "body"])
+@pytest.mark.parametrize("middle", [5.0, 0.0])
+def test_points_on_one_line_of_a_facet_are_one_piece(kind: str, middle: float) -> None:
+    """A thread along z, or around, has one strain in each facet: three of both in each."""
+    mesh = _mesh(kind, TUBE)
+    laid = lay(mesh, TUBE, Window(middle, 8.0))
+    place = jacobians(mesh, laid.cell, laid.points)[0]
+    _, pieces = np.unique(np.column_stack([laid.cell, laid.facet]), axis=0, return_counts=True)
+    most = 2 if middle == 0.0 else 1
+    around = 1 if kind == "section" else 3
+    assert set(pieces) <= {n * (3 + around) for n in range(1, most + 1)}
+    spread = np.ptp(place, axis=1)
+    warp = laid.curve == 0
+    assert np.abs(spread[warp, :2]).max() < 1e-9
+    assert np.linalg.norm(spread[~warp], axis=1).min() > 1e-3
+    if kind != "section":
+        assert np.abs(spread[~warp, 2]).max() < 1e-9
 
 
 @pytest.mark.parametrize("actuator", [TUBE, HALF_DISK, BOX], ids=lambda a: a.section)

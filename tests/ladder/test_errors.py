@@ -10,7 +10,8 @@ import pytest
 
 from fiberbend.ladder.advice import advice, chosen, front, pareto
 from fiberbend.ladder.asked import Asked, asked
-from fiberbend.ladder.errors import family_limit, judge
+from fiberbend.ladder.errors import FamilyLimit, family_limit, judge, scales
+from fiberbend.ladder.richardson import Limit
 from fiberbend.ladder.rungs import Family, Rung
 from fiberbend.ladder.table import rung_table
 from fiberbend.ladder.words import seconds, settings
@@ -224,3 +225,37 @@ def test_advice_does_not_promise_what_the_reference_does_not_know() -> None:
     text = advice(judged(truth), goals=(1.0, 1e-3))
     assert "for 0.001 % the reference itself is known to" in text
     assert "only" in text
+
+
+def test_angles_of_one_state_are_judged_in_parts_of_the_greatest() -> None:
+    """It bends by 90° and twists by 1°: half a degree of twist is half a percent, not half of it.
+
+    What is not moved at all is left out.
+    """
+    rung = next(each for each in of_case().rungs if each.mesh)
+    turns = (
+        Asked("bend", "", "°", "angle_deg", together="turn", least=1e-3),
+        Asked("twist", "", "°", "twist_deg", together="turn", least=1e-3),
+        Asked("side", "", "°", "side_angle_deg", together="other", least=1e-3),
+    )
+    wanted = {"bend": -90.0, "twist": 1.0, "side": 1e-9}
+    limits = {name: FamilyLimit(Limit(value, 0.0), {}) for name, value in wanted.items()}
+    assert scales(turns, limits) == {"bend": -90.0, "twist": 90.0}
+    finest = [each for each in of_case().rungs if each.family == rung.family]
+    found = [(each, record(each, wanted)) for each in finest]
+    judgement = judge(turns, found)
+    assert judgement.reference == rung.family.discretisation
+    assert not any(each.flaw for each in judgement.rungs)
+    off = record(finest[0], {"bend": -90.0, "twist": 1.45, "side": -1e-9})
+    errors = judge(turns, [(finest[0], off), *found[1:]]).rungs[0].errors
+    assert errors["twist"].total == pytest.approx(0.5)
+    assert errors["bend"].total == 0
+    assert "side" not in errors
+
+
+def test_of_what_does_not_move_there_is_no_reference() -> None:
+    still = (Asked("twist", "", "°", "twist_deg", together="turn", least=1e-3),)
+    rungs = [each for each in of_case().rungs if each.family.key == "section-spread"]
+    judgement = judge(still, [(each, record(each, {"twist": 1e-7})) for each in rungs])
+    assert judgement.reference is None
+    assert advice(judgement).startswith("No advice")
