@@ -80,6 +80,20 @@ def stiffness_of(part: dict[str, Any]) -> Floats:
     return np.concatenate([axial, bending], axis=-1)
 
 
+def turns_of(record: dict[str, Any]) -> Floats:
+    """By which all ends bend together, (n,), rad."""
+    out: Floats = np.sum([record["ends"][key]["turn_rad"] for key in KEYS], axis=0)
+    return out
+
+
+def ends_off(record: dict[str, Any]) -> float:
+    """Greatest difference of that to what is linear in the pressure, in parts of the greatest."""
+    pressure, turns = np.array(record["section"]["pressure_kPa"]), turns_of(record)
+    line = pressure * (pressure @ turns) / (pressure @ pressure)
+    most = float(np.abs(turns).max())
+    return float(np.abs(turns - line).max()) / most if most else 0.0
+
+
 def text(record: dict[str, Any]) -> str:
     """The file, by what rod.json says; without gravity."""
     return "\n".join(_lines(record)) + "\n"
@@ -95,7 +109,7 @@ def _lines(record: dict[str, Any]) -> Iterator[str]:
     yield f"""  <!-- Written by fiberbend from rod.json. m, kg, N; x lateral, y from floor to crown,
        z along. The control 'pressure' is in kPa, 0 to {most:.6g}. Rest strains are linear in it
        and the stiffness is constant: beside rod.json the curvature without load is off by up to
-       {off[1]:.2g} % of the greatest, bending stiffness by {stiff[1]:.2g} %, that against
+       {off[1]:.2g} % of the greatest, that of the ends by {100 * ends_off(record):.2g} %, bending stiffness by {stiff[1]:.2g} %, that against
        stretch by {stiff[0]:.2g} %. rod_mujoco.py follows rod.json's table instead.
        Damping is {known}: {time:g} s times the stiffness. Armatures keep the time step of
        {TIME_STEP:g} s stable; they slow motions down that are much faster than bending. -->"""
