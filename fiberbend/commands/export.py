@@ -139,7 +139,7 @@ def _case(run: Path) -> tuple[Case, float | None]:
     if not isinstance(result, Result) or result.case is None:
         text = "is the folder of a sweep, expected that of a run, such as one of its points"
         raise CaseError([Problem(str(run), text)])
-    if result.status == _WHOLE or result.case.time is not None:
+    if result.status == _WHOLE:
         return result.case, None
     reached = max((float(row.get(PRESSURE) or 0.0) for row in result.rows), default=0.0)
     if not reached > 0:

@@ -105,12 +105,13 @@ def _lines(record: dict[str, Any]) -> Iterator[str]:
     most, time = float(pressures[-1]), damping_time(record)
     known = "of the motion's case" if record["damping"] else "assumed"
     off, stiff = (100 * part for part in (line.rest_off, line.stiffness_off))
+    ends = 100 * ends_off(record)
     yield f'<mujoco model="{_safe(record["title"]) or "actuator"}">'
     yield f"""  <!-- Written by fiberbend from rod.json. m, kg, N; x lateral, y from floor to crown,
        z along. The control 'pressure' is in kPa, 0 to {most:.6g}. Rest strains are linear in it
        and the stiffness is constant: beside rod.json the curvature without load is off by up to
-       {off[1]:.2g} % of the greatest, that of the ends by {100 * ends_off(record):.2g} %, bending stiffness by {stiff[1]:.2g} %, that against
-       stretch by {stiff[0]:.2g} %. rod_mujoco.py follows rod.json's table instead.
+       {off[1]:.2g} % of the greatest, that of the ends by {ends:.2g} %,
+       bending stiffness by {stiff[1]:.2g} %, that against stretch by {stiff[0]:.2g} %. rod_mujoco.py follows rod.json's table instead.
        Damping is {known}: {time:g} s times the stiffness. Armatures keep the time step of
        {TIME_STEP:g} s stable; they slow motions down that are much faster than bending. -->"""
     yield '  <compiler autolimits="true" angle="radian"/>'
