@@ -111,7 +111,8 @@ def _lines(record: dict[str, Any]) -> Iterator[str]:
        z along. The control 'pressure' is in kPa, 0 to {most:.6g}. Rest strains are linear in it
        and the stiffness is constant: beside rod.json the curvature without load is off by up to
        {off[1]:.2g} % of the greatest, that of the ends by {ends:.2g} %,
-       bending stiffness by {stiff[1]:.2g} %, that against stretch by {stiff[0]:.2g} %. rod_mujoco.py follows rod.json's table instead.
+       bending stiffness by {stiff[1]:.2g} %, that against stretch by {stiff[0]:.2g} %.
+       rod_mujoco.py follows rod.json's table instead.
        Damping is {known}: {time:g} s times the stiffness. Armatures keep the time step of
        {TIME_STEP:g} s stable; they slow motions down that are much faster than bending. -->"""
     yield '  <compiler autolimits="true" angle="radian"/>'
