@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import wound
 from fiberbend.columns import MIDDLE, OBSTACLES, SOLVED, TIMED
@@ -110,6 +111,11 @@ class Rod(SlenderModel):
             yield "mesh.element", "elements of this kind are asked for, and a rod has none"
         if any(effect.mirror_breaker() for effect in case.acting):
             yield "effects", "a rod is beside a body that bends in the plane x = 0 alone"
+        load = case.inflation
+        least = 0.0 if load is None else min(load.to or 0.0, load.angle or 0.0)
+        rest = convert.dimensions(case.actuator).chamber_volume
+        if least < 0 or (load is not None and load.volume is not None and load.volume < rest):
+            yield "effects", "a rod is beside a body under pressures above zero alone"
 
     def completed(self, case: Case) -> Case:
         """A rod has no fields to write."""

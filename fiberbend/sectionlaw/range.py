@@ -21,6 +21,8 @@ from fiberbend.uniform.small import Small
 
 STATES = 4
 """Free states from rest to the greatest load, to which a table is compared too."""
+FILLED = 16
+"""The same by a volume: its greatest pressure may be on the way, and is met within a percent."""
 FORCE, MOMENT = 0.2, 50.0
 """Loads at the tip that a table reaches, N and N mm, beside the weight of the whole."""
 _GRAVITY = 9810.0
@@ -74,9 +76,11 @@ def reach_of(case: Case, loads: Loads) -> Reach:
     if not answer.converged:
         raise CaseError([Problem("effects.pressure", f"no such free state: {answer.reason}")])
     length = case.actuator.length
-    if len({np.sign(point.pressure) for point in answer.free} | {0.0}) > 2:
+    if len({np.sign(point.pressure) for point in answer.free}) > 1:
         text = "a table is of pressures above zero or of those below, and the way leads from one"
         raise CaseError([Problem("effects.pressure", f"{text} to the other")])
+    if not any(point.pressure for point in answer.free):
+        raise CaseError([Problem("effects.pressure", "it stays as at rest, expected a load")])
     return Reach(
         tuple(
             (p.pressure, Free(p.stretch, p.angle / length, p.side_angle / length, p.twist / length))
@@ -91,23 +95,22 @@ def reach_of(case: Case, loads: Loads) -> Reach:
 def _found(case: Case) -> Answer:
     """Free states on the way to what is given."""
     load = case.inflation
-    parts = [(number + 1) / STATES for number in range(STATES)]
     if load is not None and load.volume is not None:
-        return _filled(case, load.volume, parts)
+        return _filled(case, load.volume)
     goal = None if load is None else (load.angle or load.to)
     if load is None or not goal:
         text = "a table reaches from rest to a pressure, a volume or an angle, expected effect"
         raise CaseError([Problem("effects", f"{text} pressure with one that is not zero")])
-    goals = tuple(goal * part for part in parts)
+    goals = tuple(goal * (number + 1) / STATES for number in range(STATES))
     return solve(case, Wanted(angles=goals) if load.angle else Wanted(pressures=goals))
 
 
-def _filled(case: Case, volume: float, parts: list[float]) -> Answer:
-    """Free states at parts of the way from the volume at rest to another one, mm³."""
+def _filled(case: Case, volume: float) -> Answer:
+    """Free states on the way from the volume at rest to another one, mm³."""
     ready = Calibrations().ready(trial.filled(case, volume))
     small = Small(ready.case)
     rest = Reader(small).point(small.rest).volume
-    goals = [rest + part * (volume - rest) for part in parts[:-1]] + [volume]
+    goals = np.linspace(rest, volume, FILLED + 1)[1:].tolist()
     found, report, _ = small.reach(goals)
     reader = Reader(small)
     points = tuple(reader.point(found[goal]) for goal in goals if goal in found)
