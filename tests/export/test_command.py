@@ -90,6 +90,7 @@ def test_a_run_that_ended_early_hands_over_what_it_has_reached(
     rows = fiberbend.load(early).rows
     reached = exported_case(early)[1]
     assert reached == pytest.approx(1e-3 * float(rows[-1]["pressure_kPa"] or 0.0))
+    assert reached is not None
     assert 0 < reached < 0.06
     law = known(law_case(parse_case(DATA))[0], 3, reached)
     assert law.section.pressures[-1] == reached
