@@ -67,6 +67,21 @@ def test_a_vacuum_is_the_mirror_image_of_a_pressure(by_law: Put) -> None:
     assert driven[col.PRESSURE] == pytest.approx(-8, rel=1e-8)
 
 
+def test_a_vacuum_beyond_the_greatest_one_stops_there(by_law: Put) -> None:
+    """And the branch beyond is followed as the chamber shrinks, where under pressure it grows."""
+    by_law(Softening(**dataclasses.asdict(linear(thrust=(0.0, 500.0))), top=0.01))
+    found = {}
+    for to in (25, -25):
+        result = run_case(case({"pressure": {"to": f"{to} kPa"}}), None)
+        assert result.status == "stopped"
+        found[to] = result
+        assert f"{to} kPa is not reached: limit point at {to * 4 // 5} kPa" in result.reason
+    assert "followed to 1/4 of the volume there" in found[-25].reason
+    (limit,), (other,) = (each.run["critical_points"] for each in found.values())
+    assert other[col.ANGLE] == pytest.approx(-limit[col.ANGLE], rel=1e-3)
+    assert found[-25].rows[-1][col.VOLUME] < found[-25].rows[0][col.VOLUME] / 3
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("given", [{"to": "-6 kPa"}, {"volume": "11 mL"}])
 def test_between_its_ends_it_is_the_section(
