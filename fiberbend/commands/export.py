@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
+from fiberbend.columns import PRESSURE
 from fiberbend.running import launch
 from fiberbend.running.launch import say, settle_folders
 from fiberbend.schema.problems import CaseError, Problem, found, meant
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from fiberbend.export.targets import Target
 
 _CASES = (".yaml", ".yml")
+_WHOLE = "converged"
 
 
 def export(
@@ -51,7 +53,7 @@ def export(
         text = f"{found(to)}, expected one of {names}{meant(to, list(TARGETS))}"
         raise CaseError([Problem("--to", text)])
     target = TARGETS[to]
-    case = _case(run)
+    case, reached = _case(run)
     densities = _densities(case, density)
     folder = out or Path("exports") / f"{run.stem if run.suffix in _CASES else run.name}-{to}"
     files = [folder / name for name in target.names]
@@ -67,7 +69,7 @@ def export(
     from fiberbend.export.hand import facts, handed
     from fiberbend.export.targets import DATA
 
-    record = made.record_of(handed(case, densities))
+    record = made.record_of(handed(case, densities, reached))
     contents = {DATA: made.text(record), **target.contents(record)}
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -79,6 +81,8 @@ def export(
     say(f"Rod for {to}: {case.title or run}")
     for line in facts(record):
         say(f"  {line}")
+    if reached is not None:
+        say("  the run did not come to its end: the file is of the pressures that it has reached")
     say(f"files: {', '.join(str(path) for path in files)}")
     for name in target.scripts:
         if target.tested:
@@ -118,16 +122,16 @@ def _check(target: Target, case: Case, densities: dict[str, float]) -> None:
         raise CaseError([Problem("mass", f"{density_words(missing)}; --to json takes none")])
 
 
-def _case(run: Path) -> Case:
-    """The case of a run, or of a file.
+def _case(run: Path) -> tuple[Case, float | None]:
+    """The case of a run, or of a file, and the pressure at which a run ended early, MPa.
 
     Raises:
-        CaseError: neither is there.
+        CaseError: neither is there, or the run has reached no pressure.
     """
     if run.suffix in _CASES and not run.is_dir():
         from fiberbend.reader.reader import read_case
 
-        return read_case(run)
+        return read_case(run), None
     from fiberbend.api.loading import load
     from fiberbend.api.result import Result
 
@@ -135,7 +139,13 @@ def _case(run: Path) -> Case:
     if not isinstance(result, Result) or result.case is None:
         text = "is the folder of a sweep, expected that of a run, such as one of its points"
         raise CaseError([Problem(str(run), text)])
-    return result.case
+    if result.status == _WHOLE:
+        return result.case, None
+    reached = max((float(row.get(PRESSURE) or 0.0) for row in result.rows), default=0.0)
+    if not reached > 0:
+        text = f"the run is {result.status} and has reached no pressure, expected one that has"
+        raise CaseError([Problem(str(run), f"{text}, or its case file")])
+    return result.case, 1e-3 * reached
 
 
 def _densities(case: Case, given: tuple[str, ...]) -> dict[str, float]:

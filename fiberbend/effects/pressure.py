@@ -118,6 +118,8 @@ class PressureEffect(Effect):
         return Built((ChamberPressure(),), (ramp,))
 
 
-def inflate(*, to: float | None = None, angle: float | None = None) -> PressureEffect:
-    """A pressure by its value in MPa or by the bending angle in rad."""
-    return PressureEffect.model_construct(to=to, angle=angle)
+def inflate(
+    *, to: float | None = None, angle: float | None = None, volume: float | None = None
+) -> PressureEffect:
+    """A pressure by its value in MPa, the bending angle in rad or the chamber's volume in mm³."""
+    return PressureEffect.model_construct(to=to, angle=angle, volume=volume)

@@ -13,6 +13,7 @@ from scipy.spatial import ConvexHull
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.columns import UNIFORM
+from fiberbend.export.ends import KEYS, caps_of
 from fiberbend.export.law import known
 from fiberbend.export.section import Handed
 from fiberbend.models.choice import choose_model
@@ -32,24 +33,28 @@ STATES = 21
 """Pressures from none to the case's own."""
 
 
-def handed(case: Case, densities: Mapping[str, float]) -> Handed:
+def handed(case: Case, densities: Mapping[str, float], reached: float | None = None) -> Handed:
     """What a case hands over.
 
     Args:
         case: of any model; its loads but for the pressure are left out.
         densities: of parts whose materials have none, t/mm³.
+        reached: greatest pressure that a run has reached before it ended, MPa; None: the case's.
 
     Raises:
         CaseError: it has no law of a section, no pressure, or zones.
     """
     alone, left_out = law_case(case)
-    law, moments = known(alone, STATES), section_of(case)
+    law, moments = known(alone, STATES, reached), section_of(case)
     heavy = weighed_case(case, densities)
     missing = without_density(heavy)
     mass, cap_mass = (None, None) if missing else masses(heavy, moments)
+    cap, damped = cap_stiffness(case, moments), case.time
     return Handed(
         section=law.section,
-        cap=cap_stiffness(case, moments),
+        cap=cap,
+        caps=caps_of(alone, cap, float(law.section.pressures[-1])),
+        retardation=0.0 if damped is None else damped.damping.retardation_time,
         mass=mass,
         cap_mass=cap_mass,
         no_mass=density_words(missing),
@@ -171,6 +176,8 @@ def facts(record: dict[str, Any]) -> list[str]:
     axial = np.array(axis["axial_stiffness_N"])
     lines.append(f"stretching   {axial.min():.4g} to {axial.max():.4g} N")
     beside = "below" if axis["y_mm"] < 0 else "above"
+    turns = [np.degrees(record["ends"][key]["turn_rad"][-1]) for key in KEYS]
+    lines.append(f"ends         {sum(turns):.3g}° by the greatest pressure, caps included")
     lines.append(f"axis         {abs(axis['y_mm']):.3g} mm {beside} the line of centroids")
     if not record["mass"]["known"]:
         lines.append(f"no mass: {record['mass']['missing']}")

@@ -32,17 +32,18 @@ class Known:
     validity: dict[str, Any]
 
 
-def known(case: Case, states: int) -> Known:
+def known(case: Case, states: int, reached: float | None = None) -> Known:
     """Solve a section from no pressure to the case's own.
 
     Args:
         case: of model section or cell, under a pressure alone.
         states: number of pressures.
+        reached: greatest pressure, MPa, where that is less than the case's own.
 
     Raises:
         CaseError: the section does not come there.
     """
-    pressures = np.linspace(0.0, greatest(case), states)
+    pressures = np.linspace(0.0, greatest(case) if reached is None else reached, states)
     found = stiffness_at(case, pressures.tolist())
     section = Section(
         pressures,

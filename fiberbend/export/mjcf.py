@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fiberbend.export.ends import ADDED, KEYS
 from rod.functions import Floats
 
 PIECES, CAP_PIECES = 40, 3
@@ -16,7 +17,7 @@ TIME_STEP = 1e-3
 RESOLVED = 0.5
 """Greatest product of time step and frequency of a joint alone; armatures make it so."""
 DAMPING_TIME = 0.02
-"""Damping over stiffness of every joint, s: an assumption, nothing is known of it."""
+"""Damping over stiffness of every joint, s: an assumption where the case says nothing of it."""
 JOINTS = ("stretch", "curvature", "side", "twist")
 _AXES = {"stretch": "0 0 1", "curvature": "1 0 0", "side": "0 1 0", "twist": "0 0 1"}
 _ORDER = (("stretch", "curvature", "side", "twist"), ("stretch", "twist", "side", "curvature"))
@@ -59,6 +60,12 @@ def line_of(record: dict[str, Any]) -> Line:
     )
 
 
+def damping_time(record: dict[str, Any]) -> float:
+    """Of its case's motion, or what is assumed, s."""
+    known = record["damping"]
+    return DAMPING_TIME if known is None else float(known["retardation_time_s"])
+
+
 def rest_of(axis: dict[str, Any]) -> Floats:
     """Stretch less one, and curvatures in rad/m, without load, (n, 4)."""
     bent = [axis[f"rest_{name}_1_per_mm"] for name in ("curvature", "side_curvature", "twist")]
@@ -73,6 +80,20 @@ def stiffness_of(part: dict[str, Any]) -> Floats:
     return np.concatenate([axial, bending], axis=-1)
 
 
+def turns_of(record: dict[str, Any]) -> Floats:
+    """By which all ends bend together, (n,), rad."""
+    out: Floats = np.sum([record["ends"][key]["turn_rad"] for key in KEYS], axis=0)
+    return out
+
+
+def ends_off(record: dict[str, Any]) -> float:
+    """Greatest difference of that to what is linear in the pressure, in parts of the greatest."""
+    pressure, turns = np.array(record["section"]["pressure_kPa"]), turns_of(record)
+    line = pressure * (pressure @ turns) / (pressure @ pressure)
+    most = float(np.abs(turns).max())
+    return float(np.abs(turns - line).max()) / most if most else 0.0
+
+
 def text(record: dict[str, Any]) -> str:
     """The file, by what rod.json says; without gravity."""
     return "\n".join(_lines(record)) + "\n"
@@ -80,15 +101,19 @@ def text(record: dict[str, Any]) -> str:
 
 def _lines(record: dict[str, Any]) -> Iterator[str]:
     line, pieces = line_of(record), _pieces(record)
-    most = float(record["section"]["pressure_kPa"][-1])
+    pressures = np.array(record["section"]["pressure_kPa"])
+    most, time = float(pressures[-1]), damping_time(record)
+    known = "of the motion's case" if record["damping"] else "assumed"
     off, stiff = (100 * part for part in (line.rest_off, line.stiffness_off))
+    ends = 100 * ends_off(record)
     yield f'<mujoco model="{_safe(record["title"]) or "actuator"}">'
     yield f"""  <!-- Written by fiberbend from rod.json. m, kg, N; x lateral, y from floor to crown,
        z along. The control 'pressure' is in kPa, 0 to {most:.6g}. Rest strains are linear in it
        and the stiffness is constant: beside rod.json the curvature without load is off by up to
-       {off[1]:.2g} % of the greatest, bending stiffness by {stiff[1]:.2g} %, that against
-       stretch by {stiff[0]:.2g} %. rod_mujoco.py follows rod.json's table instead.
-       Damping is assumed: {DAMPING_TIME:g} s times the stiffness. Armatures keep the time step of
+       {off[1]:.2g} % of the greatest, that of the ends by {ends:.2g} %,
+       bending stiffness by {stiff[1]:.2g} %, that against stretch by {stiff[0]:.2g} %.
+       rod_mujoco.py follows rod.json's table instead.
+       Damping is {known}: {time:g} s times the stiffness. Armatures keep the time step of
        {TIME_STEP:g} s stable; they slow motions down that are much faster than bending. -->"""
     yield '  <compiler autolimits="true" angle="radian"/>'
     yield f'  <option timestep="{TIME_STEP:g}" integrator="implicitfast" gravity="0 0 0"/>'
@@ -101,10 +126,9 @@ def _lines(record: dict[str, Any]) -> Iterator[str]:
     yield "  <tendon>"
     yield '    <fixed name="pressure">'
     for piece in pieces:
-        if piece.chamber:
-            for name, force in zip(JOINTS, line.stiffness * line.slope, strict=True):
-                if force:
-                    yield f'      <joint joint="{name}_{piece.name}" coef="{force:.10g}"/>'
+        for name, force in zip(JOINTS, piece.forces(line, pressures), strict=True):
+            if force:
+                yield f'      <joint joint="{name}_{piece.name}" coef="{force:.10g}"/>'
     yield "    </fixed>"
     yield "  </tendon>"
     yield "  <actuator>"
@@ -128,6 +152,8 @@ class _Piece:
         length: at rest, m.
         place: x, y of its axis from the centroids, m.
         stiffness: of its section, (4,).
+        added: what each joint is longer and turns further by the pressure at an end, at the
+            pressures of the file, (n, 4), m and rad.
         mass: its mass per length and so on, as rod.json has it.
     """
 
@@ -136,7 +162,16 @@ class _Piece:
     length: float
     place: tuple[float, float]
     stiffness: Floats
+    added: Floats
     mass: dict[str, Any]
+
+    def forces(self, line: Line, pressures: Floats) -> Floats:
+        """Of its joints by the pressure, (4,), N and N m a kPa: by the best lines through rest."""
+        rest = pressures @ self.added / (pressures @ pressures)
+        if self.chamber:
+            rest = rest + self.length * line.slope
+        out: Floats = self.stiffness / self.length * rest
+        return out
 
 
 def _pieces(record: dict[str, Any]) -> list[_Piece]:
@@ -150,6 +185,7 @@ def _pieces(record: dict[str, Any]) -> list[_Piece]:
         "stiffness": stiffness_of(cap),
         "mass": mass["cap"],
     }
+    root = {"stiffness": record["ends"]["root_cap_over_cap_stiffness"] * stiffness_of(cap)}
     middle = {
         "chamber": True,
         "length": geometry["chamber_length_mm"] * _MM / PIECES,
@@ -157,17 +193,43 @@ def _pieces(record: dict[str, Any]) -> list[_Piece]:
         "stiffness": line.stiffness,
         "mass": mass["section"],
     }
-    parts = (("root", beside, CAP_PIECES), ("chamber", middle, PIECES), ("tip", beside, CAP_PIECES))
+    parts = (
+        ("root", beside | root, CAP_PIECES),
+        ("chamber", middle, PIECES),
+        ("tip", beside, CAP_PIECES),
+    )
+    added = iter(added_of(record))
     return [
-        _Piece(name=f"{name}_{number}", **part)
+        _Piece(name=f"{name}_{number}", added=moved(next(added), part["place"]), **part)
         for name, part, count in parts
         for number in range(count)
     ]
 
 
+def added_of(record: dict[str, Any]) -> list[Floats]:
+    """What each piece is longer and turns further by an end, (n, 4), m and rad, from the root."""
+    ends, geometry = record["ends"], record["geometry"]
+    near = round(ends["zone_mm"] / geometry["chamber_length_mm"] * PIECES)
+    near = max(1, min(near, PIECES // 2))
+    nothing = np.zeros((len(record["section"]["pressure_kPa"]), 4))
+    counts = dict(zip(KEYS, (CAP_PIECES, near, near, CAP_PIECES), strict=True))
+    root, begin, end, tip = (
+        [np.array([ends[key][name] for name in ADDED]).T * [_MM, 1, 1, 1] / count] * count
+        for key, count in counts.items()
+    )
+    return [*root, *begin, *[nothing] * (PIECES - 2 * near), *end, *tip]
+
+
+def moved(added: Floats, place: tuple[float, float]) -> Floats:
+    """What a line at x, y from the centroids is longer, and the same turns, (n, 4), m and rad."""
+    out = added.copy()
+    out[:, 0] += place[1] * added[:, 1] - place[0] * added[:, 2]
+    return out
+
+
 def _body(record: dict[str, Any], pieces: list[_Piece], line: Line) -> Iterator[str]:
     """Bodies within each other, each from the middle of a piece to that of the next."""
-    radius = record["geometry"]["radius_mm"] * _MM
+    radius, damping = record["geometry"]["radius_mm"] * _MM, damping_time(record)
     centre = np.mean(np.array(record["geometry"]["outline_mm"]), axis=0) * _MM
     bottom = -record["geometry"]["cap_length_mm"] * _MM
     at = np.array([0.0, 0.0, bottom])
@@ -184,7 +246,7 @@ def _body(record: dict[str, Any], pieces: list[_Piece], line: Line) -> Iterator[
             yield (
                 f'{pad}  <joint name="{name}_{piece.name}" type="{kind}" axis="{_AXES[name]}" '
                 f'pos="{_row(about)}" '
-                f'stiffness="{stiffness:.10g}" damping="{DAMPING_TIME * stiffness:.6g}" '
+                f'stiffness="{stiffness:.10g}" damping="{damping * stiffness:.6g}" '
                 f'armature="{stiffness * (TIME_STEP / RESOLVED) ** 2:.6g}"/>'
             )
         last = number + 1 == len(pieces)

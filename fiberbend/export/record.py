@@ -11,7 +11,7 @@ from fiberbend.export.section import Axis, Handed, Section, axis_of
 from rod.functions import Floats
 from rod.inertia import SectionMass
 
-FORMAT, VERSION = "fiberbend-rod", 1
+FORMAT, VERSION = "fiberbend-rod", 2
 _KG = 1e3
 """In a tonne."""
 _KPA = 1e3
@@ -32,6 +32,15 @@ _CONVENTIONS = {
     "stiffness": (
         "second derivatives of the energy per length at rest by the strains, at constant pressure, "
         "where no force acts"
+    ),
+    "ends": (
+        "what a pressure makes of caps and of the chamber's ends beside their forces, by the line "
+        "of the centroids: of each cap, and of the chamber within zone from either cap; turn, "
+        "side_turn and twist have the signs of the strains, and are spread evenly over their part"
+    ),
+    "damping": (
+        "of Kelvin and Voigt: retardation time times the stiffness of the straight section "
+        "without pressure, against the rates of the strains of the line of the centroids"
     ),
     "axis": (
         "the same section by a line at x, y from the centroids, on which a force bends it least; "
@@ -62,8 +71,9 @@ def record_of(handed: Handed) -> dict[str, Any]:
         },
         "axis": _axis(axis),
         "cap": {"stiffness_N_mm": _plain(handed.cap), **_cap(handed.cap)},
+        "ends": _plain(handed.caps.record(section.pressures)),
         "mass": _masses(handed),
-        "damping": None,
+        "damping": _damping(handed),
     }
 
 
@@ -101,6 +111,18 @@ def _rest(rest: Floats) -> dict[str, Any]:
     names = ("stretch", "curvature_1_per_mm", "side_curvature_1_per_mm", "twist_1_per_mm")
     columns = zip(names, rest.T, strict=True)
     return {f"rest_{name}": _plain(column) for name, column in columns}
+
+
+def _damping(handed: Handed) -> dict[str, Any] | None:
+    """τ, and τ times the stiffness of the section without pressure, which is straight."""
+    section = handed.section
+    if not handed.retardation or section.pressures[0]:
+        return None
+    return {
+        "retardation_time_s": _digits(handed.retardation),
+        "section_N_mm_s": _plain(handed.retardation * section.stiffness[0]),
+        "cap_N_mm_s": _plain(handed.retardation * handed.cap),
+    }
 
 
 def _masses(handed: Handed) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from fiberbend.export.ends import Caps
 from rod.functions import Floats
 from rod.inertia import SectionMass
 
@@ -137,7 +138,9 @@ class Handed:
         length: of the chamber, mm.
         cap_length: of each cap, mm.
         outline: outer line of the section, (k, 2), from the centroids, mm.
+        caps: what they make of the chamber's ends.
         about: provenance, law, range and errors, as the file has them.
+        retardation: τ of Kelvin and Voigt, s; 0: no damping is known.
     """
 
     section: Section
@@ -148,4 +151,6 @@ class Handed:
     length: float
     cap_length: float
     outline: Floats
+    caps: Caps
     about: Mapping[str, object]
+    retardation: float = 0.0

@@ -5,12 +5,23 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import wound
 from fiberbend.columns import MIDDLE, OBSTACLES, SOLVED, TIMED
 from fiberbend.columns import ZONES as OF_ZONES
 from fiberbend.effects.blocked_tip import OF_STRIPS
-from fiberbend.effects.effect import CHAMBER, ENDS, SIDE, THREAD, TURNS, TWIST, WOUND, ZONES
+from fiberbend.effects.effect import (
+    CHAMBER,
+    ENDS,
+    SIDE,
+    THREAD,
+    TURNS,
+    TWIST,
+    VOLUME,
+    WOUND,
+    ZONES,
+)
 from fiberbend.effects.records import LINE, MOTION
 from fiberbend.models.ends import AT_ENDS
 from fiberbend.models.model import ModelKind, Objection, SlenderModel
@@ -26,7 +37,9 @@ class Rod(SlenderModel):
     """A geometrically exact rod: a uniform bend anew in every piece, under weights and loads."""
 
     name = "rod"
-    offers = frozenset({CHAMBER, WOUND, THREAD, TURNS, TWIST, SIDE, LINE, ENDS, MOTION, ZONES})
+    offers = frozenset(
+        {CHAMBER, VOLUME, WOUND, THREAD, TURNS, TWIST, SIDE, LINE, ENDS, MOTION, ZONES}
+    )
     fills = ModelKind.fills | {MIDDLE, SOLVED, OBSTACLES, TIMED, OF_ZONES}
     ends = True
     agreement = 2.0
@@ -50,15 +63,10 @@ class Rod(SlenderModel):
         """No law of its section reaches there."""
         load = case.inflation
         if load is None:
-            text = "the law of a section reaches from rest to a pressure or an angle"
+            text = "the law of a section reaches from rest to a pressure, a volume or an angle"
             yield "effects", f"{text}, expected effect pressure with one"
         for index, effect in enumerate(case.effects):
-            path, own = f"effects.{index}.{effect.name}", effect.inflation()
-            if own is not None and own.volume is not None:
-                text = "the law of a section reaches to a pressure or an angle, expected one"
-                yield f"{path}.volume", text
-            if own is not None and ((own.to or 0.0) < 0 or (own.angle or 0.0) < 0):
-                yield path, "the law of a section is of pressures above zero, and no vacuum"
+            path = f"effects.{index}.{effect.name}"
             if case.time is not None and (effect.touches() or effect.strips() is not None):
                 yield path, "what a rod in motion touches is not known: it is put beside nothing"
         if not wound(case).plane:
@@ -73,9 +81,10 @@ class Rod(SlenderModel):
             yield "time", "a motion is known of actuators that are alike all along"
         for index, effect in enumerate(case.effects):
             own = effect.inflation()
-            if own is not None and own.angle is not None:
-                text = "zones have a pressure in common and no angle, expected to"
-                yield f"effects.{index}.{effect.name}.angle", text
+            for key in ("volume", "angle"):
+                if getattr(own, key, None) is not None:
+                    text = f"zones have a pressure in common and no {key}, expected to"
+                    yield f"effects.{index}.{effect.name}.{key}", text
 
     def leaves_out(self, case: Case) -> Iterator[Objection]:
         """Fields of chosen states, which nobody asks for who wants none."""
@@ -102,6 +111,11 @@ class Rod(SlenderModel):
             yield "mesh.element", "elements of this kind are asked for, and a rod has none"
         if any(effect.mirror_breaker() for effect in case.acting):
             yield "effects", "a rod is beside a body that bends in the plane x = 0 alone"
+        load = case.inflation
+        least = 0.0 if load is None else min(load.to or 0.0, load.angle or 0.0)
+        rest = convert.dimensions(case.actuator).chamber_volume
+        if least < 0 or (load is not None and load.volume is not None and load.volume < rest):
+            yield "effects", "a rod is beside a body under pressures above zero alone"
 
     def completed(self, case: Case) -> Case:
         """A rod has no fields to write."""

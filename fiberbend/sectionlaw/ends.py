@@ -131,31 +131,31 @@ def kept(path: Path | None = None) -> Kept:
     return Kept("ends", "ends of chambers", ".json", path)
 
 
-def ends_of(case: Case, greatest: float, store: Kept | None = None) -> Ends:
+def ends_of(case: Case, farthest: float, store: Kept | None = None) -> Ends:
     """The ends of an actuator by a short body of it, from the store or anew.
 
     Args:
         case: a checked case without zones, of one section between two caps.
-        greatest: pressure up to which, MPa.
+        farthest: pressure up to which, MPa; below zero for a vacuum.
         store: where they are kept; that of the user unless given.
 
     Raises:
         CaseError: no section stands beside the case, or the short body does not come to the
-            greatest pressure.
+            pressure.
     """
-    section, body = _short(case, greatest)
+    section, body = _short(case, farthest)
     store = kept() if store is None else store
-    digest = digest_of(section, PARTS, greatest, None, loads_of(section))
+    digest = digest_of(section, PARTS, farthest, None, loads_of(section))
     with store.alone(digest):
         known = store.read(digest, unpacked)
         if known is None:
-            known = _solved(case, section, body, greatest)
+            known = _solved(case, section, body, farthest)
             store.write(digest, known.packed())
     return known
 
 
-def _solved(case: Case, section: Case, body: Case, greatest: float) -> Ends:
-    pressures = tuple(greatest * (number + 1) / STATES for number in range(STATES))
+def _solved(case: Case, section: Case, body: Case, farthest: float) -> Ends:
+    pressures = tuple(farthest * (number + 1) / STATES for number in range(STATES))
     uniform = solve(section, Wanted(pressures=pressures))
     if not uniform.converged:
         raise CaseError([Problem("effects.pressure", f"no such free state: {uniform.reason}")])
@@ -174,16 +174,16 @@ def _half_width(case: Case) -> float:
     return convert.dimensions(case.actuator).outline_half_width
 
 
-def _short(case: Case, greatest: float) -> tuple[Case, Case]:
+def _short(case: Case, farthest: float) -> tuple[Case, Case]:
     """Section and body of a short chamber, the winding spread."""
     half_width = _half_width(case)
     actuator = case.actuator.model_copy(update={"length": _LENGTH * half_width})
     mesh = case.mesh.model_copy(
         update={"section": 1, "axial": _AXIAL * half_width, "element": "hexahedron"}
     )
-    beside = as_section(case, inflate(to=greatest))
+    beside = as_section(case, inflate(to=farthest))
     section = beside.model_copy(update={"actuator": actuator, "mesh": mesh})
-    pressures = tuple(greatest * (number + 1) / STATES for number in range(STATES))
+    pressures = tuple(farthest * (number + 1) / STATES for number in range(STATES))
     output = Output(pictures=False, fields=False).model_copy(update={"at_pressures": pressures})
     return section, section.model_copy(
         update={"model": "body", "solver": Solver(), "output": output}

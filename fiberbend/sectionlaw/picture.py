@@ -18,6 +18,8 @@ STYLE = Style(width=280.0, height=105.0, font_size=11.0)
 _POINTS = 120
 _FROM, _TO = 0.15, 0.85
 """Of the colour map."""
+_CURVES = 4
+"""About so many, beside that at rest."""
 _TITLES = ("moment without force (N mm)", "stretch without force", "energy per length (N)")
 
 
@@ -34,7 +36,8 @@ def draw(made: Made, style: Style = STYLE) -> Figure:
 
     low, high = made.section.table.axes[-1].lines[[0, -1]].tolist()
     free = [(pressure, state) for pressure, state in made.free if low <= pressure <= high]
-    pressures = sorted({low, *(pressure for pressure, _ in free)})
+    free = free[:: -max(1, len(free) // _CURVES)]
+    pressures = sorted({min(low, high, key=abs), *(pressure for pressure, _ in free)})
     colors = mpl.colormaps["viridis"](np.linspace(_FROM, _TO, len(pressures)))
     with own_style(), any_sign():
         page = style.figure()

@@ -12,11 +12,17 @@ from fiberbend.case.case import Case
 from fiberbend.models.choice import meshed
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.sectionlaw.law import Free
+from fiberbend.trial import loads as trial
+from fiberbend.trial.calibrations import Calibrations
+from fiberbend.trial.reading import Reader
 from fiberbend.trial.solve import solve
-from fiberbend.trial.wanted import Wanted
+from fiberbend.trial.wanted import Answer, Wanted
+from fiberbend.uniform.small import Small
 
 STATES = 4
 """Free states from rest to the greatest load, to which a table is compared too."""
+FILLED = 16
+"""The same by a volume: its greatest pressure may be on the way, and is met within a percent."""
 FORCE, MOMENT = 0.2, 50.0
 """Loads at the tip that a table reaches, N and N mm, beside the weight of the whole."""
 _GRAVITY = 9810.0
@@ -41,7 +47,8 @@ class Reach:
     """What a case takes, and what it bears beside.
 
     Attributes:
-        free: pressures in MPa with the free states at them, from a small pressure on.
+        free: pressures in MPa, all above zero or all below, with the free states at them, from the
+            one nearest to rest on.
         height: of the section without sheath, mm.
         force: of weight and tip load, N.
         moment: of weight and of either tip load at the root of the straight actuator, N mm.
@@ -56,29 +63,24 @@ class Reach:
 
 
 def reach_of(case: Case, loads: Loads) -> Reach:
-    """Free states of a case up to its own pressure or angle, and its loads.
+    """Free states of a case up to its own pressure, volume or angle, and its loads.
 
     Args:
         case: a checked case of model section or cell.
         loads: of the actuator whose section it is.
 
     Raises:
-        CaseError: it has neither, or does not come there.
+        CaseError: it has none of them, or does not come there.
     """
-    load = case.inflation
-    goal = None if load is None else (load.angle or load.to)
-    if load is None or goal is None:
-        text = "a table reaches from rest to a pressure or an angle, expected effect pressure"
-        raise CaseError([Problem("effects", f"{text} with to or angle")])
-    if load.to is not None and load.to < 0:
-        raise CaseError([Problem("effects", "a table is of pressures above zero")])
-    goals = tuple(goal * (number + 1) / STATES for number in range(STATES))
-    answer = solve(case, Wanted(angles=goals) if load.angle else Wanted(pressures=goals))
+    answer = _found(case)
     if not answer.converged:
         raise CaseError([Problem("effects.pressure", f"no such free state: {answer.reason}")])
     length = case.actuator.length
-    if min(point.pressure for point in answer.free) <= 0:
-        raise CaseError([Problem("effects", "a table is of pressures above zero")])
+    if len({np.sign(point.pressure) for point in answer.free}) > 1:
+        text = "a table is of pressures above zero or of those below, and the way leads from one"
+        raise CaseError([Problem("effects.pressure", f"{text} to the other")])
+    if not any(point.pressure for point in answer.free):
+        raise CaseError([Problem("effects.pressure", "it stays as at rest, expected a load")])
     return Reach(
         tuple(
             (p.pressure, Free(p.stretch, p.angle / length, p.side_angle / length, p.twist / length))
@@ -88,6 +90,32 @@ def reach_of(case: Case, loads: Loads) -> Reach:
         *loads,
         answer.remarks,
     )
+
+
+def _found(case: Case) -> Answer:
+    """Free states on the way to what is given."""
+    load = case.inflation
+    if load is not None and load.volume is not None:
+        return _filled(case, load.volume)
+    goal = None if load is None else (load.angle or load.to)
+    if load is None or not goal:
+        text = "a table reaches from rest to a pressure, a volume or an angle, expected effect"
+        raise CaseError([Problem("effects", f"{text} pressure with one that is not zero")])
+    goals = tuple(goal * (number + 1) / STATES for number in range(STATES))
+    return solve(case, Wanted(angles=goals) if load.angle else Wanted(pressures=goals))
+
+
+def _filled(case: Case, volume: float) -> Answer:
+    """Free states on the way from the volume at rest to another one, mm³."""
+    ready = Calibrations().ready(trial.filled(case, volume))
+    small = Small(ready.case)
+    rest = Reader(small).point(small.rest).volume
+    goals = np.linspace(rest, volume, FILLED + 1)[1:].tolist()
+    found, report, _ = small.reach(goals)
+    reader = Reader(small)
+    points = tuple(reader.point(found[goal]) for goal in goals if goal in found)
+    reason = report.reason or "it ends before" if len(points) < len(goals) else ""
+    return Answer(points, converged=not reason, reason=reason, remarks=ready.remarks)
 
 
 def loads_of(case: Case) -> Loads:

@@ -153,19 +153,15 @@ def side_of(
 
 
 def _axes(box: Box, count: int) -> tuple[Axis, ...]:
-    first, turns, last = _LINES
-    parts = [first, *[turns] * (count - 1), last]
+    first, turns, last = (np.array(part) for part in _LINES)
+    lines = [first, *[turns] * (count - 1), box.at(last)]
     degrees = [_DEGREES[0], *[_DEGREES[1]] * (count - 1), _DEGREES[2]]
-    return tuple(
-        Axis(low + np.array(part) * (high - low), degree)
-        for (low, high), part, degree in zip(box.ranges, parts, degrees, strict=True)
-    )
+    return tuple(Axis(line, degree) for line, degree in zip(lines, degrees, strict=True))
 
 
 def _states(walk: Walk, box: Box, count: int) -> dict[tuple[float, ...], HeldState]:
     first, turns, last = (np.array(part) for part in _ASKED)
-    low, high = box.pressures
-    lines = [first, *[turns] * (count - 1), low + last * (high - low)]
+    lines = [first, *[turns] * (count - 1), box.at(last)]
     halves = [(line[1:] + line[:-1]) / 2 for line in lines]
     grids = [np.meshgrid(*each, indexing="ij") for each in (lines, halves)]
     points = np.concatenate([np.stack(grid, axis=-1).reshape(-1, count + 1) for grid in grids])

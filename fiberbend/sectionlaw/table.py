@@ -39,7 +39,7 @@ _PRESSURES: Floats = np.array([0.0, 0.08, 0.22, 0.44, 0.7, 1.0])
 """Lines of a table at first. Threads go taut and the floor arches in the first kilopascals."""
 _PLANE_LINES = (np.linspace(0.0, 1.0, 3), np.linspace(0.0, 1.0, 7), _PRESSURES)
 _TWISTED_LINES = (np.linspace(0.0, 1.0, 2), np.linspace(0.0, 1.0, 5), _PRESSURES[[0, 1, 2, 4, 5]])
-"""Of the pull, of curvature and twist, and of the pressure."""
+"""Of the pull, of curvature and twist, and of the pressure from the one nearest to rest."""
 _TWISTED_DEGREE, _MOST = 3, 900
 """A table of three strains has some thousand coefficients: splines of a lower degree, and no more
 states than a minute and a gigabyte take."""
@@ -74,7 +74,7 @@ def law_of(
         case: a checked case of model section or cell.
         strains: names of those of the rod, as `rod.layout.STRAINS` orders them.
         error: asked for, in parts.
-        least: pressure from which the table is, MPa; zero unless given.
+        least: pressure from which the table is, MPa, toward that of the case; zero unless given.
         store: of tables; that of the user unless given.
         tell: takes lines of progress while it is made.
         loads: of the actuator that it is a zone of; its own unless given.
@@ -147,9 +147,9 @@ def _made(
     began = time.process_time()
     reach = reach_of(case, loads)
     ready = Calibrations().ready(case).case if waits(case) else case
-    greatest = max(pressure for pressure, _ in reach.free)
-    if least is not None and not 0 <= least < greatest:
-        text = f"{1e3 * least:g} kPa, expected 0 or more, and less than {1e3 * greatest:.4g} kPa"
+    farthest = max((pressure for pressure, _ in reach.free), key=abs)
+    if least is not None and not 0 <= least / farthest < 1:
+        text = f"{1e3 * least:g} kPa, expected between 0 and {1e3 * farthest:.4g} kPa"
         raise CaseError([Problem("--from", text)])
     twists = Symmetry.of(case.acting).twists
     large = (*PLANE, "twist") if twists else PLANE
@@ -198,7 +198,9 @@ def _fitted(
     asked = error
     plane = len(strains) == len(PLANE)
     pull, turns, pressures = _PLANE_LINES if plane else _TWISTED_LINES
-    begin = [pull, *[turns] * (len(strains) - 1), pressures]
+    low, high = box.pressures
+    first = (box.at(pressures) - low) / (high - low)
+    begin = [pull, *[turns] * (len(strains) - 1), first]
     measure = sizes(box.chart)
     while True:
         table = tabulate(

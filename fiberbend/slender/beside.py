@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+from fiberbend.case import convert
 from fiberbend.case.case import Case, Output, Solver
 from fiberbend.case.section_beside import as_section
 from fiberbend.effects.effect import Effect
 from fiberbend.effects.pressure import inflate
 
 _FURTHER = 1.15
-"""Of an angle that is driven: weight may take the chamber's pressure beyond that of the section."""
+"""Of an angle or a change of volume that is driven: weight may take the chamber's pressure beyond
+that of the section."""
 
 
 def section_case(case: Case) -> Case:
     """The case of the section of a rod; of the cell where every turn of its winding is to lie.
 
     Args:
-        case: of model rod, under a pressure or an angle.
+        case: of model rod, under a pressure, a volume or an angle.
     """
     section = as_section(case, _load(case))
     if case.turns is None or not case.turns.discrete:
@@ -26,10 +28,13 @@ def section_case(case: Case) -> Case:
 
 
 def _load(case: Case) -> Effect:
-    """The greatest pressure or angle of its chamber."""
+    """The farthest pressure, volume or angle of its chamber."""
     load = case.inflation
     assert load is not None, "refused before"
     if load.to is not None:
         return inflate(to=load.to)
+    if load.volume is not None:
+        rest = convert.dimensions(case.actuator).chamber_volume
+        return inflate(volume=rest + _FURTHER * (load.volume - rest))
     assert load.angle is not None, "refused before"
     return inflate(angle=_FURTHER * load.angle)

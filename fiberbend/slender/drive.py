@@ -28,7 +28,8 @@ if TYPE_CHECKING:
     from fiberbend.slender.path import Course
 
 BEYOND = 4.0
-"""How far beyond a limit point the falling branch is followed, as a factor of the volume there."""
+"""How far beyond a limit point the falling branch is followed, as a factor of the volume there; of
+a vacuum as a part."""
 _CUT = 0.25
 _GROW = 1.5
 _NEAR = 0.2
@@ -279,7 +280,9 @@ class Drive:
             report.reason = f"the {self._ramp.load} has its greatest value"
             return False
         volume = self._rod.volume(point.state.strains, point.values.get(PRESSURE, 0.0))
-        ramp = dataclasses.replace(self._ramp, target=BEYOND * volume, drive="conjugate")
+        vacuum = point.values.get(PRESSURE, 0.0) < 0
+        target = volume / BEYOND if vacuum else volume * BEYOND
+        ramp = dataclasses.replace(self._ramp, target=target, drive="conjugate")
         beyond = Drive(self._course, ramp, Volume(), self._until, volume)
         report.status = "converged"
         beyond.to(ramp.target)

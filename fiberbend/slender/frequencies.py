@@ -68,10 +68,11 @@ def _refuse(case: Case, pressures: Sequence[float]) -> None:
         text = "no pressure to reach, expected one: the law of the section is known up to it"
         problems.append(Problem("effects", text))
     else:
+        slack = 1e-9 * abs(load.to)
         problems += [
             Problem("--at", f"{1e3 * p:.6g} kPa, expected from 0 to {1e3 * load.to:.6g} kPa")
             for p in pressures
-            if not 0 <= p <= load.to * (1 + 1e-9)
+            if not min(load.to, 0.0) - slack <= p <= max(load.to, 0.0) + slack
         ]
     if problems:
         raise CaseError(problems)

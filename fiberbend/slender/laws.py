@@ -131,10 +131,10 @@ def along(case: Case, made: SectionLaw, cap: Quartic, layout: Layout, chamber: s
     from fiberbend.sectionlaw.ends import ends_of
     from fiberbend.slender.beside import section_case
 
-    greatest, zones = float(made.free[:, 0].max()), zone_cases(case)
-    ends = ends_of(section_case(zones[0]), greatest)
+    farthest, zones = float(max(made.free[:, 0], key=abs)), zone_cases(case)
+    ends = ends_of(section_case(zones[0]), farthest)
     if len(zones) > 1:
-        ends = ends.to_tip(ends_of(section_case(zones[-1]), greatest))
+        ends = ends.to_tip(ends_of(section_case(zones[-1]), farthest))
     count, place = len(layout.lengths), layout.strains.index("curvature")
     beam = float(layout.lengths[: chamber.start].sum()) * np.linalg.inv(cap.stiffness)[place, place]
     root = cap.times(beam / ends.flexibility)

@@ -27,6 +27,11 @@ def inflated(case: Case, pressures: tuple[float, ...]) -> Case:
     return _under(case, inflate(to=ordered[-1]), at_pressures=ordered)
 
 
+def filled(case: Case, volume: float) -> Case:
+    """Inflated or evacuated to a volume of the chamber, mm³."""
+    return _under(case, inflate(volume=volume))
+
+
 def straight(case: Case, pressures: tuple[float, ...]) -> Case:
     """The same, kept straight."""
     kept = inflated(case, pressures)

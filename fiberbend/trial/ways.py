@@ -134,7 +134,9 @@ class Ways:
             reached = small.reach()
             states = {g: reached.found[g.value] for g in goals if g.value in reached.found}
             if reached.report.status != "converged" or len(states) < len(goals):
-                reason = reached.report.reason or _furthest(given, reached.furthest)
+                reason = _furthest(given, reached.furthest)
+                if reached.report.reason:
+                    reason = f"{reason}: {reached.report.reason}"
             if reached.report.critical:
                 # beside it another branch may be the one to which a way leads
                 scene.found.clear()

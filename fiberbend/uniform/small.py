@@ -168,25 +168,37 @@ class Small:
         asked = (*self._case.output.at_angles, *self._case.output.at_pressures)
         return [found[value] for value in asked if value in found], report
 
-    def reach(self) -> Reached:
-        """The same by the angle or the pressure that was asked for; one of the two is."""
+    def reach(self, volumes: Sequence[float] = ()) -> Reached:
+        """The same by what was asked for: angles, pressures or, of a case with a volume, volumes.
+
+        Args:
+            volumes: of the whole chamber, mm³; one of the three is asked for.
+        """
         found: dict[float, State] = {}
         furthest, value = self.rest, measure("value", PRESSURE)
+        volume, whole = measure("conjugate", PRESSURE), self.scene.body.symmetry_factor
         output, slack = self._case.output, 2 * self._case.solver.tolerance
-        asked = [("control", goal) for goal in output.at_angles]
-        asked += [(value, goal) for goal in output.at_pressures]
+        asked = [("control", goal, goal) for goal in output.at_angles]
+        asked += [(value, goal, goal) for goal in output.at_pressures]
+        asked += [(volume, goal / whole, goal) for goal in volumes]
         driven = value if output.at_pressures else "control"
+        ramps = [
+            dataclasses.replace(ramp, stops=tuple(goal / whole for goal in volumes))
+            if ramp.drive == "conjugate"
+            else ramp
+            for ramp in self._ramps
+        ]
 
         def keep(state: State, _outcome: Outcome) -> None:
             nonlocal furthest
             if abs(state.measures[driven]) > abs(furthest.measures[driven]):
                 furthest = state
-            for key, goal in asked:
+            for key, goal, name in asked:
                 near = slack if key == "control" else 0.0
                 if math.isclose(state.measures[key], goal, rel_tol=_SAME, abs_tol=near):
-                    found.setdefault(goal, state)
+                    found.setdefault(name, state)
 
-        report = self._march.run(self._ramps, [AfterStep(keep)])
+        report = self._march.run(ramps, [AfterStep(keep)])
         return Reached(found, report, furthest)
 
     def put(self, state: State) -> None:

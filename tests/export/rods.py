@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 
 from fiberbend.export import record
+from fiberbend.export.ends import Caps
 from fiberbend.export.section import Handed, Section
 from fiberbend.export.targets import TARGETS
+from fiberbend.sectionlaw.ends import Ends
 from rod.functions import Floats
 from rod.inertia import SectionMass, spread
 from rod.law import Linear, Zones
@@ -31,8 +33,9 @@ DENSITY = 1.1e-9
 MASS = SectionMass(220 * DENSITY, (0.0, -1.0), (8000 * DENSITY, 6000 * DENSITY, 0.0))
 CAP_MASS = SectionMass(350 * DENSITY, (0.0, 0.2), (12000 * DENSITY, 9000 * DENSITY, 0.0))
 CAP_STIFFNESS = np.diag([400.0, 9000.0, 20000.0, 8000.0])
-
-
+_TURNS = np.array([[1.0, 0.10, 0.0, 0.0], [2.0, 0.25, 0.0, 0.0]])
+"""Of a cap and of an end of the chamber, a MPa: lengthening in mm and turns in rad."""
+CAPS = Caps(Ends(15.0, np.array([_TURNS[[n]] * [[1.0], [-0.5]] for n in (0, 1, 1, 0)]), 1.0), 1.15)
 LEVER = -4.5
 
 
@@ -69,6 +72,7 @@ def handed(made: Section | None = None, weighs: bool = True) -> Handed:
         length=LENGTH,
         cap_length=CAP,
         outline=np.column_stack([11 * np.cos(t), 9 * np.sin(t)]),
+        caps=CAPS,
         about={
             "title": 'A "made-up" rod -- & more',
             "provenance": {
@@ -126,9 +130,11 @@ def rested(
         ]
     )
     straight = np.array([1.0, 0.0, 0.0, 0.0])
-    places = np.repeat([0, 1, 0], [ends, middle, ends])
-    law = Zones([Linear(CAP_STIFFNESS, straight), Linear(stiffness, rest)], places.tolist())
-    masses = spread(layout, [MASS if place else CAP_MASS for place in places])
+    places = np.repeat([0, 1, 2], [ends, middle, ends])
+    caps = [Linear(stiff * CAP_STIFFNESS, straight) for stiff in (CAPS.root, 1.0)]
+    zones = Zones([caps[0], Linear(stiffness, rest), caps[1]], places.tolist())
+    law = CAPS.ends.offset(zones, layout, slice(ends, ends + middle))
+    masses = spread(layout, [MASS if place == 1 else CAP_MASS for place in places])
     rod = Rod(layout, law, masses, (Weight(masses, gravity), TipForce(force)))
     start: Floats = np.where(places[:, None] == 1, rest, straight)
     path = LoadPath(Level(pressure), Level(pressure, (1.0, 1.0)))

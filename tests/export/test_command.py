@@ -14,7 +14,10 @@ import pytest
 
 import fiberbend
 from fiberbend.cli import main
+from fiberbend.commands.export import _case as exported_case
+from fiberbend.export.ends import KEYS
 from fiberbend.export.hand import law_case, outline
+from fiberbend.export.law import known
 from fiberbend.reader.reader import parse_case
 from fiberbend.schema.problems import CaseError
 from fiberbend.slender.moments import section_of
@@ -73,6 +76,29 @@ def test_the_file_is_the_section_of_the_run(exported: Path, run: Path) -> None:
     assert straightened["by_stiffness_N_mm"] == pytest.approx(straightened["moment_N_mm"], rel=0.2)
 
 
+def test_a_run_that_ended_early_hands_over_what_it_has_reached(
+    run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert exported_case(run)[1] is None
+    early = tmp_path / "early"
+    shutil.copytree(run, early)
+    about = json.loads((early / "run.json").read_text(encoding="utf-8"))
+    about |= {"status": "failed", "reason": "stopped by a test"}
+    (early / "run.json").write_text(json.dumps(about), encoding="utf-8")
+    lines = (early / "history.csv").read_text(encoding="utf-8").splitlines(keepends=True)
+    (early / "history.csv").write_text("".join(lines[:-1]), encoding="utf-8")
+    rows = fiberbend.load(early).rows
+    reached = exported_case(early)[1]
+    assert reached == pytest.approx(1e-3 * float(rows[-1]["pressure_kPa"] or 0.0))
+    assert reached is not None
+    assert 0 < reached < 0.06
+    law = known(law_case(parse_case(DATA))[0], 3, reached)
+    assert law.section.pressures[-1] == reached
+    (early / "history.csv").write_text("".join(lines[:2]), encoding="utf-8")
+    said = refused(capsys, str(early), "--to", "json", "--out", str(tmp_path / "rod"))
+    assert "the run is failed and has reached no pressure" in said
+
+
 def test_the_least_stiffness_is_the_slope_of_free_bending_under_a_moment(exported: Path) -> None:
     """Of the table's own numbers: a section that is straightened takes about EI k."""
     axis = json.loads((exported / "rod.json").read_text(encoding="utf-8"))["axis"]
@@ -86,9 +112,10 @@ def test_the_least_stiffness_is_the_slope_of_free_bending_under_a_moment(exporte
 @pytest.mark.skipif(not rods.PYTHON.exists(), reason="`make robots` makes MuJoCo's environment")
 def test_mujoco_bends_it_as_the_run_did(exported: Path, run: Path) -> None:
     found = rods.run(exported, "rod_mujoco.py", "--pressure", "60")
-    assert found["tip_angle_deg"] == pytest.approx(
-        fiberbend.load(run).rows[-1]["angle_deg"], rel=2e-3
-    )
+    record = json.loads((exported / "rod.json").read_text(encoding="utf-8"))
+    turns = sum(record["ends"][key]["turn_rad"][-1] for key in KEYS)
+    angle = float(fiberbend.load(run).rows[-1]["angle_deg"] or 0.0)
+    assert found["tip_angle_deg"] == pytest.approx(angle + np.degrees(turns), rel=2e-3)
 
 
 def test_a_part_without_density_is_named(

@@ -75,10 +75,16 @@ def test_mujocos_control_alone_is_off_by_what_the_file_says(tmp_path: Path) -> N
     pressures = made["section"]["pressure_kPa"]
     greatest = max(made["section"]["rest_curvature_1_per_mm"])
     _, angle = expected("free")
-    apart = math.radians(abs(found["tip_angle_deg"] - angle)) / rods.LENGTH
+    apart = math.radians(abs(found["tip_angle_deg"] - angle))
     at = float(np.interp(KPA, pressures, made["section"]["rest_curvature_1_per_mm"]))
-    assert apart == pytest.approx(abs(line.slope[1] * KPA * 1e-3 - at), rel=0.02)
-    assert 0 < apart <= 1.001 * line.rest_off[1] * greatest
+    chamber = abs(line.slope[1] * KPA * 1e-3 - at) * rods.LENGTH
+    assert 0 < chamber <= 1.001 * line.rest_off[1] * greatest * rods.LENGTH
+    # what the ends turn is linear in the control too
+    turns, p = mjcf.turns_of(made), np.array(pressures)
+    ends = abs(p @ turns / (p @ p) * KPA - float(np.interp(KPA, p, turns)))
+    assert 0 < ends <= mjcf.ends_off(made) * np.abs(turns).max()
+    assert f"that of the ends by {100 * mjcf.ends_off(made):.2g} %" in said
+    assert apart == pytest.approx(chamber + ends, rel=0.02)
 
 
 @pytest.mark.parametrize("script", ["rod_mujoco.py", "rod_pyelastica.py"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from importlib.resources import files
 
@@ -9,7 +10,8 @@ import jsonschema  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 
-from fiberbend.export import record
+from fiberbend.export import mjcf, record
+from fiberbend.export.ends import KEYS
 from fiberbend.export.section import Section, about, axis_of
 from fiberbend.export.targets import TARGETS
 from fiberbend.schema.problems import CaseError
@@ -32,11 +34,29 @@ def test_the_file_is_what_the_schema_says(weighs: bool) -> None:
 
 def test_every_number_says_its_unit() -> None:
     made = record.record_of(rods.handed())
-    units = ("_mm", "_kPa", "_N", "_mm2", "_kg_per_mm", "_kg_mm", "_N_mm", "_N_mm2")
+    units = ("_mm", "_kPa", "_N", "_mm2", "_kg_per_mm", "_kg_mm", "_N_mm", "_N_mm2", "_rad")
     plain = {"rest_stretch", "coupling_of_stretch_and_twist", "coupling_of_bending", "version"}
     for group in ("geometry", "section", "axis", "cap"):
         for name in made[group]:
             assert name in plain or name.endswith(units), name
+    for part in KEYS:
+        assert all(name.endswith(units) for name in made["ends"][part])
+
+
+def test_damping_is_the_time_times_the_stiffness_where_a_case_has_one() -> None:
+    assert record.record_of(rods.handed())["damping"] is None
+    given = dataclasses.replace(rods.handed(), retardation=0.03)
+    made = json.loads(record.text(record.record_of(given)))
+    jsonschema.validate(made, SCHEMA)
+    assert made["damping"]["retardation_time_s"] == 0.03
+    stiffness = np.array(made["section"]["stiffness_N_mm"][0])
+    assert made["damping"]["section_N_mm_s"] == pytest.approx(0.03 * stiffness)
+    assert made["damping"]["cap_N_mm_s"] == pytest.approx(0.03 * rods.CAP_STIFFNESS)
+    said = mjcf.text(made)
+    assert "Damping is of the motion's case: 0.03 s times the stiffness" in said
+    joint = next(line for line in said.splitlines() if 'name="curvature_chamber_20"' in line)
+    numbers = {k: float(joint.split(f'{k}="')[1].split('"')[0]) for k in ("stiffness", "damping")}
+    assert numbers["damping"] == pytest.approx(0.03 * numbers["stiffness"], rel=1e-5)
 
 
 def test_energy_is_that_of_the_other_line() -> None:

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from fiberbend.export import mjcf
+from fiberbend.export.ends import KEYS
 from tests.export import rods
 
 FIELDS = {
@@ -125,8 +126,14 @@ def test_the_scene_has_the_numbers_in_the_plugins_fields(
     rest = np.array(strains.rest_position.value)
     # torsion, bending about the two axes across, elongation, shears
     last = [made["axis"][f"rest_{name}_1_per_mm"][-1] * 1e3 for name in ("twist", "curvature")]
-    assert rest[0, :2] == pytest.approx(last)
-    assert rest[-1, 3] == pytest.approx(made["axis"]["rest_stretch"][-1] - 1)
+    assert rest[10, :2] == pytest.approx(last)
+    # the caps are rigid: what they turn is turned beside them, all of it
+    turns = [made["ends"][key]["turn_rad"][-1] for key in KEYS]
+    turned = float(np.sum(rest[:, 1] - last[1])) * 1e-3 * rods.LENGTH / scene.SECTIONS
+    assert turned == pytest.approx(sum(turns))
+    assert rest[0, 1] == pytest.approx(rest[-1, 1])
+    assert beam["rayleighStiffness"] == scene.RAYLEIGH
+    assert rest[10, 3] == pytest.approx(made["axis"]["rest_stretch"][-1] - 1)
     assert rest.shape == (scene.SECTIONS, 6)
     masses = [
         fields.fields["vertexMass"].split() for fields in things if fields.kind == "UniformMass"

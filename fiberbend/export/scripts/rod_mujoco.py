@@ -18,6 +18,8 @@ import mujoco
 import numpy as np
 
 MM = 1e-3
+KINDS = ("stretch", "curvature", "side", "twist")
+"""Of the joints of a piece."""
 
 
 class Table:
@@ -30,29 +32,45 @@ class Table:
 
     def __init__(self, path: Path, model: mujoco.MjModel) -> None:
         data = json.loads(path.read_text(encoding="utf-8"))
-        if (data["format"], data["version"]) != ("fiberbend-rod", 1):
-            raise ValueError(f"{path}: version 1 of the format fiberbend-rod expected")
-        axis = data["axis"]
+        if (data["format"], data["version"]) != ("fiberbend-rod", 2):
+            raise ValueError(f"{path}: version 2 of the format fiberbend-rod expected")
+        axis, cap, geometry = data["axis"], data["cap"], data["geometry"]
         self.pressures = np.array(data["section"]["pressure_kPa"])
         bent = [axis[f"rest_{n}_1_per_mm"] for n in ("curvature", "side_curvature", "twist")]
-        rest = [np.array(axis["rest_stretch"]) - 1, *(np.array(row) / MM for row in bent)]
+        rest = np.array([np.array(axis["rest_stretch"]) - 1, *(np.array(row) / MM for row in bent)])
         compliance = np.linalg.inv(np.array(axis["bending_stiffness_N_mm2"]) * MM**2)
         own = 1 / np.diagonal(compliance, axis1=1, axis2=2)
         stiffness = np.column_stack([axis["axial_stiffness_N"], own])
-        self._rest, self._stiffness = np.array(rest).T, stiffness
+        names = [model.body(number).name for number in range(model.nbody)]
+        pieces = [name for name in names if name.startswith(("root_", "chamber_", "tip_"))]
+        inside = np.array([name.startswith("chamber_") for name in pieces])
+        length = geometry["chamber_length_mm"] * MM / inside.sum()
+        joints = [[model.joint(f"{kind}_{name}").id for kind in KINDS] for name in pieces]
+        self._joints = np.array(joints)
+        self._springs = model.jnt_qposadr[self._joints]
         tendon = model.tendon("pressure").id
         wraps = slice(model.tendon_adr[tendon], model.tendon_adr[tendon] + model.tendon_num[tendon])
         pull = np.zeros(model.njnt)
         pull[model.wrap_objid[wraps]] = model.wrap_prm[wraps]
-        self._joints, self._springs = [], []
-        names = ("stretch", "curvature", "side", "twist")
-        pieces = sum(model.joint(n).name.startswith("twist_chamber") for n in range(model.njnt))
-        self._length = data["geometry"]["chamber_length_mm"] * MM / pieces
-        for name in names:
-            joints = [model.joint(f"{name}_chamber_{number}").id for number in range(pieces)]
-            self._joints.append(np.array(joints))
-            self._springs.append(model.jnt_qposadr[joints])
-        self._pull = np.array([pull[joints[0]] for joints in self._joints])
+        self._pull = pull[self._joints]
+        count = len(self.pressures)
+        self._stiffness = np.tile(model.jnt_stiffness[self._joints], (count, 1, 1))
+        self._stiffness[:, inside] = stiffness[:, None] / length
+        self._rest = np.zeros((count, len(pieces), len(KINDS)))
+        """Of the joints without load, by pressure, in m and rad."""
+        self._rest[:, inside] = length * rest.T[:, None]
+        first, last = np.flatnonzero(inside)[[0, -1]]
+        near = round(data["ends"]["zone_mm"] * MM / length)
+        near = max(1, min(near, int(inside.sum()) // 2))
+        borders = (0, first, first + near, last + 1 - near, last + 1, len(pieces))
+        for number, part in ((0, "root_cap"), (1, "root_end"), (3, "tip_end"), (4, "tip_cap")):
+            x, y = ((cap if part.endswith("cap") else axis)[key] * MM for key in ("x_mm", "y_mm"))
+            ends = data["ends"][part]
+            turns = [np.array(ends[key]) for key in ("turn_rad", "side_turn_rad", "twist_rad")]
+            longer = np.array(ends["lengthening_mm"]) * MM + y * turns[0] - x * turns[1]
+            there = slice(borders[number], borders[number + 1])
+            added = np.array([longer, *turns]).T / (there.stop - there.start)
+            self._rest[:, there] += added[:, None]
 
     def follow(self, model: mujoco.MjModel, data: mujoco.MjData, kpa: float) -> None:
         """Set control and springs to a pressure.
@@ -66,12 +84,16 @@ class Table:
         if not low <= kpa <= high:
             raise ValueError(f"{kpa:g} kPa: rod.json reaches from {low:g} to {high:g} kPa")
         data.actuator("pressure").ctrl = kpa
-        for strain, (joints, springs) in enumerate(zip(self._joints, self._springs, strict=True)):
-            rest = np.interp(kpa, self.pressures, self._rest[:, strain])
-            stiffness = np.interp(kpa, self.pressures, self._stiffness[:, strain]) / self._length
-            model.jnt_stiffness[joints] = stiffness
-            # what the actuator does not do
-            model.qpos_spring[springs] = self._length * rest - self._pull[strain] * kpa / stiffness
+        after = min(int(np.searchsorted(self.pressures, kpa, "right")), len(self.pressures) - 1)
+        before = after - 1
+        part = (kpa - self.pressures[before]) / (self.pressures[after] - self.pressures[before])
+        rest, stiffness = (
+            (1 - part) * table[before] + part * table[after]
+            for table in (self._rest, self._stiffness)
+        )
+        model.jnt_stiffness[self._joints] = stiffness
+        # what the actuator does not do
+        model.qpos_spring[self._springs] = rest - self._pull * kpa / stiffness
 
 
 def main() -> None:

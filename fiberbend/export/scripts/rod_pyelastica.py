@@ -44,8 +44,8 @@ class Rod:
 
     def __init__(self, path: Path, chamber: int = 40, cap: int = 3) -> None:
         self.data = json.loads(path.read_text(encoding="utf-8"))
-        if (self.data["format"], self.data["version"]) != ("fiberbend-rod", 1):
-            raise ValueError(f"{path}: version 1 of the format fiberbend-rod expected")
+        if (self.data["format"], self.data["version"]) != ("fiberbend-rod", 2):
+            raise ValueError(f"{path}: version 2 of the format fiberbend-rod expected")
         if not self.data["mass"]["known"]:
             raise ValueError(
                 f"{path}: without masses nothing moves: {self.data['mass']['missing']}"
@@ -64,14 +64,35 @@ class Rod:
         self._stretch = np.array(axis["rest_stretch"])
         self._axial = np.array(axis["axial_stiffness_N"])
         self._bending = np.array(axis["bending_stiffness_N_mm2"]) * MM**2
+        self._added = self._ends(chamber, cap)
+        """Lengths in m and turns of the elements by the ends of the chamber, by pressure."""
+        self._stiffer = np.ones(len(self.lengths))
+        self._stiffer[:cap] = self.data["ends"]["root_cap_over_cap_stiffness"]
         self._cap_axial = self.data["cap"]["axial_stiffness_N"]
         self._cap_bending = np.array(self.data["cap"]["bending_stiffness_N_mm2"]) * MM**2
 
-    def at(self, kpa: float) -> tuple[float, np.ndarray, float, np.ndarray]:
-        """Stretch and curvatures at rest, axial and bending stiffness of the chamber's section.
+    def _ends(self, chamber: int, cap: int) -> np.ndarray:
+        ends, middle = self.data["ends"], self.data["geometry"]["chamber_length_mm"]
+        near = max(1, min(round(ends["zone_mm"] / middle * chamber), chamber // 2))
+        counts = np.cumsum([0, cap, near, chamber - 2 * near, near, cap])
+        added = np.zeros((len(self.pressures), len(self.lengths), 4))
+        x, y = self.place
+        for number, name in ((0, "root_cap"), (1, "root_end"), (3, "tip_end"), (4, "tip_cap")):
+            part, (first, last) = ends[name], counts[number : number + 2]
+            turns = [np.array(part[key]) for key in ("turn_rad", "side_turn_rad", "twist_rad")]
+            longer = np.array(part["lengthening_mm"]) * MM + y * turns[0] - x * turns[1]
+            added[:, first:last] = (np.array([longer, *turns]).T / (last - first))[:, None]
+        return added
+
+    def at(self, kpa: float) -> tuple[float, np.ndarray, float, np.ndarray, np.ndarray]:
+        """Of the chamber's section, and of the elements at its ends.
 
         Args:
             kpa: pressure, within the range of rod.json.
+
+        Returns:
+            Stretch and curvatures at rest, axial and bending stiffness; length in m and turns of
+            each element by the ends.
         """
         low, high = self.pressures[[0, -1]]
         if not low <= kpa <= high:
@@ -81,28 +102,32 @@ class Rod:
         )
         before = place - 1
         part = (kpa - self.pressures[before]) / (self.pressures[place] - self.pressures[before])
-        tables = (self._stretch, self._curvatures, self._axial, self._bending)
-        stretch, curvatures, axial, bending = (
+        tables = (self._stretch, self._curvatures, self._axial, self._bending, self._added)
+        stretch, curvatures, axial, bending, added = (
             (1 - part) * table[before] + part * table[place] for table in tables
         )
-        return float(stretch), curvatures, float(axial), bending
+        return float(stretch), curvatures, float(axial), bending, added
 
     def put(self, rod: ea.CosseratRod, kpa: float) -> None:
         """Write rest strains and stiffness at a pressure into a rod."""
-        stretch, curvatures, axial, bending = self.at(kpa)
+        stretch, curvatures, axial, bending, added = self.at(kpa)
         inside = self.in_chamber
-        rest = np.where(inside, stretch, 1.0)
+        rest = np.where(inside, stretch, 1.0) + added[:, 0] / self.lengths
         rod.rest_sigma[2] = rest - 1.0
-        along = rest * np.where(inside, axial, self._cap_axial)
+        along = rest * np.where(inside, axial, self._stiffer * self._cap_axial)
         rod.shear_matrix[0, 0] = rod.shear_matrix[1, 1] = SHEAR * along
         rod.shear_matrix[2, 2] = along
         # a node turns by what bends in the halves beside it; the ends have no node of their own
         halves = np.array([self.lengths[:-1], self.lengths[1:]]) / 2
         between = halves.sum(axis=0)
         halves[0, 0], halves[1, -1] = self.lengths[0], self.lengths[-1]
-        beside = np.array([inside[:-1], inside[1:]])
-        own, caps = (np.sum(halves * part, axis=0) / between for part in (beside, ~beside))
-        rod.rest_kappa[:] = own * curvatures[:, None]
+        own, caps = (
+            np.sum(halves * np.array([part[:-1], part[1:]]), axis=0) / between
+            for part in (inside, ~inside / self._stiffer)
+        )
+        turned = added[:, 1:].T / self.lengths
+        ends = (halves[0] * turned[:, :-1] + halves[1] * turned[:, 1:]) / between
+        rod.rest_kappa[:] = own * curvatures[:, None] + ends
         softness = own[:, None, None] * np.linalg.inv(bending)
         softness = softness + caps[:, None, None] * np.linalg.inv(self._cap_bending)
         lengths = rest * self.lengths
@@ -129,8 +154,9 @@ class Rod:
     def time_step(self) -> float:
         """A stable one, s."""
         mass, _, inertia = self.masses()
-        axial = np.where(self.in_chamber, self._axial.max(), self._cap_axial)
-        bending = np.where(self.in_chamber, self._bending.max(), self._cap_bending.max())
+        inside, stiffer = self.in_chamber, self._stiffer
+        axial = np.where(inside, self._axial.max(), stiffer * self._cap_axial)
+        bending = np.where(inside, self._bending.max(), stiffer * self._cap_bending.max())
         own, h = np.linalg.eigvalsh(inertia)[:, 0], self.lengths
         along = 4 * axial / (h * mass)
         turning = (SHEAR * axial * h + 4 * bending / h) / own

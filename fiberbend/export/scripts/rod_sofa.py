@@ -32,7 +32,7 @@ GRAVITY = (0.0, 0.0, 0.0)
 SHEAR = 0.3
 """Stiffness against shear in parts of that against stretch; rod.json has none."""
 RAYLEIGH = 0.02
-"""Damping over stiffness, s: an assumption."""
+"""Damping over stiffness, s: an assumption where rod.json has no damping."""
 PLUGINS = [
     "Cosserat",
     "Sofa.Component.AnimationLoop",
@@ -54,8 +54,8 @@ class Rod:
 
     def __init__(self, path: Path) -> None:
         data = json.loads(path.read_text(encoding="utf-8"))
-        if (data["format"], data["version"]) != ("fiberbend-rod", 1):
-            raise ValueError(f"{path}: version 1 of the format fiberbend-rod expected")
+        if (data["format"], data["version"]) != ("fiberbend-rod", 2):
+            raise ValueError(f"{path}: version 2 of the format fiberbend-rod expected")
         if not data["mass"]["known"]:
             raise ValueError(f"{path}: without masses nothing moves: {data['mass']['missing']}")
         axis, geometry, mass = data["axis"], data["geometry"], data["mass"]
@@ -70,11 +70,33 @@ class Rod:
         )
         nothing = np.zeros_like(twist)
         stretch = np.array(axis["rest_stretch"]) - 1
-        self._rest = np.column_stack([twist, curvature, side, stretch, nothing, nothing])
+        rest = np.column_stack([twist, curvature, side, stretch, nothing, nothing])
+        self._rest = np.tile(rest[:, None], (1, SECTIONS, 1)) + self._ends(data)
+        known = data["damping"]
+        self.damping = RAYLEIGH if known is None else float(known["retardation_time_s"])
         compliance = np.linalg.inv(np.array(axis["bending_stiffness_N_mm2"]) * MM**2)
         bending = 1 / np.diagonal(compliance, axis1=1, axis2=2)
         self.bending, self.side, self.twist = (float(part) for part in bending.mean(axis=0))
         self.axial = float(np.mean(axis["axial_stiffness_N"]))
+
+    def _ends(self, data: dict[str, Any]) -> np.ndarray:
+        """Strains of the sections near the caps, which are rigid and turn with them."""
+        ends, axis, each = data["ends"], data["axis"], self.length / SECTIONS
+        near = max(1, min(round(ends["zone_mm"] * MM / each), SECTIONS // 2))
+        added = np.zeros((len(self.pressures), SECTIONS, 6))
+        for there, parts in (
+            (slice(0, near), ("root_cap", "root_end")),
+            (slice(SECTIONS - near, SECTIONS), ("tip_end", "tip_cap")),
+        ):
+            longer, turn, side, twist = (
+                sum(np.array(ends[part][key]) for part in parts)
+                for key in ("lengthening_mm", "turn_rad", "side_turn_rad", "twist_rad")
+            )
+            longer = MM * (longer + axis["y_mm"] * turn - axis["x_mm"] * side)
+            nothing = np.zeros_like(turn)
+            rows = np.column_stack([twist, turn, side, longer, nothing, nothing])
+            added[:, there] += rows[:, None] / (near * each)
+        return added
 
     def lump(self, mass: float) -> str:
         """A mass on a frame: kg, a volume that nothing reads, and its inertia over the mass, m²."""
@@ -82,8 +104,8 @@ class Rod:
         rows = np.diag([along, across, across]).ravel()
         return " ".join(f"{part:.10g}" for part in (mass, 1.0, *rows))
 
-    def rest(self, kpa: float) -> list[float]:
-        """Strains of a section without load, in the plugin's order.
+    def rest(self, kpa: float) -> list[list[float]]:
+        """Strains of the sections without load, in the plugin's order.
 
         Args:
             kpa: within the range of rod.json.
@@ -91,7 +113,14 @@ class Rod:
         low, high = self.pressures[[0, -1]]
         if not low <= kpa <= high:
             raise ValueError(f"{kpa:g} kPa: rod.json reaches from {low:g} to {high:g} kPa")
-        return [float(np.interp(kpa, self.pressures, column)) for column in self._rest.T]
+        place = int(np.searchsorted(self.pressures, kpa, "right"))
+        place = min(place, len(self.pressures) - 1)
+        one, other = self.pressures[place - 1 : place + 1]
+        part = (kpa - one) / (other - one)
+        rows: list[list[float]] = (
+            (1 - part) * self._rest[place - 1] + part * self._rest[place]
+        ).tolist()
+        return rows
 
 
 class Pressure(Sofa.Core.Controller):
@@ -143,8 +172,8 @@ def createScene(root: Any) -> Any:
         "MechanicalObject",
         name="strains",
         template="Vec6d",
-        position=[first] * SECTIONS,
-        rest_position=[first] * SECTIONS,
+        position=first,
+        rest_position=first,
     )
     sections.addObject(
         "BeamHookeLawForceFieldRigid",
@@ -157,7 +186,7 @@ def createScene(root: Any) -> Any:
         EIz=rod.side,
         EA=rod.axial,
         GA=SHEAR * rod.axial,
-        rayleighStiffness=RAYLEIGH,
+        rayleighStiffness=rod.damping,
     )
     frames = base.addChild("frames")
     sections.addChild(frames)

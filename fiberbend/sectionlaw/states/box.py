@@ -55,7 +55,7 @@ class Box:
 
     Attributes:
         chart: its coordinates, from 0 to 1.
-        pressures: least and greatest, MPa.
+        pressures: least and greatest, MPa; one of them is the farthest from zero.
         known: states with nothing to pull along them that were met, from which others are found.
     """
 
@@ -67,6 +67,12 @@ class Box:
     def ranges(self) -> tuple[tuple[float, float], ...]:
         """Of u and P."""
         return (*[(0.0, 1.0)] * len(self.chart.least), self.pressures)
+
+    def at(self, parts: Floats) -> Floats:
+        """Pressures at rising parts of the way from the one nearest to zero, in rising order."""
+        near, far = sorted(self.pressures, key=abs)
+        found: Floats = np.sort(near + parts * (far - near))
+        return found
 
 
 def words(at: Floats) -> str:
@@ -85,21 +91,23 @@ def box_of(
         held: its section.
         strains: of the table, the stretch first.
         part: of the margins.
-        least: pressure from which the table is, MPa.
+        least: pressure from which the table is, MPa, of the sign of those of the case.
 
     Raises:
         NoStateError: the section has no state within it.
     """
     free = np.array([[getattr(state, name) for name in strains] for _, state in reach.free])
-    pressures = np.array([pressure for pressure, _ in reach.free])
-    high = (1.0 + part * PRESSURE_MARGIN) * float(pressures.max())
+    # a vacuum is below zero: what moves with the pressure is by its size, and then turned
+    pressures = np.abs([pressure for pressure, _ in reach.free])
+    sign = math.copysign(1.0, reach.free[0][0])
+    high = sign * (1.0 + part * PRESSURE_MARGIN) * float(pressures.max())
     ends = np.array(
         [
-            [_end(reach, held, number, sign, part, free[:, number]) for sign in (-1.0, 1.0)]
+            [_end(reach, held, number, way, part, free[:, number]) for way in (-1.0, 1.0)]
             for number in range(1, len(strains))
         ]
     )
-    rise = _rise(ends, free[:, 1:], pressures, part)
+    rise = sign * _rise(ends, free[:, 1:], pressures, part)
     places = _places(ends, rise, high)
     known = _walk(held, places)
     y = np.array([state.at[1:] for state in known])
@@ -122,9 +130,9 @@ def box_of(
         least=(-halves[0], *ends[:, 0].tolist()),
         drifts=(-grown, *rise[0].tolist()),
         widths=(2 * halves[0], *np.ptp(ends, axis=1).tolist()),
-        growths=(2 * grown, *np.ptp(rise, axis=0).tolist()),
+        growths=(2 * grown, *(rise[1] - rise[0]).tolist()),
     )
-    return Box(chart, (least, high), tuple(known))
+    return Box(chart, (min(least, high), max(least, high)), tuple(known))
 
 
 def _end(reach: Reach, held: Held, number: int, sign: float, part: float, free: Floats) -> float:
@@ -152,7 +160,7 @@ def _end(reach: Reach, held: Held, number: int, sign: float, part: float, free: 
 
 
 def _rise(ends: Floats, free: Floats, pressures: Floats, part: float) -> Floats:
-    """How the ends of the strains but the stretch move with the pressure, (2, r), rad/mm/MPa.
+    """How the ends of the strains but the stretch move with a pressure's size, (2, r), rad/mm/MPa.
 
     At a pressure they are as far from the free state as they are from rest without, and include
     what is kept straight, with a margin.
