@@ -7,7 +7,10 @@ import dataclasses
 import numpy as np
 
 from rod.functions import Floats
-from rod.law import Law
+from rod.law import Law, Sections, whole
+
+_KEPT = 8
+"""Pressures of which what they move is remembered."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -25,6 +28,9 @@ class Offset:
 
     law: Law
     coefficients: Floats
+    _known: dict[float, Floats] = dataclasses.field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def _moved(self, pressure: float) -> tuple[Floats, Floats, Floats]:
         """δ and its first two derivatives by P, (n, m) or (m,) each."""
@@ -45,6 +51,30 @@ class Offset:
         for power, coefficient in enumerate(others, 2):
             out = out + pressure**power * coefficient
         return out
+
+    def whole(self, strains: Floats, pressures: Floats) -> Sections:
+        """See `rod.law.whole`."""
+        k, n, m = strains.shape
+        moves = np.stack([self._whole_move(pressure) for pressure in pressures.tolist()])
+        moved, slope, bent = moves.reshape(k, 3, -1, m).swapaxes(0, 1)
+        value, first, second = whole(self.law, strains - moved, pressures)
+        pulled = second[..., :m, :m] @ np.broadcast_to(slope, (k, n, m))[..., None]
+        mixed = second[..., :m, m] - pulled[..., 0]
+        forces = first[..., :m]
+        # dΦ/dP = ∂Φ/∂P − ∂Φ/∂ε · δ'
+        second[..., m, m] -= np.sum((second[..., :m, m] + mixed) * slope + forces * bent, axis=-1)
+        second[..., :m, m] = second[..., m, :m] = mixed
+        first[..., m] -= np.sum(forces * slope, axis=-1)
+        return Sections(value, first, second)
+
+    def _whole_move(self, pressure: float) -> Floats:
+        """`_moved` as one array; steps of a motion ask for the same few pressures again."""
+        known = self._known
+        if pressure not in known:
+            if len(known) >= _KEPT:
+                known.clear()
+            known[pressure] = np.stack(self._moved(pressure))
+        return known[pressure]
 
     def value(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""

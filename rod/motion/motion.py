@@ -62,6 +62,7 @@ class Motion:
             them, (n, m, m); N s and N mm² s. `retarded` makes them of a time.
         drag: of the mass, 1/s.
         air: what makes the pressure; None: it is that of the level.
+        touching: retardation time of what touches something, s; see `rod.contact.impact`.
 
     Attributes:
         rod: as given.
@@ -70,6 +71,7 @@ class Motion:
         viscid: it is not zero.
         drag: as given.
         air: as given.
+        touching: as given.
         damped: anything takes energy.
         dead: loads of terms that never change, by the terms' identities.
         inertia: of the rod.
@@ -87,17 +89,19 @@ class Motion:
         viscosity: Floats | float = 0.0,
         drag: float = 0.0,
         air: Air | None = None,
+        touching: float = 0.0,
     ) -> None:
         if not rod.inertia.any():
             raise ValueError("a rod without inertia does not move by itself")
         matrices = _matrices(viscosity, rod.layout.shape)
         least = np.linalg.eigvalsh(matrices).min()
-        if least < -_NEGATIVE * np.abs(matrices).max() or drag < 0:
+        if least < -_NEGATIVE * np.abs(matrices).max() or min(drag, touching) < 0:
             raise ValueError("damping: zero or more expected")
         self.rod, self.level, self.drag, self.air = rod, level, drag, air
         self.viscous = rod.layout.lengths[:, None, None] * matrices
         self.viscid = bool(np.any(matrices))
-        self.damped = bool(drag) or self.viscid
+        self.touching = touching
+        self.damped = bool(drag) or self.viscid or bool(touching)
         self.dead = {id(term): term.loads for term in rod.terms if isinstance(term, Dead)}
         self.inertia = rod.inertia
         self.sizes = size(rod)
@@ -157,10 +161,16 @@ class Motion:
         """ε̇ with the momentum of the frames' velocity, (n, m), 1/s and 1/(mm s)."""
         return self.rates_of(moving.shape, moving.velocity)
 
-    def rates_of(self, shape: Shape, velocity: Floats) -> Floats:
-        """ε̇ with the momentum of a velocity of the frames, (n, m), 1/s and 1/(mm s)."""
+    def rates_of(self, shape: Shape, velocity: Floats, more: Floats | float = 0.0) -> Floats:
+        """ε̇ with the momentum of a velocity of the frames, (n, m), 1/s and 1/(mm s).
+
+        Args:
+            shape: the rod.
+            velocity: of its frames, (n + 1, 3, 4).
+            more: that is added to the masses, (n m, n m).
+        """
         momentum = shape.pulled(velocity @ self.inertia).ravel()
-        rates: Floats = dposv(shape.mass(self.inertia), momentum)[1]
+        rates: Floats = dposv(shape.mass(self.inertia) + more, momentum)[1]
         return rates.reshape(shape.strains.shape)
 
     def run(self, moving: Moving, step: float, count: int) -> Iterator[Moving]:
