@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Sequence
-from typing import NamedTuple, Protocol, runtime_checkable
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -53,24 +53,18 @@ class Sections(NamedTuple):
     """(k, n, m + 1, m + 1)."""
 
 
-@runtime_checkable
-class Whole(Protocol):
-    """A law that is quicker if it is asked for everything at several places at once."""
-
-    def whole(self, strains: Floats, pressures: Floats) -> Sections:
-        """See `whole`."""
-
-
 def whole(law: Law, strains: Floats, pressures: Floats) -> Sections:
-    """All of a law at several places.
+    """All of a law at several places: by its own `whole`, where that is quicker.
 
     Args:
         law: of n pieces.
         strains: (k, n, m).
         pressures: of each place, (k,), MPa.
     """
-    if isinstance(law, Whole):
-        return law.whole(strains, pressures)
+    # looking for an attribute is a tenth of the time that asking a protocol takes
+    own: Callable[[Floats, Floats], Sections] | None = getattr(law, "whole", None)
+    if own is not None:
+        return own(strains, pressures)
     k, n, m = strains.shape
     out = Sections(np.empty((k, n)), np.empty((k, n, m + 1)), np.empty((k, n, m + 1, m + 1)))
     for i, pressure in enumerate(pressures.tolist()):

@@ -28,7 +28,7 @@ class Offset:
 
     law: Law
     coefficients: Floats
-    _known: dict[float, Floats] = dataclasses.field(
+    _known: dict[tuple[float, ...], tuple[Floats, Floats, Floats]] = dataclasses.field(
         default_factory=dict, init=False, repr=False, compare=False
     )
 
@@ -55,8 +55,7 @@ class Offset:
     def whole(self, strains: Floats, pressures: Floats) -> Sections:
         """See `rod.law.whole`."""
         k, n, m = strains.shape
-        moves = np.stack([self._whole_move(pressure) for pressure in pressures.tolist()])
-        moved, slope, bent = moves.reshape(k, 3, -1, m).swapaxes(0, 1)
+        moved, slope, bent = self._moves(tuple(pressures.tolist()))
         value, first, second = whole(self.law, strains - moved, pressures)
         pulled = second[..., :m, :m] @ np.broadcast_to(slope, (k, n, m))[..., None]
         mixed = second[..., :m, m] - pulled[..., 0]
@@ -67,14 +66,17 @@ class Offset:
         first[..., m] -= np.sum(forces * slope, axis=-1)
         return Sections(value, first, second)
 
-    def _whole_move(self, pressure: float) -> Floats:
-        """`_moved` as one array; steps of a motion ask for the same few pressures again."""
+    def _moves(self, pressures: tuple[float, ...]) -> tuple[Floats, Floats, Floats]:
+        """`_moved` of several; steps of a motion ask for the same few pressures again."""
         known = self._known
-        if pressure not in known:
+        if pressures not in known:
             if len(known) >= _KEPT:
                 known.clear()
-            known[pressure] = np.stack(self._moved(pressure))
-        return known[pressure]
+            m = self.coefficients.shape[-1]
+            parts = zip(*map(self._moved, pressures), strict=True)
+            a, b, c = (np.stack(part).reshape(len(pressures), -1, m) for part in parts)
+            known[pressures] = a, b, c
+        return known[pressures]
 
     def value(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""

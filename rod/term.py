@@ -62,6 +62,13 @@ class Impact(Protocol):
     """What of it is in the potential; the rest is lost."""
     push: Push
     """Mean of the step."""
+    active: bool
+    """Something is pressed."""
+    known: bool
+    """By forces that a step of Newton's method has found, not by depths that it began with."""
+
+    def begin(self, after: Shape) -> float:
+        """Takes note of where the step would end without it; the part of the way that is free."""
 
     def residual(self, middle: Shape, after: Shape) -> Floats:
         """Less the virtual work of its forces at the mean strains, (n, m)."""
@@ -71,6 +78,9 @@ class Impact(Protocol):
 
     def ahead(self) -> Floats:
         """Derivative of the work by the strains at the end, (n, m)."""
+
+    def stepped(self, change: Floats) -> bool:
+        """Takes note of a step by Newton's method, (n, m); whether it has not changed its mind."""
 
     def resisting(self, shape: Shape, step: float) -> Floats | float:
         """Viscosity times Δt that the velocities at the end meet, (n m, n m)."""

@@ -11,7 +11,6 @@ from rod.law import Sections, whole
 from rod.motion.air import Swelling
 from rod.motion.moving import Energy, Moving, Work
 from rod.shape import Shape
-from rod.term import Struck
 
 if TYPE_CHECKING:
     from rod.motion.motion import Motion
@@ -37,11 +36,11 @@ class Equations:
         acting = self._rod.acting(self._level)
         dead = motion.dead
         self._impacts = [
-            term.impact(before.shape, amount, motion.touching / (2 * step))
+            motion.struck[id(term)].impact(before.shape, amount, motion.touching / (2 * step))
             for term, amount in acting
-            if isinstance(term, Struck)
+            if id(term) in motion.struck
         ]
-        left = [pair for pair in acting if not isinstance(pair[0], Struck)]
+        left = [pair for pair in acting if id(pair[0]) not in motion.struck]
         self._kept = [p for p in left if p[0].conservative and id(p[0]) not in dead]
         self._dead = sum(
             (amount * dead[id(term)] for term, amount in left if id(term) in dead),
@@ -113,6 +112,18 @@ class Equations:
 
     # --- the equations ---------------------------------------------------------------------------
 
+    def begin(self, change: Floats) -> Floats:
+        """Where Newton's method begins, (n, m), by a change of strains that is foreseen."""
+        if not self._impacts:
+            return change
+        after = self._rod.shape(self._before.strains + change)
+        return change * min(impact.begin(after) for impact in self._impacts)
+
+    @property
+    def kinked(self) -> bool:
+        """A tangent that is a little older is of no use."""
+        return any(impact.active for impact in self._impacts)
+
     def residual(self, change: Floats) -> Floats:
         """∇̄G + C Δε/Δt less the virtual work of loads without a potential, (n, m)."""
         rod, motion = self._rod, self._motion
@@ -136,14 +147,19 @@ class Equations:
         self._forces = self._lengths[:, None] * law + self._middle.pulled(self._loads)
         for term, amount in self._kept:
             self._forces += term.residual(self._middle, amount)
+        work, self._struck = 0.0, []
         for impact in self._impacts:
-            self._forces += impact.residual(self._middle, self._after)
+            pulled = impact.residual(self._middle, self._after)
+            self._forces += pulled
+            self._struck.append(pulled)
+            # depths that are too great say nothing of what the middle misses
+            work += impact.work if impact.known else float(np.vdot(pulled, change))
         parts = (
             self._over(self._law.value[1]),
             -self._elastic,
             self._potential(self._after),
             -self._terms,
-            sum(impact.work for impact in self._impacts),
+            work,
             float(np.vdot(self._loads, moved)),
             -float(np.vdot(self._forces, change)),
         )
@@ -175,10 +191,14 @@ class Equations:
         ahead = lengths * self._law.first[1, :, :-1]
         for term, amount in self._kept:
             ahead = ahead + term.residual(after, amount)
-        for impact in self._impacts:
-            out += impact.tangent()
-            ahead = ahead + impact.ahead()
         ahead = ahead + after.pulled(self._loads + self._pushed) - self._forces
+        for impact, pulled in zip(self._impacts, self._struck, strict=True):
+            stiff = impact.tangent()
+            out += stiff
+            if impact.known:
+                ahead = ahead + impact.ahead()
+            else:
+                ahead = ahead + pulled + (self._change.ravel() @ stiff).reshape(pulled.shape)
         w = self._weighed.ravel()
         row = (ahead.ravel() - self._change.ravel() @ out) / self._square
         out += np.outer(w, row - 2 * self._missed / self._square * w)
@@ -190,6 +210,10 @@ class Equations:
         for term, amount in self._others:
             out += term.tangent(middle, amount) / 2
         return out
+
+    def stepped(self, change: Floats) -> bool:
+        """Takes note of a step by Newton's method, (n, m); whether nothing changes its mind."""
+        return all([impact.stepped(change) for impact in self._impacts])
 
     # --- what it leads to ------------------------------------------------------------------------
 
