@@ -59,8 +59,6 @@ class Rod(SlenderModel):
                 yield f"{path}.volume", text
             if own is not None and ((own.to or 0.0) < 0 or (own.angle or 0.0) < 0):
                 yield path, "the law of a section is of pressures above zero, and no vacuum"
-            if case.time is not None and (effect.touches() or effect.strips() is not None):
-                yield path, "what a rod in motion touches is not known: it is put beside nothing"
         if not wound(case).plane:
             reason = wound(case).words()
             yield "effects", f"the law of a section that twists by itself is not known: {reason}"
@@ -69,8 +67,6 @@ class Rod(SlenderModel):
 
     def limits_of_zones(self, case: Case) -> Iterator[Objection]:
         """What no law of one zone knows of the whole."""
-        if case.time is not None:
-            yield "time", "a motion is known of actuators that are alike all along"
         for index, effect in enumerate(case.effects):
             own = effect.inflation()
             if own is not None and own.angle is not None:
