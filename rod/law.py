@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Sequence
-from typing import Protocol
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -40,6 +40,40 @@ class Law(Protocol):
 
     def outside(self, strains: Floats, pressure: float) -> str:
         """What is beyond the range in which the law is known; empty where nothing is."""
+
+
+class Sections(NamedTuple):
+    """Φ of n pieces at k places, and all its derivatives by the strains and, last, the pressure."""
+
+    value: Floats
+    """(k, n), N."""
+    first: Floats
+    """(k, n, m + 1)."""
+    second: Floats
+    """(k, n, m + 1, m + 1)."""
+
+
+def whole(law: Law, strains: Floats, pressures: Floats) -> Sections:
+    """All of a law at several places: by its own `whole`, where that is quicker.
+
+    Args:
+        law: of n pieces.
+        strains: (k, n, m).
+        pressures: of each place, (k,), MPa.
+    """
+    # looking for an attribute is a tenth of the time that asking a protocol takes
+    own: Callable[[Floats, Floats], Sections] | None = getattr(law, "whole", None)
+    if own is not None:
+        return own(strains, pressures)
+    k, n, m = strains.shape
+    out = Sections(np.empty((k, n)), np.empty((k, n, m + 1)), np.empty((k, n, m + 1, m + 1)))
+    for i, pressure in enumerate(pressures.tolist()):
+        at = strains[i], pressure
+        out.value[i] = law.value(*at)
+        out.first[i, :, :m], out.first[i, :, m] = law.gradient(*at), -law.chamber(*at)
+        out.second[i, :, :m, :m], out.second[i, :, m, m] = law.hessian(*at), -law.chamber_slope(*at)
+        out.second[i, :, :m, m] = out.second[i, :, m, :m] = -law.chamber_gradient(*at)
+    return out
 
 
 @dataclasses.dataclass(frozen=True)
@@ -146,6 +180,15 @@ class Zones:
             first, count = int(mine.argmax()), int(mine.sum())
             run = slice(first, first + count)
             out.append((law, run if mine[run].all() else mine))
+        return out
+
+    def whole(self, strains: Floats, pressures: Floats) -> Sections:
+        """See `whole`."""
+        k, n, m = strains.shape
+        out = Sections(np.empty((k, n)), np.empty((k, n, m + 1)), np.empty((k, n, m + 1, m + 1)))
+        for law, mine in self._runs:
+            for all_of, part in zip(out, whole(law, strains[:, mine], pressures), strict=True):
+                all_of[:, mine] = part
         return out
 
     def value(self, strains: Floats, pressure: float) -> Floats:

@@ -67,6 +67,11 @@ class Layout:
         """Whether it stays in the plane of y and z of its root."""
         return not {"shear_x", "side_curvature", "twist"} & set(self.strains)
 
+    @functools.cached_property
+    def turned(self) -> bool:
+        """Whether the axes of the root are other ones than those of space."""
+        return not np.array_equal(self.rotation, np.eye(3))
+
     def at_rest(self) -> Floats:
         """Strains of the straight rod, (n, m)."""
         return np.tile(AT_REST[list(self.columns)], (len(self.lengths), 1))

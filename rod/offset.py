@@ -7,7 +7,10 @@ import dataclasses
 import numpy as np
 
 from rod.functions import Floats
-from rod.law import Law
+from rod.law import Law, Sections, whole
+
+_KEPT = 8
+"""Pressures of which what they move is remembered."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -25,6 +28,9 @@ class Offset:
 
     law: Law
     coefficients: Floats
+    _known: dict[tuple[float, ...], tuple[Floats, Floats, Floats]] = dataclasses.field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def _moved(self, pressure: float) -> tuple[Floats, Floats, Floats]:
         """δ and its first two derivatives by P, (n, m) or (m,) each."""
@@ -45,6 +51,32 @@ class Offset:
         for power, coefficient in enumerate(others, 2):
             out = out + pressure**power * coefficient
         return out
+
+    def whole(self, strains: Floats, pressures: Floats) -> Sections:
+        """See `rod.law.whole`."""
+        k, n, m = strains.shape
+        moved, slope, bent = self._moves(tuple(pressures.tolist()))
+        value, first, second = whole(self.law, strains - moved, pressures)
+        pulled = second[..., :m, :m] @ np.broadcast_to(slope, (k, n, m))[..., None]
+        mixed = second[..., :m, m] - pulled[..., 0]
+        forces = first[..., :m]
+        # dΦ/dP = ∂Φ/∂P − ∂Φ/∂ε · δ'
+        second[..., m, m] -= np.sum((second[..., :m, m] + mixed) * slope + forces * bent, axis=-1)
+        second[..., :m, m] = second[..., m, :m] = mixed
+        first[..., m] -= np.sum(forces * slope, axis=-1)
+        return Sections(value, first, second)
+
+    def _moves(self, pressures: tuple[float, ...]) -> tuple[Floats, Floats, Floats]:
+        """`_moved` of several; steps of a motion ask for the same few pressures again."""
+        known = self._known
+        if pressures not in known:
+            if len(known) >= _KEPT:
+                known.clear()
+            m = self.coefficients.shape[-1]
+            parts = zip(*map(self._moved, pressures), strict=True)
+            a, b, c = (np.stack(part).reshape(len(pressures), -1, m) for part in parts)
+            known[pressures] = a, b, c
+        return known[pressures]
 
     def value(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""

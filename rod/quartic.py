@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 
 from rod.functions import Floats
+from rod.law import Sections
 
 
 @dataclasses.dataclass(frozen=True)
@@ -42,6 +43,23 @@ class Quartic:
         pairs = (e[:, :, None] * e[:, None, :]).reshape(n, m * m)
         quartic = (pairs @ self.quartic.reshape(m * m, m * m).T).reshape(n, m, m)
         return e, cubic, quartic
+
+    def whole(self, strains: Floats, pressures: Floats) -> Sections:
+        """See `rod.law.whole`."""
+        k, n, m = strains.shape
+        e, cubic, quartic = self._bent(strains.reshape(k * n, m))
+        column = e[:, :, None]
+        parts = np.concatenate([cubic @ column, quartic @ column], axis=2)
+        linear = e @ self.stiffness
+        first, second = np.zeros((k * n, m + 1)), np.zeros((k * n, m + 1, m + 1))
+        first[:, :m] = linear + parts @ (1 / 2, 1 / 6)
+        second[:, :m, :m] = self.stiffness + cubic + quartic / 2
+        value = np.sum(e * (linear / 2 + parts @ (1 / 6, 1 / 24)), axis=1)
+        return Sections(
+            value.reshape(k, n),
+            first.reshape(k, n, m + 1),
+            second.reshape(k, n, m + 1, m + 1),
+        )
 
     def value(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""

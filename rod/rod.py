@@ -12,6 +12,7 @@ import numpy as np
 from rod.functions import Floats, Ints
 from rod.law import Law
 from rod.layout import Layout
+from rod.plane import placed
 from rod.shape import Shape
 from rod.term import Iterate, Iterated, Standing, Term
 
@@ -99,7 +100,7 @@ class Rod:
 
     def shape(self, strains: Floats) -> Shape:
         """Its line at given strains, (n, m)."""
-        return Shape(self.layout, strains)
+        return placed(self.layout, strains)
 
     def leapt(self, before: Shape, after: Shape) -> str:
         """What may have passed through something between two states: nothing is known to."""

@@ -35,22 +35,46 @@ class Shape:
     Attributes:
         layout: as given.
         strains: as given.
-        frames: [R | r], axes as columns and place of each frame, (n + 1, 3, 4); 1 and mm.
     """
 
     def __init__(self, layout: Layout, strains: Floats) -> None:
         self.layout, self.strains = layout, strains
-        full = layout.full(strains)
-        self._v, self._spin = full[:, :3], full[:, 3:]
-        self._reach = layout.lengths[:, None, None]
+
+    @functools.cached_property
+    def frames(self) -> Floats:
+        """[R | r], axes as columns and place of each frame, (n + 1, 3, 4); 1 and mm."""
+        layout, (_, _, turns, means) = self.layout, self._screw
+        steps = (self._reach * (means @ self._v[..., None]))[..., 0]
+        return _chained(turns, steps, layout.rotation, layout.place)[:, :3]
+
+    @functools.cached_property
+    def _full(self) -> Floats:
+        """All six strains, (n, 6)."""
+        return self.layout.full(self.strains)
+
+    @property
+    def _v(self) -> Floats:
+        return self._full[:, :3]
+
+    @property
+    def _spin(self) -> Floats:
+        return self._full[:, 3:]
+
+    @property
+    def _reach(self) -> Floats:
+        return self.layout.lengths[:, None, None]
+
+    @functools.cached_property
+    def _screw(self) -> tuple[Pair, Pair, Floats, Floats]:
+        """The turn of each piece and its mean, and their matrices, (n, 3, 3)."""
         phi = self._reach[..., 0] * self._spin
         c = stumpff(np.sum(phi * phi, axis=-1))
-        self._turn, self._mean = Pair(phi, c, 1), Pair(phi, c, 2)
-        turns, self._means = matrices(phi, c)
-        steps = (self._reach * (self._means @ self._v[..., None]))[..., 0]
-        chain = _chained(turns, steps, layout.rotation, layout.place)
-        self.frames = chain[:, :3]
-        self._base = self.frames[:-1, :, :3]
+        return Pair(phi, c, 1), Pair(phi, c, 2), *matrices(phi, c)
+
+    @property
+    def _base(self) -> Floats:
+        """R at the begin of each piece, (n, 3, 3)."""
+        return self.frames[:-1, :, :3]
 
     @property
     def rotations(self) -> Floats:
@@ -106,8 +130,8 @@ class Shape:
     def _basis(self) -> tuple[Floats, Floats]:
         """u and ω of a piece's end by its own strains in space, (n, 3, m)."""
         reach = self._reach
-        moved = reach * self._means
-        bent = reach**2 * self._mean.slope(self._v)
+        moved = reach * self._screw[3]
+        bent = reach**2 * self._screw[1].slope(self._v)
         shift = np.concatenate([moved, bent], axis=-1)
         turned = np.concatenate([np.zeros_like(moved), moved], axis=-1)
         columns = self.layout.columns
@@ -195,13 +219,13 @@ class Shape:
         reach = self._reach
         turned = base @ np.swapaxes(dyad, -1, -2) @ self.rotations[1:]
         carried = pull[..., :, None] * self._v[..., None, :]
-        bend = self._turn.hessian(turned) + reach * self._mean.hessian(carried)
+        bend = self._screw[0].hessian(turned) + reach * self._screw[1].hessian(carried)
         blocks = np.zeros((len(pull), 6, 6))
         blocks[:, 3:, 3:] = reach**2 * bend
         for axis in range(3):
             along = np.zeros_like(carried)
             along[..., axis] = pull
-            mixed = reach[..., 0] ** 2 * self._mean.gradient(along)
+            mixed = reach[..., 0] ** 2 * self._screw[1].gradient(along)
             blocks[:, 3:, axis] = blocks[:, axis, 3:] = mixed
         columns = self.layout.columns
         return blocks[:, columns][:, :, columns]
@@ -227,31 +251,37 @@ class Shape:
         for axis in range(3):
             z = np.zeros((n, 3, 3))
             z[..., axis] = pull
-            blocks[:, 3 + axis, 3:] = self._reach[..., 0] ** 2 * self._mean.gradient(z)
+            blocks[:, 3 + axis, 3:] = self._reach[..., 0] ** 2 * self._screw[1].gradient(z)
         columns = self.layout.columns
         place = np.arange(n)
         out.reshape(n, m, n, m)[place, :, place] = blocks[:, columns][:, :, columns]
         return out
 
-    def stiffened(self, blocks: Floats) -> Floats:
+    def stiffened(self, blocks: Floats, other: Shape | None = None) -> Floats:
         """Σ s_i · B s_j of springs on the frames, s the screw (u0, ω) of what moves a frame.
 
         With ∂x = u0 + ω × x of a point x, a stiffness D there is the block AᵀD A, A = (I, −[x×]).
 
         Args:
-            blocks: B of each frame about the origin, symmetric, (n + 1, 6, 6).
+            blocks: B of each frame about the origin, (n + 1, 6, 6); symmetric without another shape.
+            other: the shape at which s_j are taken; this one if none is given.
 
         Returns:
-            Symmetric matrix (n m, n m).
+            Matrix (n m, n m).
         """
         n, m = self.layout.shape
         screws = np.concatenate(self._screws, axis=1)
-        pushed = _after(blocks) @ screws
-        left, right = (np.swapaxes(part, 0, 1).reshape(6, n * m) for part in (screws, pushed))
+        ahead = screws if other is None else np.concatenate(other._screws, axis=1)
+        sums = _after(blocks)
+        left, right = (_six(part, n * m) for part in (screws, sums @ ahead))
         out = _upper(left.T @ right, n, m)
-        out = out + out.T
+        if other is None:
+            out = out + out.T
+        else:
+            back = _six(np.swapaxes(sums, 1, 2) @ screws, n * m)
+            out += _upper(back.T @ _six(ahead, n * m), n, m, lower=True)
         place = np.arange(n)
-        out.reshape(n, m, n, m)[place, :, place] = np.swapaxes(screws, 1, 2) @ pushed
+        out.reshape(n, m, n, m)[place, :, place] = np.swapaxes(screws, 1, 2) @ sums @ ahead
         return out
 
     # --- inertia ---------------------------------------------------------------------------------
@@ -361,6 +391,11 @@ def _before(n: int, m: int, lower: bool) -> Floats:
 def _flat(columns: Floats, count: int) -> Floats:
     """(3, n m) of (n, 3, m)."""
     return np.ascontiguousarray(np.swapaxes(columns, 0, 1)).reshape(3, count)
+
+
+def _six(columns: Floats, count: int) -> Floats:
+    """(6, n m) of (n, 6, m)."""
+    return np.swapaxes(columns, 0, 1).reshape(6, count)
 
 
 def _stacked(first: Floats, second: Floats, count: int) -> Floats:

@@ -11,10 +11,13 @@ import functools
 import itertools
 import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from rod.functions import Floats
+from rod.law import Sections
 from rod.spline import Axis, Samples, fitted
 
 Sample = Callable[[Floats], tuple[Floats, Floats] | tuple[Floats, Floats, Floats]]
@@ -26,6 +29,8 @@ DEGREE, PRESSURE_DEGREE, HIGH_DEGREE = 4, 3, 5
 """Of the splines: three and two continuous derivatives; of all where ∂²Φ is known."""
 INTERVALS, PRESSURE_INTERVALS = 3, 1
 """At first: fewer would leave splines of these degrees undetermined."""
+_KEPT = 8
+"""Pressures of which a table remembers its coefficients."""
 _OUTSIDE = 1e-9
 _LEAST = 32
 """Fewest points to which a table is compared."""
@@ -53,31 +58,69 @@ class Table:
     coefficients: Floats
     samples: Samples
     errors: Floats
+    _sheets: dict[float, Floats] = dataclasses.field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def _at(self, strains: Floats, pressure: float, orders: Sequence[tuple[int, ...]]) -> Floats:
         """Derivatives of given orders by each variable, (len(orders), n)."""
-        *axes, last = self.axes
-        first, basis = last.basis(np.array([pressure]))
-        reach = slice(int(first[0]), int(first[0]) + last.degree + 1)
-        at_pressure = self.coefficients[..., reach] @ basis[:, 0].T
-        found = [axis.basis(x) for axis, x in zip(axes, strains.T, strict=True)]
-        places = []
-        for number, (axis, (start, _)) in enumerate(zip(axes, found, strict=True)):
-            shape = [len(strains)] + [1] * len(axes)
-            shape[1 + number] = axis.degree + 1
-            places.append((start[:, None] + np.arange(axis.degree + 1)).reshape(shape))
-        # all derivatives by one variable after the other: (n, splines…, 3) to (n, …, 3 each)
-        part = at_pressure[tuple(places)]
-        for axis, (_, values) in zip(axes, found, strict=True):
-            n = len(strains)
-            flat = part.reshape(n, axis.degree + 1, -1)
-            turned = (values.transpose(1, 0, 2) @ flat).reshape(n, 3, *part.shape[2:])
-            part = np.moveaxis(turned, 1, -1)
-        # now (n, 3 by the pressure, 3 by each strain): moved to the end one after the other
-        digits = 3 ** np.arange(len(axes), -1, -1)
-        wanted = np.array([(order[-1], *order[:-1]) for order in orders]) @ digits
-        found_all: Floats = part.reshape(len(strains), -1).T[wanted]
-        return found_all
+        wanted = np.array([(order[-1], *order[:-1]) for order in orders]) @ self._digits
+        return self._derived(strains[None], np.array([pressure])).T[wanted]
+
+    @functools.cached_property
+    def _digits(self) -> npt.NDArray[np.intp]:
+        """What an order by the pressure, and by each strain, counts in the rows of `_derived`."""
+        return 3 ** np.arange(len(self.axes) - 1, -1, -1)
+
+    @functools.cached_property
+    def _window(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+        """Places of the splines of the strains in a flat sheet.
+
+        Returns:
+            Of neighbours along each axis, (m,), and of all splines of a box from its first one on.
+        """
+        counts = [axis.count for axis in self.axes[:-1]]
+        strides = np.cumprod([1, *counts[:0:-1]])[::-1]
+        inner = np.zeros(1, dtype=np.intp)
+        for axis, stride in zip(self.axes, strides.tolist(), strict=False):
+            inner = (inner[:, None] + stride * np.arange(axis.degree + 1)).ravel()
+        return strides, inner
+
+    def _sheet(self, pressure: float) -> Floats:
+        """Coefficients at a pressure, with two derivatives by it: (splines of the strains, 3)."""
+        known = self._sheets
+        if pressure not in known:
+            last = self.axes[-1]
+            first, basis = last.basis(np.array([pressure]))
+            reach = slice(int(first[0]), int(first[0]) + last.degree + 1)
+            if len(known) >= _KEPT:
+                known.clear()
+            known[pressure] = (self.coefficients[..., reach] @ basis[:, 0].T).reshape(-1, 3)
+        return known[pressure]
+
+    def _derived(self, strains: Floats, pressures: Floats) -> Floats:
+        """All derivatives up to the second by each variable, the pressure's first: (k n, 3^d).
+
+        Args:
+            strains: (k, n, m).
+            pressures: of each k, MPa.
+        """
+        k, n, m = strains.shape
+        sheets = [self._sheet(pressure) for pressure in pressures.tolist()]
+        flat = sheets[0] if k == 1 else np.concatenate(sheets)
+        strides, inner = self._window
+        first: Any = 0 if k == 1 else np.repeat(len(sheets[0]) * np.arange(k), n)
+        bases = []
+        for axis, x, stride in zip(self.axes, strains.reshape(-1, m).T, strides, strict=False):
+            start, values = axis.basis(x)
+            first = first + stride * start
+            bases.append(values.transpose(1, 0, 2))
+        part = flat.take(first[:, None] + inner, axis=0)
+        # all derivatives by one variable after the other move to the end
+        for values in bases:
+            turned = values @ part.reshape(k * n, values.shape[2], -1)
+            part = turned.transpose(0, 2, 1)
+        return part.reshape(k * n, -1)
 
     def _unit(self, *strains: int, pressure: int = 0) -> tuple[int, ...]:
         order = [0] * len(self.axes)
@@ -92,23 +135,21 @@ class Table:
         orders = [*(self._unit(i) for i in range(m)), self._unit(pressure=1)]
         return self._at(strains, pressure, orders).T
 
-    def all(self, strains: Floats, pressure: float) -> tuple[Floats, Floats, Floats]:
-        """Φ, ∂Φ and ∂²Φ by the strains and the pressure at once.
-
-        Returns:
-            (n,), (n, m + 1) and (n, m + 1, m + 1).
-        """
-        n, m = strains.shape
-        found = self._at(strains, pressure, self._orders)
-        second = found[m + 2 :].T.reshape(n, m + 1, m + 1)
-        return found[0], found[1 : m + 2].T, second
+    def whole(self, strains: Floats, pressures: Floats) -> Sections:
+        """See `rod.law.whole`."""
+        k, n, m = strains.shape
+        found = self._derived(strains, pressures)[:, self._places]
+        return Sections(
+            found[:, 0].reshape(k, n),
+            found[:, 1 : m + 2].reshape(k, n, m + 1),
+            found[:, m + 2 :].reshape(k, n, m + 1, m + 1),
+        )
 
     @functools.cached_property
-    def _orders(self) -> list[tuple[int, ...]]:
-        """Of the value and of all derivatives that `all` gives."""
-        units = np.eye(len(self.axes), dtype=int)
-        both = (units[:, None] + units).reshape(-1, len(self.axes))
-        return [tuple(order) for order in [0 * units[0], *units, *both]]
+    def _places(self) -> npt.NDArray[np.intp]:
+        """Columns of `_derived` of the value and of the derivatives that `whole` gives."""
+        by = np.roll(self._digits, -1)
+        return np.concatenate([[0], by, (by[:, None] + by).ravel()])
 
     def value(self, strains: Floats, pressure: float) -> Floats:
         """See `rod.law.Law`."""

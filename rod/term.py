@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol, TypeVar, runtime_checkable
+from typing import Any, NamedTuple, Protocol, TypeVar, runtime_checkable
 
 from rod.functions import Floats, Ints
 from rod.shape import Shape
@@ -39,6 +39,65 @@ class Dead(Term, Protocol):
     @property
     def loads(self) -> Floats:
         """A on the frames, (n + 1, 3, 4); see `Shape.pulled`."""
+
+
+class Push(NamedTuple):
+    """What something does to a rod."""
+
+    force: Floats
+    """(3,), N."""
+    moment: Floats
+    """About the origin, (3,), N mm."""
+
+
+class Impact(Protocol):
+    """A term in one step of a motion, with the work of its forces for the change of its potential.
+
+    What it tells is of the last residual that it was asked for.
+    """
+
+    work: float
+    """That its forces have taken from the rod, N mm."""
+    stored: float
+    """What of it is in the potential; the rest is lost."""
+    push: Push
+    """Mean of the step."""
+    active: bool
+    """Something is pressed."""
+    known: bool
+    """By forces that a step of Newton's method has found, not by depths that it began with."""
+
+    def begin(self, after: Shape) -> float:
+        """Takes note of where the step would end without it; the part of the way that is free."""
+
+    def residual(self, middle: Shape, after: Shape) -> Floats:
+        """Less the virtual work of its forces at the mean strains, (n, m)."""
+
+    def tangent(self) -> Floats:
+        """Its derivative by the strains at the end of the step, (n m, n m)."""
+
+    def ahead(self) -> Floats:
+        """Derivative of the work by the strains at the end, (n, m)."""
+
+    def stepped(self, change: Floats) -> bool:
+        """Takes note of a step by Newton's method, (n, m); whether it has not changed its mind."""
+
+    def resisting(self, shape: Shape, step: float) -> Floats | float:
+        """Viscosity times Δt that the velocities at the end meet, (n m, n m)."""
+
+
+@runtime_checkable
+class Struck(Term, Protocol):
+    """A term that a rod in motion may run into."""
+
+    def impact(self, before: Shape, amount: float, delay: float) -> Impact:
+        """What stands for it in one step.
+
+        Args:
+            before: the rod when it begins.
+            amount: of the term in the step.
+            delay: retardation time of what touches, over 2 Δt.
+        """
 
 
 @runtime_checkable

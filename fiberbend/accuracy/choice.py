@@ -182,7 +182,8 @@ def _hindered(given: Case, case: Case, model: MeshedModel) -> bool:
     A representation that nobody has given may be one that this actuator cannot have.
     """
     names = {f"effects.{n}.{effect.name}": effect for n, effect in enumerate(case.effects)}
-    draft = Draft(convert.dimensions(case.actuator), case.actuator.length, names)
+    moves = case.time is not None
+    draft = Draft(convert.dimensions(case.actuator), case.actuator.length, names, moves)
     if any(True for path, effect in names.items() for _ in effect.problems(path, draft)):
         return True
     if given.model == "auto":

@@ -79,11 +79,13 @@ class Draft:
         actuator: its dimensions, where they go together, else None.
         length: of the chamber, mm, where it is valid, else None.
         effects: by their paths.
+        moves: it has a time, and what is in it mass.
     """
 
     actuator: Actuator | None
     length: float | None
     effects: Mapping[str, Effect]
+    moves: bool = False
 
 
 @dataclasses.dataclass(frozen=True)

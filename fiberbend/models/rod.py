@@ -65,10 +65,6 @@ class Rod(SlenderModel):
         if load is None:
             text = "the law of a section reaches from rest to a pressure, a volume or an angle"
             yield "effects", f"{text}, expected effect pressure with one"
-        for index, effect in enumerate(case.effects):
-            path = f"effects.{index}.{effect.name}"
-            if case.time is not None and (effect.touches() or effect.strips() is not None):
-                yield path, "what a rod in motion touches is not known: it is put beside nothing"
         if not wound(case).plane:
             reason = wound(case).words()
             yield "effects", f"the law of a section that twists by itself is not known: {reason}"
@@ -77,8 +73,6 @@ class Rod(SlenderModel):
 
     def limits_of_zones(self, case: Case) -> Iterator[Objection]:
         """What no law of one zone knows of the whole."""
-        if case.time is not None:
-            yield "time", "a motion is known of actuators that are alike all along"
         for index, effect in enumerate(case.effects):
             own = effect.inflation()
             for key in ("volume", "angle"):

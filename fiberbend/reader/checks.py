@@ -85,6 +85,7 @@ class ValidParts:
             effects={
                 f"effects.{index}.{effect.name}": effect for index, effect in self.effects.items()
             },
+            moves=self.time is not None,
         )
 
 

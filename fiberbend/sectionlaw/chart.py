@@ -76,7 +76,7 @@ class Chart:
         return self.placed(strains, pressure)[2](slopes)
 
     def placed(
-        self, strains: Floats, pressure: float
+        self, strains: Floats, pressure: Floats | float
     ) -> tuple[Floats, Floats, Callable[[Floats], Floats]]:
         """`place`, `first` and, by f, `second`, which share what is dear."""
         n, m = strains.shape
@@ -88,7 +88,7 @@ class Chart:
         moved = np.array(self.drifts) + away * growths / h
         first = np.zeros((n, m + 1, m + 1))
         first[:, inner, inner], first[:, m, m] = 1.0 / h, 1.0
-        first[:, 0, 1:] -= rise / h[0]
+        first[:, 0, 1:] -= rise / h[..., :1]
         first[:, :m, m] -= moved / h
 
         def second(slopes: Floats) -> Floats:

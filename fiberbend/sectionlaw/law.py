@@ -9,6 +9,7 @@ import numpy as np
 
 from fiberbend.sectionlaw.chart import Chart
 from rod.functions import Floats
+from rod.law import Sections
 from rod.table import Table
 
 PLANE = ("stretch", "curvature")
@@ -102,14 +103,23 @@ class SectionLaw(Derived):
         for known in self._known:
             if known.pressure == pressure and np.array_equal(known.strains, strains):
                 return known
-        place, turn, bent = self.chart.placed(strains, pressure)
-        value, slopes, own = self.table.all(place, pressure)
-        first = (slopes[:, None] @ turn)[:, 0]
-        second = turn.transpose(0, 2, 1) @ own @ turn + bent(slopes[:, :-1])
-        found = _Known(pressure, strains.copy(), value, first, second)
+        value, first, second = self.whole(strains[None], np.array([pressure]))
+        found = _Known(pressure, strains.copy(), value[0], first[0], second[0])
         if len(strains) <= _KEPT:
             self._known[:] = [found, *self._known[: _PLACES - 1]]
         return found
+
+    def whole(self, strains: Floats, pressures: Floats) -> Sections:
+        """See `rod.law.whole`."""
+        k, n, m = strains.shape
+        each = np.repeat(pressures, n)
+        place, turn, bent = self.chart.placed(strains.reshape(k * n, m), each)
+        value, slopes, own = self.table.whole(place.reshape(k, n, m), pressures)
+        turn = turn.reshape(k, n, m + 1, m + 1)
+        first = (slopes[..., None, :] @ turn)[..., 0, :]
+        second = np.swapaxes(turn, -1, -2) @ own @ turn
+        second += bent(slopes.reshape(k * n, m + 1)[:, :-1]).reshape(turn.shape)
+        return Sections(value, first, second)
 
     def first(self, strains: Floats, pressure: float) -> Floats:
         """∂Φ by strains and P, (n, m + 1)."""

@@ -19,8 +19,8 @@ from rod.shape import Shape
 _MIDDLE = 0.25
 """Part of the length on either side of the middle whose rate is that without ends."""
 
-_STRIPS = ((col.TIP_FORCE, "post", 1.0), (col.ROOF_FORCE, "roof", -1.0))
-"""Columns of the obstacles that press along y alone."""
+STRIPS = {"post": (col.TIP_FORCE, 1.0), "roof": (col.ROOF_FORCE, -1.0)}
+"""Columns of the obstacles that press along y alone, and the sign of their force."""
 
 
 class Rows:
@@ -86,9 +86,9 @@ class Rows:
         row: dict[str, float] = {}
         for name, touch in self._slender.obstacles:
             found = touch.touched(shape, 1.0)
-            for column, obstacle, sign in _STRIPS:
-                if name == obstacle:
-                    row[column] = sign * float(found.force[1])
+            if name in STRIPS:
+                column, sign = STRIPS[name]
+                row[column] = sign * float(found.force[1])
             if touch.keeps:
                 continue
             values = (found.force[1], found.force[2], found.moment[0], found.area, found.gap)

@@ -91,16 +91,16 @@ def timed(case: Case, slender: Slender) -> Timed:
     begin = 0.0 if time.pressure.given is None else time.pressure.given.at(0.0)
     start = equilibrium(slender, begin)
     level = _level(slender, time.pressure)
-    motion = Motion(
-        slender.rod,
-        level,
-        retarded(slender.rod, time.damping.retardation_time),
-        time.damping.drag,
-        air,
-    )
+    damping = time.damping
+    parts = retarded(slender.rod, damping.retardation_time), damping.drag
+    motion = Motion(slender.rod, level, *parts, air, damping.retardation_time)
     names = {id(term): name for name, term in slender.obstacles}
     watches = tuple(
-        Watch(names.get(id(term), "contact"), _gap(term, number, level))
+        Watch(
+            names.get(id(term), "contact"),
+            _gap(term, number, level),
+            Motion(slender.rod, _without(level, number), *parts, air, damping.retardation_time),
+        )
         for number, term in enumerate(slender.rod.terms)
         if isinstance(term, Gapped)
     )
@@ -115,6 +115,17 @@ def _times(time: TimeSpec) -> tuple[float, ...]:
 
 def _gap(term: Gapped, number: int, level: Callable[[float], Level]) -> Callable[..., float]:
     return lambda moving: term.gap(moving.shape, level(moving.time).amounts[number])
+
+
+def _without(level: Callable[[float], Level], number: int) -> Callable[[float], Level]:
+    """What acts over time but for one term."""
+
+    def left(time: float) -> Level:
+        whole = level(time)
+        amounts = tuple(0.0 if i == number else each for i, each in enumerate(whole.amounts))
+        return dataclasses.replace(whole, amounts=amounts)
+
+    return left
 
 
 def _level(slender: Slender, pressure: PressureSpec) -> Callable[[float], Level]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from fiberbend import columns as col
 from fiberbend.slender.path import PRESSURE, Point
-from fiberbend.slender.rows import Rows
+from fiberbend.slender.rows import STRIPS, Rows
 from fiberbend.slender.timed import Timed
 from rod.motion import Moving
 from rod.statics import State
@@ -53,6 +53,7 @@ class TimedRows:
         for key in (col.WORK, col.STORED):
             # of states at rest; a motion has more of them
             del row[key]
+        row |= self._pushes(row, moving)
         energy, work = moving.energy, moving.work
         left = energy.total - work.gained
         self._first = left if self._first is None else self._first
@@ -69,3 +70,24 @@ class TimedRows:
             col.DISSIPATED: work.lost,
             col.DRIFT: left - self._first,
         }
+
+    def _pushes(self, row: dict[str, Any], moving: Moving) -> dict[str, float]:
+        """Forces of what it touches, as means of the last step.
+
+        Of a stiff contact the force at one time says little: it is the impulse that moves the rod.
+        """
+        slender, found = self._timed.slender, dict[str, float]()
+        struck = [term for term in slender.rod.terms if id(term) in self._timed.motion.struck]
+        named = {id(touch): name for name, touch in slender.obstacles}
+        # a state with which it begins has none yet: it is at rest
+        for term, push in zip(struck[: len(moving.pushes)], moving.pushes, strict=False):
+            name = named[id(term)]
+            if name in STRIPS:
+                column, sign = STRIPS[name]
+                found[column] = sign * float(push.force[1])
+            values = (push.force[1], push.force[2], push.moment[0])
+            for quantity, value in zip(col.CONTACT, values, strict=False):
+                key = col.contact(name, quantity)
+                if key in row:
+                    found[key] = float(value)
+        return found

@@ -22,19 +22,20 @@ class Points:
         x: their places in space, (q, 3), mm.
 
     Attributes:
+        shape: as given.
         which: as given.
         x: as given.
         areas: of the surface at rest for which each stands, (q,), mm².
     """
 
     def __init__(self, skin: Skin, shape: Shape, which: Ints, x: Floats) -> None:
-        self._skin, self._shape = skin, shape
+        self._skin, self.shape = skin, shape
         self.which, self.x = which, x
         self.areas: Floats = skin.areas[which]
 
     def only(self, mask: Bools) -> Points:
         """Some of them."""
-        return Points(self._skin, self._shape, self.which[mask], self.x[mask])
+        return Points(self._skin, self.shape, self.which[mask], self.x[mask])
 
     @functools.cached_property
     def stations(self) -> Ints:
@@ -44,7 +45,7 @@ class Points:
     @functools.cached_property
     def _split(self) -> Split:
         """The rod split where they are."""
-        return Split(self._shape, self._skin.pieces[self.stations], self._skin.parts[self.stations])
+        return Split(self.shape, self._skin.pieces[self.stations], self._skin.parts[self.stations])
 
     @functools.cached_property
     def _frame(self) -> Ints:
@@ -63,7 +64,7 @@ class Points:
     def pulled(self, force: Floats) -> Floats:
         """Work of forces, (q, 3) in N, by each strain, (n, m)."""
         if not len(self.which):
-            return np.zeros(self._shape.layout.shape)
+            return np.zeros(self.shape.layout.shape)
         return self._split.gathered(self._split.fine.pulled(self._loads(force)))
 
     def stiffened(self, force: Floats, spring: Floats) -> Floats:
@@ -77,17 +78,38 @@ class Points:
             By the strains, (n m, n m).
         """
         if not len(self.which):
-            count = self._shape.strains.size
+            count = self.shape.strains.size
             return np.zeros((count, count))
         fine = self._split.fine
-        blocks = np.zeros((len(fine.places), 6, 6))
-        arm = cross_matrix(self.x)
-        turned = spring @ arm
-        np.add.at(blocks[:, :3, :3], self._frame, spring)
-        np.add.at(blocks[:, :3, 3:], self._frame, -turned)
-        np.add.at(blocks[:, 3:, :3], self._frame, -np.swapaxes(turned, 1, 2))
-        np.add.at(blocks[:, 3:, 3:], self._frame, np.swapaxes(arm, 1, 2) @ turned)
+        blocks = self._blocks(spring, self)
         return self._split.matrix(fine.stiffened(blocks) + fine.curved(self._loads(force)))
+
+    def bent(self, force: Floats) -> Floats:
+        """Second derivative of Σ f·x of forces that stay, (n m, n m)."""
+        return self._split.matrix(self._split.fine.curved(self._loads(force)))
+
+    def coupled(self, spring: Floats, other: Points) -> Floats:
+        """Σ ∂x/∂i · D ∂x'/∂j with the places of the same points on another shape.
+
+        Args:
+            spring: D, (q, 3, 3), N/mm.
+            other: the points there.
+
+        Returns:
+            (n m, n m).
+        """
+        blocks = self._blocks(spring, other)
+        return self._split.matrix(self._split.fine.stiffened(blocks, other._split.fine))
+
+    def _blocks(self, spring: Floats, other: Points) -> Floats:
+        """See `Shape.stiffened`."""
+        out = np.zeros((len(self._split.fine.places), 6, 6))
+        arm, far = cross_matrix(self.x), cross_matrix(other.x)
+        np.add.at(out[:, :3, :3], self._frame, spring)
+        np.add.at(out[:, :3, 3:], self._frame, -spring @ far)
+        np.add.at(out[:, 3:, :3], self._frame, arm @ spring)
+        np.add.at(out[:, 3:, 3:], self._frame, -arm @ spring @ far)
+        return out
 
     def moved(self, change: Floats) -> Floats:
         """First order of their way by a change of the strains, (q, 3), mm."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from rod.functions import Floats, Ints
 from rod.layout import Layout
+from rod.plane import placed
 from rod.shape import Shape
 
 
@@ -41,7 +42,7 @@ class Split:
         layout = shape.layout
         lengths = np.diff(ends, prepend=0.0) * layout.lengths[self._owner]
         finer = Layout(lengths, layout.strains, layout.rotation, layout.place)
-        self.fine = Shape(finer, self.spread(shape.strains))
+        self.fine = placed(finer, self.spread(shape.strains))
 
     def spread(self, strains: Floats) -> Floats:
         """Of the finer pieces by those of whole ones."""

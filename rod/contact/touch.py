@@ -13,6 +13,7 @@ from typing import Self
 
 import numpy as np
 
+from rod.contact.impact import Impact
 from rod.contact.obstacles import Gap, Obstacle, Vector
 from rod.contact.penalty import Contacts, Penalty
 from rod.contact.points import Points, placed
@@ -58,6 +59,9 @@ class Touch(Penalty):
         keeps: the points stick to the surface: they are pulled as well as pushed.
         part: of a depth that is in the obstacle, where the surface of the rod yields too.
 
+    Attributes:
+        skin: as given.
+
     Raises:
         ValueError: a stiffness that is not positive, a travel without direction.
     """
@@ -73,7 +77,7 @@ class Touch(Penalty):
     ) -> None:
         super().__init__(len(skin.station), stiffness, keeps)
         self._part = part
-        self._skin, self._obstacle, self._reach = skin, obstacle, skin.reach
+        self.skin, self._obstacle, self._reach = skin, obstacle, skin.reach
         self._travel: Floats | None = None
         if travel is not None:
             way = np.asarray(travel, dtype=float)
@@ -102,16 +106,38 @@ class Touch(Penalty):
         """See `Penalty`."""
         return float(self._rooms(shape, amount).min())
 
+    def close(self, shape: Shape, amount: float) -> Bools:
+        """Stations whose points may touch, (s,)."""
+        if self.keeps:
+            return np.full(len(self.skin.pieces), True)
+        out: Bools = (self._rooms(shape, amount) <= 0)[self.skin.pieces]
+        return out
+
+    def depth(self, points: Points, amount: float) -> Floats:
+        """d of points, (q,), mm; negative apart."""
+        if not len(points.x):
+            return np.zeros(0)
+        out: Floats = self._nearer(points.shape) - self._obstacle.gap(
+            points.x - self._shift(amount)
+        )
+        return out
+
+    @staticmethod
+    def _nearer(shape: Shape) -> float:
+        return ROUND_OFF * float(shape.layout.lengths.sum())
+
+    def distance(self, x: Floats, amount: float) -> Gap:
+        """Distances of points in space from the obstacle, with their derivatives."""
+        return self._obstacle.near(x - self._shift(amount))
+
     def near(self, shape: Shape, amount: float) -> Meeting:
         """See `Penalty`."""
-        skin = self._skin
-        stations = np.arange(len(skin.pieces))
-        if not self.keeps:
-            stations = np.flatnonzero((self._rooms(shape, amount) <= 0)[skin.pieces])
-        points, shift = placed(skin, shape, stations), self._shift(amount)
-        nearer = ROUND_OFF * float(shape.layout.lengths.sum())
-        depth = nearer - self._obstacle.gap(points.x - shift) if len(points.x) else np.zeros(0)
-        return Meeting(points, self._obstacle, shift, depth)
+        points = placed(self.skin, shape, np.flatnonzero(self.close(shape, amount)))
+        return Meeting(points, self._obstacle, self._shift(amount), self.depth(points, amount))
+
+    def impact(self, before: Shape, amount: float, delay: float) -> Impact:
+        """See `rod.term.Struck`."""
+        return Impact(self, before, amount, delay)
 
     def grown(self, contacts: Contacts, amount: float) -> Floats:
         """See `Penalty`."""
@@ -131,7 +157,7 @@ class Touch(Penalty):
 
     def clearance(self, shape: Shape, amount: float) -> float:
         """Least distance of a point from the obstacle, mm; negative: how deep it is inside."""
-        points = placed(self._skin, shape, np.arange(len(self._skin.pieces)))
+        points = placed(self.skin, shape, np.arange(len(self.skin.pieces)))
         gap = float(self._obstacle.gap(points.x - self._shift(amount)).min())
         return gap if gap > 0 else self._part * gap
 
@@ -147,7 +173,7 @@ class Touch(Penalty):
             force.sum(axis=0),
             np.cross(points.x, force).sum(axis=0),
             float(points.areas.sum()),
-            float(self._skin.lengths[points.stations].sum()),
+            float(self.skin.lengths[points.stations].sum()),
             self.clearance(shape, amount),
         )
 

@@ -23,10 +23,14 @@ class Watch:
     Attributes:
         name: of it.
         value: of a state; a gap in mm, which is below zero in contact.
+        free: the motion without what is watched. A touch is where this motion passes it, which is
+            smooth there. A lift-off then cuts no step: it is where the straight line from gap to
+            gap is zero.
     """
 
     name: str
     value: Callable[[Moving], float]
+    free: Motion | None = None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -50,7 +54,7 @@ class Passed:
 
     Attributes:
         moving: the state.
-        events: at its time; none at the times that were asked for, unless they meet.
+        events: at its time, or in a step that ends there; see `Watch`.
     """
 
     moving: Moving
@@ -80,6 +84,7 @@ class Course:
         self._motion, self._moving, self._watches = motion, start, watches
         self._corners = sorted(corners)
         self._below = [watch.value(start) < 0 for watch in watches]
+        self._left: list[Event] = []
 
     def through(self, times: Sequence[float]) -> Iterator[Passed]:
         """States at given times and at the events between them.
@@ -105,7 +110,7 @@ class Course:
             after = self._motion.step(before, end - before.time)
             found = self._first(before, after)
             if found is None:
-                self._moving = after
+                self._moving, self._left = after, [*self._left, *self._leaves(before, after)]
                 continue
             self._moving, changed = found
             events = []
@@ -115,7 +120,21 @@ class Course:
                 events.append(Event(watch.name, self._below[number], self._moving.time))
             yield Passed(self._moving, tuple(events))
         if shown:
-            yield Passed(self._moving)
+            left, self._left = tuple(self._left), []
+            yield Passed(self._moving, left)
+
+    def _leaves(self, before: Moving, after: Moving) -> list[Event]:
+        """What is left in a step that it does not cut."""
+        events = []
+        for number, watch in enumerate(self._watches):
+            value = watch.value(after)
+            if self._below[number] and not value < 0:
+                self._below[number] = False
+                first = min(watch.value(before), 0.0)
+                part = -first / (value - first) if value > first else 0.0
+                time = before.time + part * (after.time - before.time)
+                events.append(Event(watch.name, False, time))
+        return events
 
     def _first(self, before: Moving, after: Moving) -> tuple[Moving, list[int]] | None:
         """The state of the first event in a step, and the watches that change there."""
@@ -123,6 +142,7 @@ class Course:
             number
             for number, watch in enumerate(self._watches)
             if (watch.value(after) < 0) != self._below[number]
+            and not (self._below[number] and watch.free is not None)
         ]
         if not changed:
             return None
@@ -137,11 +157,12 @@ class Course:
     def _located(self, before: Moving, after: Moving, number: int) -> tuple[float, Moving]:
         """When in a step a watch changes its sign, as a time from its begin, and the state."""
         watch, whole = self._watches[number], after.time - before.time
-        states = {whole: after}
+        motion = self._motion if watch.free is None else watch.free
+        states = {whole: after} if watch.free is None else {}
 
         def value(step: float) -> float:
             if step not in states:
-                states[step] = self._motion.step(before, step)
+                states[step] = motion.step(before, step)
             return watch.value(states[step])
 
         # what was an event a moment ago may still be on its other side by round-off
@@ -149,12 +170,15 @@ class Course:
         if first * sign <= 0:
             least = _NEAR * whole
             if value(least) * sign <= 0:
-                return least, states[least]
+                return least, self._motion.step(before, least)
             start = least
         else:
             start = 0.0
             states[0.0] = before
+        if value(whole) * sign > 0:
+            # only what else is touched has brought it there
+            return whole, after
         root = float(brentq(value, start, whole, xtol=_NEAR * whole, rtol=1e-12, maxiter=60))
-        if root not in states:
+        if root not in states or watch.free is not None:
             states[root] = self._motion.step(before, root)
         return root, states[root]

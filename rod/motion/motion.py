@@ -39,12 +39,14 @@ from rod.motion.moving import Energy, Moving, Work
 from rod.rod import Level, Rod
 from rod.shape import Shape
 from rod.statics import NoEquilibriumError, size
-from rod.term import Dead
+from rod.term import Dead, Struck
 
 _CLOSE = 1e-12
 _LOOSE = 1e-7
 _MOST = 30
 _FAR = 1e3
+_KINKED = 12
+"""Most iterations where something is touched: two steps of half the time are quicker then."""
 _SHORTEST = 2.0**-6
 _SLOW = 0.05
 """An old factor that reduces a correction by less is made anew."""
@@ -62,6 +64,7 @@ class Motion:
             them, (n, m, m); N s and N mm² s. `retarded` makes them of a time.
         drag: of the mass, 1/s.
         air: what makes the pressure; None: it is that of the level.
+        touching: retardation time of what touches something, s; see `rod.contact.impact`.
 
     Attributes:
         rod: as given.
@@ -70,8 +73,10 @@ class Motion:
         viscid: it is not zero.
         drag: as given.
         air: as given.
+        touching: as given.
         damped: anything takes energy.
         dead: loads of terms that never change, by the terms' identities.
+        struck: terms that the rod may run into, by their identities.
         inertia: of the rod.
         sizes: changes of strains that count as one, (n, m).
         weights: W of the discrete gradient, (n, m).
@@ -87,18 +92,21 @@ class Motion:
         viscosity: Floats | float = 0.0,
         drag: float = 0.0,
         air: Air | None = None,
+        touching: float = 0.0,
     ) -> None:
         if not rod.inertia.any():
             raise ValueError("a rod without inertia does not move by itself")
         matrices = _matrices(viscosity, rod.layout.shape)
         least = np.linalg.eigvalsh(matrices).min()
-        if least < -_NEGATIVE * np.abs(matrices).max() or drag < 0:
+        if least < -_NEGATIVE * np.abs(matrices).max() or min(drag, touching) < 0:
             raise ValueError("damping: zero or more expected")
         self.rod, self.level, self.drag, self.air = rod, level, drag, air
         self.viscous = rod.layout.lengths[:, None, None] * matrices
         self.viscid = bool(np.any(matrices))
-        self.damped = bool(drag) or self.viscid
+        self.touching = touching
+        self.damped = bool(drag) or self.viscid or bool(touching)
         self.dead = {id(term): term.loads for term in rod.terms if isinstance(term, Dead)}
+        self.struck = {id(term): term for term in rod.terms if isinstance(term, Struck)}
         self.inertia = rod.inertia
         self.sizes = size(rod)
         # any positive weights: by those of lengths and of sizes a stretch and an angle count alike
@@ -157,10 +165,16 @@ class Motion:
         """ε̇ with the momentum of the frames' velocity, (n, m), 1/s and 1/(mm s)."""
         return self.rates_of(moving.shape, moving.velocity)
 
-    def rates_of(self, shape: Shape, velocity: Floats) -> Floats:
-        """ε̇ with the momentum of a velocity of the frames, (n, m), 1/s and 1/(mm s)."""
+    def rates_of(self, shape: Shape, velocity: Floats, more: Floats | float = 0.0) -> Floats:
+        """ε̇ with the momentum of a velocity of the frames, (n, m), 1/s and 1/(mm s).
+
+        Args:
+            shape: the rod.
+            velocity: of its frames, (n + 1, 3, 4).
+            more: that is added to the masses, (n m, n m).
+        """
         momentum = shape.pulled(velocity @ self.inertia).ravel()
-        rates: Floats = dposv(shape.mass(self.inertia), momentum)[1]
+        rates: Floats = dposv(shape.mass(self.inertia) + more, momentum)[1]
         return rates.reshape(shape.strains.shape)
 
     def run(self, moving: Moving, step: float, count: int) -> Iterator[Moving]:
@@ -205,27 +219,27 @@ class Motion:
     def _whole(self, moving: Moving, step: float) -> Moving:
         """One step by Newton's method, from the change of strains that the last two foresee."""
         now = Equations(self, moving, step)
-        change = step * moving.ahead
+        change = now.begin(step * moving.ahead)
         last, slow = np.inf, True
         for iteration in range(1, _MOST + 1):
             residual = now.residual(change)
-            if slow:
+            if slow or now.kinked:
                 # no exception by a singular one: what it gives is not finite, or too far
                 factor = dgetrf(now.tangent())[:2]
             correction = dgetrs(*factor, residual.ravel())[0].reshape(change.shape)
-            change = change - correction
+            change, settled = change - correction, now.stepped(-correction)
             moves = float(np.max(np.abs(correction / self.sizes)))
-            if not moves < _FAR:
+            if not moves < _FAR or (now.kinked and iteration > _KINKED):
                 break
             # what is left after it falls once more as the corrections do
             falls = min(1.0, moves / last) if last < np.inf else 1.0
-            if moves * falls < _CLOSE or (moves < _LOOSE and moves > last / 2):
+            if settled and (moves * falls < _CLOSE or (moves < _LOOSE and moves > last / 2)):
                 found = now.moved(change, iteration)
                 outside = self.rod.law.outside(found.strains, found.pressure)
                 if outside:
                     raise NoEquilibriumError(f"at {found.time:.6g} s: {outside}")
                 return found
-            slow = moves > _SLOW * last
+            slow = not settled or moves > _SLOW * last
             last = moves
         raise NoEquilibriumError(f"the step from {moving.time:.6g} s does not converge")
 

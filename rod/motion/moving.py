@@ -6,6 +6,7 @@ import dataclasses
 
 from rod.functions import Floats
 from rod.shape import Shape
+from rod.term import Push
 
 
 @dataclasses.dataclass(frozen=True)
@@ -17,7 +18,9 @@ class Work:
         loads: what terms without a potential have done, and changes of the amounts of the others.
         viscous: what the sections' viscosity has taken.
         drag: what drag has taken.
-        dropped: what velocities that are no rates of strains had when they were dropped.
+        dropped: what velocities had when they were dropped that are no rates of strains, or that
+            what is touched has brought to rest.
+        touch: what the viscosity of what touches has taken in the steps.
     """
 
     air: float = 0.0
@@ -25,6 +28,7 @@ class Work:
     viscous: float = 0.0
     drag: float = 0.0
     dropped: float = 0.0
+    touch: float = 0.0
 
     def plus(self, other: Work) -> Work:
         """Both together."""
@@ -34,7 +38,7 @@ class Work:
     @property
     def lost(self) -> float:
         """What damping has taken, N mm."""
-        return self.viscous + self.drag + self.dropped
+        return self.viscous + self.drag + self.dropped + self.touch
 
     @property
     def gained(self) -> float:
@@ -78,6 +82,7 @@ class Moving:
         energy: where it is.
         work: since the motion began.
         iterations: of Newton's method in the last step.
+        pushes: mean forces in the last step of the terms that it may run into, in their order.
     """
 
     time: float
@@ -89,6 +94,7 @@ class Moving:
     energy: Energy
     work: Work
     iterations: int = 0
+    pushes: tuple[Push, ...] = ()
 
     @property
     def strains(self) -> Floats:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class TipMassEffect(Effect):
-    """A mass at the centroid of the tip cap's outer face; gravity makes it heavy."""
+    """A mass at the centroid of the tip cap's outer face; gravity makes it heavy, time inert."""
 
     name = "tip-mass"
     load = True
@@ -33,9 +33,9 @@ class TipMassEffect(Effect):
         return ""
 
     def problems(self, path: str, draft: Draft) -> Iterator[Problem]:
-        """Without gravity it does nothing."""
-        if all(effect.weight() is None for effect in draft.effects.values()):
-            text = "weighs nothing without effect gravity, expected that beside it"
+        """Without gravity it does nothing, unless it moves."""
+        if not draft.moves and all(effect.weight() is None for effect in draft.effects.values()):
+            text = "weighs nothing without effect gravity, expected that beside it, or time"
             yield Problem(path, f"{path} {text}")
 
     def alone(self) -> str:
@@ -67,13 +67,13 @@ class TipMassEffect(Effect):
         return self.mass / 20e-6
 
     def on_rod(self, site: RodSite) -> OnRod:
-        """A point at the centroid of the tip's outer face; heavy as gravity is on."""
+        """A point at the centroid of the tip's outer face; heavy as gravity is on, else inert."""
         import numpy as np
 
         from rod.inertia import lump
         from rod.loads import Weight
 
-        assert site.weight is not None, "checked when the case was read"
         inertia = np.zeros_like(site.inertia)
         inertia[-1] = lump(self.mass, site.tip)
-        return OnRod((("gravity", Weight(inertia, site.weight)),), inertia=inertia)
+        heavy = () if site.weight is None else (("gravity", Weight(inertia, site.weight)),)
+        return OnRod(heavy, inertia=inertia)
