@@ -65,7 +65,6 @@ def count(case: str, settings: Iterable[str]) -> dict[str, int]:
     """
     from mpi4py import MPI
 
-    from fem.kernels import compiling
     from fiberbend.models.choice import meshed
     from fiberbend.reader.reader import read_case
     from fiberbend.running.assembly import assemble
@@ -79,19 +78,17 @@ def count(case: str, settings: Iterable[str]) -> dict[str, int]:
         if event in counts:
             counts[event] += 1
 
-    # one lock for all: taken by every compilation it looks through a folder where others put files
-    with compiling(MPI.COMM_SELF):
-        for profile in (None, see):
-            # the first time imports and compiles
-            gc.collect()
-            gc.disable()  # whose calls come when it likes
-            sys.setprofile(profile)
-            try:
-                built = assemble(found, mesh, MPI.COMM_SELF)
-                report = built.march.run(built.ramps)
-            finally:
-                sys.setprofile(None)
-                gc.enable()
+    for profile in (None, see):
+        # the first time imports and compiles
+        gc.collect()
+        gc.disable()  # whose calls come when it likes
+        sys.setprofile(profile)
+        try:
+            built = assemble(found, mesh, MPI.COMM_SELF)
+            report = built.march.run(built.ramps)
+        finally:
+            sys.setprofile(None)
+            gc.enable()
     return {
         "calls": counts["call"],
         "compiled_calls": counts["c_call"],

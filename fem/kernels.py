@@ -1,4 +1,4 @@
-"""Forms derived and kernels compiled: where they are kept, by which flags, one at a time."""
+"""Forms derived and kernels compiled: where they are kept, by which flags, each of them once."""
 
 from __future__ import annotations
 
@@ -72,40 +72,50 @@ def cache_folder() -> Path:
     return folders.cache_root().path / _key()
 
 
-_locked: list[Path] = []
 _told: set[str] = set()
 
 
-@contextlib.contextmanager
-def compiling(comm: MPI.Comm) -> Iterator[None]:
-    """Let one process group at a time compile, and clear what a killed compiler left.
+def _prepare(comm: MPI.Comm) -> None:
+    """Make the folder of kernels where there is none.
 
-    A source without the mark that it is compiled makes the next process wait for the mark, and
-    die. What compiles takes the lock by itself; around several compilations it saves time.
+    Raises:
+        MachineError: others could write in it.
     """
-    folder = cache_folder()
-    if comm.rank != 0 or folder in _locked:
-        yield
+    if comm.rank != 0:
         return
+    folder = cache_folder()
     _tell(folders.cache_root().remark)
     folders.make_private(folder)
     if why := folders.refusal(folder):
         raise MachineError(f"{folder} holds no kernels that can be trusted: {why}; remove it")
-    with (folder / "lock").open("w") as lock:
+
+
+@contextlib.contextmanager
+def _alone(folder: Path, name: str) -> Iterator[None]:
+    """Let one process at a time compile a library; a process that is killed leaves no lock.
+
+    Raises:
+        MachineError: nothing can be locked in the folder.
+    """
+    path = folder / f"{name}.lock"
+    while True:
+        lock = path.open("w")
         try:
             fcntl.flock(lock, fcntl.LOCK_EX)
         except OSError as error:
+            lock.close()
             text = f"{folder} cannot be locked: {error.strerror}"
             raise MachineError(f"{text}; set {folders.CACHE} to another folder") from None
-        names = {entry.name for entry in os.scandir(folder)}
-        for name in names:
-            if name.endswith(".c") and f"{name}.cached" not in names:
-                (folder / name).unlink()
-        _locked.append(folder)
-        try:
-            yield
-        finally:
-            _locked.remove(folder)
+        with contextlib.suppress(FileNotFoundError):
+            if os.path.samestat(os.fstat(lock.fileno()), path.stat()):
+                break
+        # whoever had it has removed the file: it is no lock for those that come now
+        lock.close()
+    try:
+        yield
+    finally:
+        path.unlink(missing_ok=True)
+        lock.close()
 
 
 def compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
@@ -114,10 +124,9 @@ def compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
     Raises:
         MachineError: no C compiler, or it failed.
     """
-    with compiling(comm):
-        known = library(comm, [], libraries.declarations(), "#include <ufcx.h>", "types")
-        with libraries.plain(known.ffi):
-            return _compiled(comm, make)
+    known = library(comm, [], libraries.declarations(), "#include <ufcx.h>", "types")
+    with libraries.plain(known.ffi):
+        return _compiled(comm, make)
 
 
 def _compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
@@ -130,7 +139,8 @@ def _compiled(comm: MPI.Comm, make: Callable[[dict[str, Any]], Any]) -> Any:
     previous = logging.root.manager.disable
     logging.disable(logging.INFO)  # the C compiler's calls
     try:
-        with compiling(comm), _only_sound() if comm.rank == 0 else contextlib.nullcontext():
+        _prepare(comm)
+        with _only_sound() if comm.rank == 0 else contextlib.nullcontext():
             return make(options)
     except (cffi.VerificationError, RuntimeError) as error:
         # on several ranks dolfinx hands on the text of the error only
@@ -186,38 +196,53 @@ def library(
 
 @contextlib.contextmanager
 def _only_sound() -> Iterator[None]:
-    """Kernels are loaded as they were compiled, or compiled anew.
+    """Kernels are loaded as they were compiled, or compiled anew, by one process each.
 
     A truncated library kills the process that loads it. Beside each stands the sum of its bytes;
-    one without a sum was not finished.
+    one without a sum was not finished, or is being compiled by who has its lock.
     """
     original, fresh = jit.get_cached_module, []
+    with contextlib.ExitStack() as held:
 
-    def checked(name: str, objects: Any, folder: Any, timeout: int) -> Any:
-        files, record = _files(Path(folder), name)
-        library = next((file for file in files if file.suffix == ".so"), None)
-        if record.exists() and (library is None or record.read_text() != _sum(library)):
-            _tell(f"compiled kernels in {folder} were damaged: they are compiled anew")
-            record.unlink()
-        if not record.exists():
-            for file in files:
-                file.unlink()
-        result = original(name, objects, folder, timeout)
-        if result[0] is None:
-            fresh.append((Path(folder), name))
-        return result
+        def checked(name: str, objects: Any, place: Any, timeout: int) -> Any:
+            folder = Path(place)
+            if not _sound(folder, name):
+                held.enter_context(_alone(folder, name))
+                if not _sound(folder, name):
+                    _clear(folder, name)
+            result = original(name, objects, place, timeout)
+            if result[0] is None:
+                fresh.append((folder, name))
+            return result
 
-    jit.get_cached_module = checked
-    try:
-        yield
-    finally:
-        jit.get_cached_module = original
-    for folder, name in fresh:
-        files, record = _files(folder, name)
-        library = next(file for file in files if file.suffix == ".so")
-        draft = folder / f"{record.name}.draft"
-        draft.write_text(_sum(library))
-        draft.replace(record)
+        jit.get_cached_module = checked
+        try:
+            yield
+        finally:
+            jit.get_cached_module = original
+        for folder, name in fresh:
+            files, record = _files(folder, name)
+            library = next(file for file in files if file.suffix == ".so")
+            draft = folder / f"{record.name}.draft"
+            draft.write_text(_sum(library))
+            draft.replace(record)
+
+
+def _sound(folder: Path, name: str) -> bool:
+    """Whether a library is there as it was compiled."""
+    files, record = _files(folder, name)
+    library = next((file for file in files if file.suffix == ".so"), None)
+    return library is not None and record.exists() and record.read_text() == _sum(library)
+
+
+def _clear(folder: Path, name: str) -> None:
+    """Remove what a compiler has not finished, or what was damaged since."""
+    files, record = _files(folder, name)
+    if record.exists():
+        _tell(f"compiled kernels in {folder} were damaged: they are compiled anew")
+        record.unlink()
+    for file in files:
+        file.unlink()
 
 
 def _files(folder: Path, name: str) -> tuple[list[Path], Path]:

@@ -14,7 +14,6 @@ from fem import compat
 from fem.assembly import Assembler
 from fem.derivatives import derivatives
 from fem.effects.effect import Discrete, Effect, fixed_dofs, opposite_free, structures
-from fem.kernels import compiling
 from fem.kinematics.body import Body
 from fem.kinematics.domain import Domain
 from fem.kinematics.kinematics import Kinematics
@@ -164,7 +163,7 @@ class Scene(OwnCode):
     def _compile(self, potentials: dict[str, Any]) -> None:
         body, mesh = self.body, self.domain.mesh
         forms = derivatives(body, potentials, {k for k, e in self.effects.items() if e.outside})
-        with compiling(mesh.comm), together(list(forms.values())):
+        with together(list(forms.values())):
             self._forms = {name: compat.compile_form(mesh, form) for name, form in forms.items()}
         self.signatures = {name: form.signature() for name, form in forms.items()}
         self.kernels = sum(len(form.integrals()) for form in forms.values())

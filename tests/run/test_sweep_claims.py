@@ -184,7 +184,7 @@ def test_this_process_alone_solves_in_order(points: tuple[Point, ...], store: St
 
 
 def test_forms_are_not_compiled_where_nothing_can_be_locked(
-    monkeypatch: pytest.MonkeyPatch,
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """Two machines would remove what the other one is compiling."""
 
@@ -193,5 +193,6 @@ def test_forms_are_not_compiled_where_nothing_can_be_locked(
 
     monkeypatch.setattr(fcntl, "flock", none)
     words = "cannot be locked: No locks available; set XDG_CACHE_HOME"
-    with pytest.raises(MachineError, match=words), kernels.compiling(MPI.COMM_SELF):
-        pass
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    with pytest.raises(MachineError, match=words):
+        kernels.library(MPI.COMM_SELF, [], "int one(void);", "int one(void) { return 1; }", "one")
