@@ -23,6 +23,8 @@ WHOLE = (
     "the body buckles across its mirror plane, which half of it cannot: the whole body is solved "
     "(mesh.symmetry: auto)"
 )
+PUSHES = 0.05
+"""Part of the greatest force of a fiber from which the push of another is no round-off."""
 UNCOUNTED = (
     "half of the body on tetrahedra cannot tell whether the whole buckles across the mirror plane "
     "under a load that presses it: mesh.symmetry: full, or mesh.element: hexahedron, tells"
@@ -162,6 +164,20 @@ def interrupted_zones(kept: int, zones: int) -> str:
     if kept < zones:
         return f"stopped in zone {kept + 1}, those before it kept; go on with --resume"
     return "stopped after the last zone, all kept; --resume chains them, and makes what is missing"
+
+
+def pushed(report: Report, rows: Sequence[col.Row]) -> list[str]:
+    """Why steps were cut where no mode was lost: threads that push are near to wrinkling."""
+    pushes = [row for row in rows[1:] if (row.get(col.FIBER_MIN) or 0.0) < 0]
+    least = min((row[col.FIBER_MIN] for row in pushes), default=0.0)
+    most = max((row.get(col.FIBER_MAX) or 0.0 for row in rows[1:]), default=0.0)
+    if not report.cutbacks or report.critical or -least <= PUSHES * most:
+        return []
+    return [
+        f"steps were cut while lines of the winding push with up to {short_number(-least)} N: a "
+        "thread that pushes has no stiffness against bending, and all but wrinkles in waves as "
+        "short as the elements (tension_only: true lets it go slack)"
+    ]
 
 
 def uncounted(ramps: Sequence[Ramp], rows: Sequence[col.Row]) -> list[str]:

@@ -215,8 +215,8 @@ class _Run:
         self.solved = True
         status, reason = ended(case, assembly, recorder.rows)
         self._warn_of_ends(status, assembly, recorder, recording)
-        check = self._cross_check(recorder.rows, section)
-        recording.warn([] if check is None else check.doubts(), silent=True)
+        found = check.doubts() if (check := self._cross_check(recorder.rows, section)) else []
+        recording.warn([*messages.pushed(report, recorder.rows), *found], silent=True)
         given = (status, recorder.rows, self.own.entries, _solve_beside, progress.phase)
         error, lacking = on_rank_0(self.comm, lambda: record.accuracy(case, *given))
         recording.warn(lacking, silent=True)

@@ -127,3 +127,20 @@ def test_critical_points_are_those_of_the_whole_actuator() -> None:
     )
     assert entry["chamber_mm3"] == 2000.0
     assert entry["pressure_kPa"] == pytest.approx(20.0)
+
+
+def test_steps_cut_while_threads_push_are_explained() -> None:
+    """The body of cases/extending.yaml: no mode is lost, and two steps are cut."""
+    rows = [
+        {"pressure_kPa": 0.0, "fiber_min_N": -1.0, "fiber_max_N": 1.0},
+        {"pressure_kPa": 40.0, "fiber_min_N": -0.291, "fiber_max_N": 0.465},
+    ]
+    (line,) = messages.pushed(Report(cutbacks=2), rows)
+    assert "push with up to 0.291 N" in line
+    assert "tension_only: true" in line
+    assert messages.pushed(Report(), rows) == []
+    assert (
+        messages.pushed(Report(cutbacks=2, critical=[_point("bifurcation", 0.1, 0, 1)]), rows) == []
+    )
+    taut = [rows[0], {**rows[1], "fiber_min_N": -1e-6}]
+    assert messages.pushed(Report(cutbacks=2), taut) == []
