@@ -15,8 +15,9 @@ KEYS = tuple(part.replace(" ", "_") for part in PARTS)
 """Of the parts in a file, from the root on."""
 ADDED = ("lengthening_mm", "turn_rad", "side_turn_rad", "twist_rad")
 """What each part has beside what its forces make of it, by the line of the centroids."""
-_NONE = 1e-6
-"""Part of the greatest turn, or of a mm, below which it is zero by symmetry."""
+_NONE, _LEAST = 1e-6, 1e-3
+"""Part of the greatest turn or length below which it is zero by symmetry; and what that is at
+least, rad or mm."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -36,7 +37,7 @@ class Caps:
         found = np.array([[self.ends.added(part, float(p)) for p in pressures] for part in PARTS])
         for columns in (slice(0, 1), slice(1, 4)):
             own = found[..., columns]
-            own[np.abs(own) < _NONE * np.abs(own).max(initial=_NONE)] = 0.0
+            own[np.abs(own) < _NONE * np.abs(own).max(initial=_LEAST)] = 0.0
         return found
 
     def record(self, pressures: Floats) -> dict[str, Any]:

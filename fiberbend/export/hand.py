@@ -176,8 +176,12 @@ def facts(record: dict[str, Any]) -> list[str]:
     axial = np.array(axis["axial_stiffness_N"])
     lines.append(f"stretching   {axial.min():.4g} to {axial.max():.4g} N")
     beside = "below" if axis["y_mm"] < 0 else "above"
-    turns = [np.degrees(record["ends"][key]["turn_rad"][-1]) for key in KEYS]
-    lines.append(f"ends         {sum(turns):.3g}° by the greatest pressure, caps included")
+    bent, twisted = (
+        np.degrees(sum(record["ends"][key][name][-1] for key in KEYS))
+        for name in ("turn_rad", "twist_rad")
+    )
+    twist = f" and {twisted:.3g}° about the line" if twisted else ""
+    lines.append(f"ends         {bent:.3g}°{twist} by the greatest pressure, caps included")
     lines.append(f"axis         {abs(axis['y_mm']):.3g} mm {beside} the line of centroids")
     if not record["mass"]["known"]:
         lines.append(f"no mass: {record['mass']['missing']}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from fiberbend.case import convert
 from fiberbend.case.case import Case, Output, Solver
 from fiberbend.case.section_beside import as_section
@@ -11,6 +13,9 @@ from fiberbend.effects.pressure import inflate
 _FURTHER = 1.15
 """Of an angle or a change of volume that is driven: weight may take the chamber's pressure beyond
 that of the section."""
+_LEAST = 0.02
+"""Change of volume, in parts of that at rest, that a law reaches at least: of next to none its
+errors have no size to be measured by."""
 
 
 def section_case(case: Case) -> Case:
@@ -35,6 +40,7 @@ def _load(case: Case) -> Effect:
         return inflate(to=load.to)
     if load.volume is not None:
         rest = convert.dimensions(case.actuator).chamber_volume
-        return inflate(volume=rest + _FURTHER * (load.volume - rest))
+        change = _FURTHER * (load.volume - rest)
+        return inflate(volume=rest + math.copysign(max(abs(change), _LEAST * rest), change))
     assert load.angle is not None, "refused before"
     return inflate(angle=_FURTHER * load.angle)
