@@ -26,6 +26,8 @@ LEAST, MOST = 0.02, 1e4
 _STARTS = {1: (0.3, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 512.0), 2: (1.0, 2.0, 4.0, 8.0)}
 _MANY = (1.3, 3.0, 7.0)
 _POLISHED = 5
+_SAME, _EXACT = 1e-9, 1e-12
+"""Parts of a sum of squares by which two are the same, and of the tests' own that are nothing."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -151,11 +153,21 @@ def search(problem: Problem, starts: Sequence[Floats] | None = None) -> Found:
     least = math.inf
     for start in starts:
         point, cost = _polished(problem, start)
-        if cost < least * (1 - 1e-9):
+        if cost < least * (1 - _SAME):
             best, least = point, cost
     if best is None:
         raise ValueError(f"{problem.form.name} has no stable numbers that fit")
-    return problem.found(best)
+    return problem.found(_ordered(problem, best, least))
+
+
+def _ordered(problem: Problem, point: Floats, cost: float) -> Floats:
+    """The same numbers with terms that may change places in the order of their magnitudes."""
+    least = max(cost, _EXACT * float(problem.right @ problem.right))
+    for other in map(np.array, itertools.permutations(sorted(point.tolist(), key=abs))):
+        rest = problem.residuals(other)
+        if abs(float(rest @ rest) - cost) <= _SAME * least:
+            return np.asarray(other)
+    return point
 
 
 def limits(shape: Sequence[Parameter]) -> tuple[Floats, Floats]:
@@ -198,7 +210,7 @@ def _screened(residuals: Callable[[Floats], Floats], grid: Sequence[Floats]) -> 
         costs.append(float(rest @ rest))
     kept: list[int] = []
     for i in np.argsort(costs):
-        if all(abs(costs[i] - costs[j]) > 1e-9 * costs[i] for j in kept):
+        if all(abs(costs[i] - costs[j]) > _SAME * costs[i] for j in kept):
             kept.append(int(i))
         if len(kept) == _POLISHED:
             break

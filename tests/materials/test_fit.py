@@ -13,6 +13,7 @@ from materials.fit import drucker
 from materials.fit.fit import Fit, fit_law
 from materials.fit.form import form_of
 from materials.fit.modes import EQUIBIAXIAL, MODES, PURE_SHEAR, UNIAXIAL, Measurement, Mode
+from materials.fit.search import Problem, search
 from materials.laws.law import Deformation, Law, Parameter
 from materials.laws.table import LAWS
 from materials.material import Material
@@ -214,6 +215,15 @@ def test_terms_that_cancel_are_known() -> None:
     plain = fit_law("ogden-1", [published("dragon-skin-30.csv", "uniaxial", 9.0)])
     assert plain.cancelling == pytest.approx(1.0)
     assert not plain.loose
+
+
+@pytest.mark.parametrize("start", [[1.5, -3.0], [-3.0, 1.5]])
+def test_terms_that_are_alike_stand_in_order(start: list[float]) -> None:
+    known = RUBBERS["ogden"]
+    tests = measured(known, UNIAXIAL, EQUIBIAXIAL)
+    weights = [np.full(len(test.stress), 1 / test.stress.std()) for test in tests]
+    found = search(Problem(form_of("ogden-2"), tests, weights, None), [np.array(start)])
+    assert np.all(np.diff(np.abs(found.shape)) > 0)
 
 
 def test_what_tests_do_not_settle_is_said() -> None:
