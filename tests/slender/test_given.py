@@ -98,6 +98,6 @@ def test_between_its_ends_it_is_the_section(
 
 @pytest.mark.long
 def test_where_the_section_buckles_under_a_vacuum_the_rod_says_so() -> None:
-    text = r"it takes no pressure beyond -\d+\.\d+ kPa: the chamber collapses under vacuum"
+    text = r"no such free state: it takes no pressure beyond -\d+\.\d+ kPa: "
     with pytest.raises(CaseError, match=text):
         run_case(case({"pressure": {"to": "-80 kPa"}}), None)
