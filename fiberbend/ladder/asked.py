@@ -121,7 +121,6 @@ def _moved(case: Case, pressure: float | None) -> Iterator[Asked]:
 def _read(reading: Reading, pressure: float | None) -> Asked:
     """What is read off a row, at a pressure or at the end."""
     (column,), name, unit = reading.columns, reading.name, reading.unit
-    place = {} if pressure is None else {"key": col.PRESSURE, "goal": 1e3 * pressure}
     at = "the end" if pressure is None else show(pressure, "pressure")
     kind: dict[str, Any] = {}
     if not unit:
@@ -130,4 +129,6 @@ def _read(reading: Reading, pressure: float | None) -> Asked:
     elif unit == "°":
         kind = {"together": f"turn at {at}", "least": SEEN}
     named = motion_column(dataclasses.replace(reading, name=name, unit=unit), pressure)
-    return Asked(named, f"{name} at {at}", unit, column, **place, **kind)
+    if pressure is not None:
+        kind |= {"key": col.PRESSURE, "goal": 1e3 * pressure}
+    return Asked(named, f"{name} at {at}", unit, column, **kind)
