@@ -65,6 +65,7 @@ def law_of(
     tell: Callable[[str], None] | None = None,
     loads: Loads | None = None,
     enough: float = 0.0,
+    whose: str = "",
 ) -> Made:
     """The law of a section, from the store or anew.
 
@@ -80,6 +81,7 @@ def law_of(
         tell: takes lines of progress while it is made.
         loads: of the actuator that it is a zone of; its own unless given.
         enough: an error that serves where the one asked for takes too many states, with a remark.
+        whose: of a rod, the part in words that a message names; "": an option asks for the error.
 
     Raises:
         CaseError: the law cannot have what the case has, or the table does not reach the error.
@@ -95,7 +97,7 @@ def law_of(
         # another process may have been quicker
         made = store.find(digest)
         if made is None or made.worst > max(error, enough):
-            made = _made(case, strains, error, least, digest, loads, tell, enough)
+            made = _made(case, strains, error, least, digest, loads, tell, enough, whose)
             store.keep(made)
     return made
 
@@ -146,6 +148,7 @@ def _made(
     loads: Loads,
     tell: Callable[[str], None] | None = None,
     enough: float = 0.0,
+    whose: str = "",
 ) -> Made:
     began = time.process_time()
     reach = reach_of(case, loads)
@@ -173,7 +176,8 @@ def _made(
             last = str(stop)
             continue
         except (NotReachedError, ValueError) as stop:
-            raise CaseError([Problem("--error", str(stop))]) from None
+            path, text = ("model", f"the law of {whose}: {stop}") if whose else ("--error", stop)
+            raise CaseError([Problem(path, str(text))]) from None
         if last:
             remarks.append(f"{last}: the margins of the range are {100 * part:g} % of the usual")
         if known.worst > error:
@@ -196,6 +200,7 @@ def _made(
             remarks=tuple(remarks),
             side=side,
         )
+    last = f"{whose}: {last}" if whose else last
     raise CaseError([Problem("effects.pressure", f"{last}, expected a smaller one")])
 
 

@@ -97,6 +97,8 @@ def section_law(
     from fiberbend.slender.beside import section_case
 
     store, loads = Store(), loads_on(case)
+    zones = zone_cases(case)
+    names = zone_names(len(zones))
     made = [
         law_of(
             *(section_case(zone), strains, ERROR),
@@ -104,20 +106,26 @@ def section_law(
             tell=tell,
             loads=loads,
             enough=ENOUGH,
+            whose=name,
         )
-        for zone in zone_cases(case)
+        for zone, name in zip(zones, names, strict=True)
+    ]
+    remarks = [
+        f"{name}: {remark}" if len(made) > 1 else remark
+        for name, each in zip(names, made, strict=True)
+        for remark in each.remarks
     ]
     laws = [each.law for each in made]
     pieces = np.repeat(np.arange(len(laws)), counts or 1).tolist()
     known = [each.checked for each in made]
     return SectionLaw(
-        law=laws[0] if len(laws) == 1 else Zones(laws, pieces, zone_names(len(laws))),
+        law=laws[0] if len(laws) == 1 else Zones(laws, pieces, names),
         free=np.array([(p, state.stretch, state.curvature) for p, state in made[0].free]),
         model=made[0].model,
         states=sum(each.solved for each in made),
         seconds=sum(each.seconds for each in made),
         error=max(max(each.force, each.moment, each.area) for each in known),
-        remarks=tuple(dict.fromkeys([r for each in made for r in each.remarks] + store.remarks)),
+        remarks=tuple(dict.fromkeys(remarks + store.remarks)),
     )
 
 
@@ -151,7 +159,9 @@ def along(case: Case, made: SectionLaw, cap: Quartic, layout: Layout, chamber: s
 
 
 def zone_names(count: int) -> tuple[str, ...]:
-    """Zones of a chamber in words, from the root on."""
+    """Zones of a chamber in words, from the root on; of one it is the chamber."""
+    if count == 1:
+        return ("the chamber",)
     return tuple(f"zone {number}" for number in range(1, count + 1))
 
 
