@@ -362,16 +362,9 @@ class Effect(Spec):
             raise NotImplementedError(f"effect {self.name} is not known to act on a rod")
         return OnRod()
 
-    def at_rods_tip(
-        self, _weight: tuple[float, float, float] | None
-    ) -> tuple[float, float] | None:
-        """Force in N and moment in N mm at a rod's tip beside its own weight; None: not known.
-
-        Args:
-            _weight: acceleration of what is heavy, mm/s²; None: nothing is.
-        """
-        own = not self.load or self.inflation() is not None or self.weight() is not None
-        return (0.0, 0.0) if own else None
+    def at_rods_tip(self, _weight: Any) -> tuple[float, float] | None:
+        """Force, N, and moment, N mm, at a tip, heavy by an acceleration; None: not known."""
+        return (0.0, 0.0) if not self.load or self.inflation() or self.weight() else None
 
     def of_measured(self) -> float:
         """Load over the greatest with which a rod was put beside a body; those at a tip add up."""

@@ -176,8 +176,10 @@ def _made(
             last = str(stop)
             continue
         except (NotReachedError, ValueError) as stop:
-            path, text = ("model", f"the law of {whose}: {stop}") if whose else ("--error", stop)
-            raise CaseError([Problem(path, str(text))]) from None
+            problem = Problem("--error", str(stop))
+            if whose:
+                problem = Problem("model", f"the law of {whose}: {stop}")
+            raise CaseError([problem]) from None
         if last:
             remarks.append(f"{last}: the margins of the range are {100 * part:g} % of the usual")
         if known.worst > error:

@@ -208,6 +208,7 @@ class Kinked:
         self.asked = 0
 
     def __call__(self, points: Floats) -> tuple[Floats, Floats]:
+        """Value and slopes."""
         self.asked += len(points)
         x, pressure = points.T
         taut = np.maximum(x - pressure / 2, 0.0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
@@ -129,16 +128,17 @@ class Held(Linked):
         centre, a_x, a_y = np.moveaxis(section, -2, 0)
         across = (a_x, a_y) if self._uniform.sideways else None
         length, rates, _ = centre_line(spin, stretch, centre, across)
-        found = [length if n == LENGTHENED else rates[..., _RATES[n]] for n in self.names]
-        return self._uniform.length * np.stack(found, axis=-1)
+        lines = [length if n == LENGTHENED else rates[..., _RATES[n]] for n in self.names]
+        return self._uniform.length * np.stack(lines, axis=-1)
 
     def _gradient(self, values: Floats) -> Floats:
         """∂G/∂(variables), (..., n, v), by complex steps; of a bend in its plane by hand."""
         if self._plane:
-            k, stretch, y = values
-            sign = math.copysign(1.0, stretch + k * y)
-            rows = {LENGTHENED: [sign * y, sign, sign * k], BEND: [1.0, 0.0, 0.0]}
-            return self._uniform.length * np.array([rows[name] for name in self.names])
+            k, stretch, y = np.moveaxis(values, -1, 0)
+            sign, none = np.copysign(1.0, stretch + k * y), np.zeros_like(k)
+            rows = {LENGTHENED: [sign * y, sign, sign * k], BEND: [none + 1.0, none, none]}
+            found = [np.stack(rows[name], axis=-1) for name in self.names]
+            return self._uniform.length * np.stack(found, axis=-2)
         moved = values[..., None, :] + 1j * _PUSH * np.eye(values.shape[-1])
         slopes: Floats = self._line(moved).imag / _PUSH
         return np.swapaxes(slopes, -1, -2)
@@ -165,13 +165,9 @@ class Held(Linked):
         values = np.array(self._at())
         if self._second_known is None:
             moves = np.diag(self._steps)
-            if self._plane:
-                ends = [[self._gradient(values + way * m) for m in moves] for way in (1.0, -1.0)]
-            else:
-                # all at once: numpy's calls cost more than what they do
-                ends = [self._gradient(values + way * moves) for way in (1.0, -1.0)]
-            change = (np.asarray(ends[0]) - np.asarray(ends[1])) / (2 * self._steps[:, None, None])
-            second = np.moveaxis(change, 0, -1)
+            # all at once: numpy's calls cost more than what they do
+            change = self._gradient(values + moves) - self._gradient(values - moves)
+            second = np.moveaxis(change / (2 * self._steps[:, None, None]), 0, -1)
             self._second_known = (second + second.transpose(0, 2, 1)) / 2
         return self._second_known
 
