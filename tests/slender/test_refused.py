@@ -129,15 +129,15 @@ def test_cases_that_share_a_section_share_its_law(
 
 def test_a_law_reaches_as_far_as_the_loads_that_it_bears() -> None:
     """A thin tube as far as its own; whoever moves or touches as far as usual."""
-    actuator = ROUND["actuator"] | {"radius": "3 mm", "wall": "1 mm"}
+    thin = ROUND | {"actuator": ROUND["actuator"] | {"radius": "3 mm", "wall": "1 mm"}}
 
     def loads(*effects: dict[str, Any], **changes: Any) -> Loads:
-        return loads_on(case(*effects, PRESSED, actuator=actuator, **changes))
+        return loads_on(case(*effects, PRESSED, **thin, **changes))
 
     bare = loads()
     assert not bare.held
     weight = bare.force
-    assert weight == pytest.approx(loads_of(case(PRESSED, actuator=actuator)).force - 0.2)
+    assert weight == pytest.approx(loads_of(case(PRESSED, **thin)).force - 0.2)
     pulled = loads({"tip-load": {"force": ["0 N", "0.03 N", "0.04 N"]}})
     assert pulled.force == pytest.approx(weight + 0.05)
     assert pulled.moment == pytest.approx(bare.moment + 0.05 * 120.0)
@@ -146,8 +146,9 @@ def test_a_law_reaches_as_far_as_the_loads_that_it_bears() -> None:
     hung = loads({"gravity": {"direction": "-y"}}, {"tip-mass": {"mass": "10 g"}})
     assert hung.force == pytest.approx(weight + 0.0981, rel=1e-3)
     assert loads_on(case(PRESSED)) == loads_of(case(PRESSED)), "the usual ones of a stout one"
-    moving = loads({"gravity": {"direction": "-y"}}, time={"duration": "0.1 s"})
-    assert moving.held
+    ramp = {"ramp": {"to": "20 kPa", "over": "0.1 s"}}
+    moving = spec(PRESSED, time={"duration": "0.1 s", "pressure": ramp}, **thin)
+    assert loads_on(parse_case(moving)).held
 
 
 def test_a_message_names_the_law_that_it_speaks_of(monkeypatch: pytest.MonkeyPatch) -> None:
