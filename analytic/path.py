@@ -61,7 +61,7 @@ def screw(z: Floats, spin: Floats, stretch: float) -> tuple[Floats, Floats]:
 
 def centre_line(
     spin: Floats,
-    stretch: complex,
+    stretch: complex | Floats,
     centre: Floats,
     across: tuple[Floats, Floats] | None = None,
 ) -> tuple[Floats, Floats, Floats]:
@@ -81,24 +81,28 @@ def centre_line(
     differentiate it.
 
     Args:
-        spin: ω, (3,), rad/mm.
-        stretch: λ of the frame's own origin; like the others real, or complex to differentiate.
-        centre: c in the frame, (3,), mm.
+        spin: ω, (..., 3), rad/mm.
+        stretch: λ of the frame's own origin, (...); like the others real, or complex to
+            differentiate.
+        centre: c in the frame, (..., 3), mm.
         across: what has become of the section's axes, a_x and a_y; None: symmetry keeps them.
 
     Returns:
-        |g|; ω on (d1, d2, t), (3,), rad/mm of z; the axes as columns d1, d2, t, (3, 3).
+        |g|, (...); ω on (d1, d2, t), (..., 3), rad/mm of z; the axes as columns d1, d2, t,
+        (..., 3, 3).
     """
-    carried = _product(spin, centre) + stretch * np.array([0.0, 0.0, 1.0])
-    length = np.sqrt(np.sum(carried * carried))
-    t = carried / length
+    along = np.array([0.0, 0.0, 1.0])
+    carried = _product(spin, centre) + np.asarray(stretch)[..., None] * along
+    length = np.sqrt(np.sum(carried * carried, axis=-1))
+    t = carried / length[..., None]
     if across is not None:
         axes = section_axes(*across, t)
-        return length, axes.T @ spin, axes
-    axes = np.eye(3, dtype=t.dtype)
-    axes[:, :2] -= np.outer(t + np.array([0.0, 0.0, 1.0]), t[:2]) / (1 + t[2])
-    axes[:, 2] = t
-    return length, axes.T @ spin, axes
+    else:
+        axes = np.tile(np.eye(3, dtype=t.dtype), (*t.shape[:-1], 1, 1))
+        tilt = t[..., :2] / (1 + t[..., 2:])
+        axes[..., :2] -= (t + along)[..., :, None] * tilt[..., None, :]
+        axes[..., 2] = t
+    return length, (spin[..., None, :] @ axes)[..., 0, :], axes
 
 
 def chained(parts: Sequence[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:

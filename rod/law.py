@@ -148,17 +148,22 @@ class Zones:
     Attributes:
         laws: one after another.
         pieces: place in `laws` of each piece's law, (n,).
+        names: of the parts that have them, in words; an empty one where a law names its own. Of
+            parts without names a message has none.
 
     Raises:
-        ValueError: a place without a law.
+        ValueError: a place without a law, or other numbers of names.
     """
 
     laws: Sequence[Law]
     pieces: Sequence[int]
+    names: Sequence[str] = ()
 
     def __post_init__(self) -> None:
         if not all(0 <= place < len(self.laws) for place in self.pieces):
             raise ValueError(f"zones: a law from 0 to {len(self.laws) - 1} for each piece expected")
+        if self.names and len(self.names) != len(self.laws):
+            raise ValueError(f"zones: {len(self.laws)} names expected, not {len(self.names)}")
 
     def _each(self, what: str, strains: Floats, pressure: float, *shape: int) -> Floats:
         if len(strains) != len(self.pieces):
@@ -222,5 +227,6 @@ class Zones:
             mine = pieces == place
             found = law.outside(strains[mine], pressure) if mine.any() else ""
             if found:
-                return f"zone {place + 1}: {found}"
+                name = self.names[place] if self.names else ""
+                return f"{name}: {found}" if name else found
         return ""

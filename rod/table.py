@@ -34,6 +34,8 @@ _KEPT = 8
 _OUTSIDE = 1e-9
 _LEAST = 32
 """Fewest points to which a table is compared."""
+_HELPED = 0.7
+"""Part of the error before to which halved intervals bring it, where more of them help."""
 _SPLIT = 0.5
 """Jumps beyond this part of the greatest one halve an interval."""
 
@@ -225,6 +227,7 @@ def tabulate(
     begin: Sequence[Floats] | None = None,
     sizes: Sizes | None = None,
     degree: int = HIGH_DEGREE,
+    enough: float = 0.0,
 ) -> Table:
     """A table whose forces are known to an error, by halving intervals where they are not.
 
@@ -241,6 +244,8 @@ def tabulate(
         begin: lines at first, from 0 to 1 over each range.
         sizes: of the derivatives; their ranges over the table unless given.
         degree: of the splines where second derivatives are known.
+        enough: an error that serves where finer lines hardly help, as at the kinks of what goes
+            slack, or where they need too many points.
 
     Returns:
         The table.
@@ -256,6 +261,7 @@ def tabulate(
     empty = np.empty((0, len(lines)))
     samples = checks = Samples(empty, np.empty(0), empty)
     missed, second = math.inf, False
+    table: Table | None = None
     while True:
         halves = [(axis[1:] + axis[:-1]) / 2 for axis in lines]
         corners = _grid(lines)
@@ -271,6 +277,8 @@ def tabulate(
         scattered = _scattered(lines, len(checks.values), count)
         points = len(samples.values) + len(_new(grid, samples)) + len(checks.values) + count
         if points > most:
+            if table is not None and missed <= enough:
+                return table
             raise NotReachedError(
                 f"forces of the table are off by {missed:.2g} of their range, {error:.2g} asked "
                 f"for: {points} points are needed, {most} allowed"
@@ -284,9 +292,10 @@ def tabulate(
         table = Table(axes, fitted(axes, samples), samples, np.empty(0))
         # with second derivatives a fit is close to its points without being exact between them
         errors = _errors(table, checks if second else samples.joined(checks), sizes)
-        missed = float(errors.max())
-        if missed <= error:
-            return dataclasses.replace(table, errors=errors)
+        before, missed = missed, float(errors.max())
+        table = dataclasses.replace(table, errors=errors)
+        if missed <= error or _HELPED * before < missed <= enough:
+            return table
         jumps = [_jumps(axis, table.coefficients, number) for number, axis in enumerate(axes)]
         least = _SPLIT * max(float(jump.max()) for jump in jumps)
         lines = [

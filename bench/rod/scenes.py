@@ -192,6 +192,10 @@ SCENES = (
     _tube("tube", "a tube that twists"),
     _tube("tube_weight", "the tube, weight along −y", WEIGHT),
     Scene(
+        "s_shape", "an S, fabric below, then above", "s_shape", {"output": _THUMB}, (2.0, 1.0),
+        (1, 1), angle="zone_1_angle_deg", band=3.0,
+    ),
+    Scene(
         "thumb", "a thumb of three zones", "thumb", {"output": _THUMB}, (4.0, 2.0), (1, 1),
         band=3.0,
     ),

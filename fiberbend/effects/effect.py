@@ -362,6 +362,10 @@ class Effect(Spec):
             raise NotImplementedError(f"effect {self.name} is not known to act on a rod")
         return OnRod()
 
+    def at_rods_tip(self, _weight: Any) -> tuple[float, float] | None:
+        """Force, N, and moment, N mm, at a tip, heavy by an acceleration; None: not known."""
+        return (0.0, 0.0) if not self.load or self.inflation() or self.weight() else None
+
     def of_measured(self) -> float:
         """Load over the greatest with which a rod was put beside a body; those at a tip add up."""
         return math.inf if self.load and self.inflation() is None else 0.0

@@ -138,7 +138,10 @@ class Rod(SlenderModel):
             return
         if case.straight:
             yield f"between roof and post: the sheath alone yields, {OF_STRIPS} (docs/contact.md)"
-        yield "law of the section: within 0.1 % of the section's own forces (fiberbend table)"
+        yield (
+            "law of the section: within 0.1 % of the section's own forces, or of what a warning "
+            "says (fiberbend table)"
+        )
         yield (
             f"{AT_ENDS}turned by the pressure as those of a short body; of the baseline, free, "
             "under its weight, 0.2 N, 50 N mm or 20 g at the tip, the angle is within 0.7 % and "

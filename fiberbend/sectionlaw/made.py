@@ -43,6 +43,11 @@ class Checked:
     softest: float
     where: tuple[float, ...]
 
+    @property
+    def worst(self) -> float:
+        """Greatest of the errors."""
+        return max(self.force, self.moment, self.area, self.angle)
+
 
 @dataclasses.dataclass(frozen=True)
 class Made:
@@ -77,6 +82,11 @@ class Made:
     seconds: float
     remarks: tuple[str, ...] = ()
     side: Side | None = None
+
+    @property
+    def worst(self) -> float:
+        """Greatest of its errors."""
+        return self.checked.worst
 
     @property
     def law(self) -> SectionLaw | Round | Space:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +26,8 @@ FILLED = 16
 """The same by a volume: its greatest pressure may be on the way, and is met within a percent."""
 FORCE, MOMENT = 0.2, 50.0
 """Loads at the tip that a table reaches, N and N mm, beside the weight of the whole."""
+_THIN = 0.5
+"""Strain by the usual moment at rest of an actuator that is not made for it."""
 _GRAVITY = 9810.0
 _RUBBER = 1.1e-9
 """Density of what has none in the case, t/mm³."""
@@ -36,10 +39,12 @@ class Loads(NamedTuple):
     Attributes:
         force: of weight and tip load, N.
         moment: of weight and of either tip load at the root of the straight actuator, N mm.
+        held: what it touches, or is held by, may keep it from bending under its pressure.
     """
 
     force: float
     moment: float
+    held: bool = True
 
 
 @dataclasses.dataclass(frozen=True)
@@ -52,6 +57,7 @@ class Reach:
         height: of the section without sheath, mm.
         force: of weight and tip load, N.
         moment: of weight and of either tip load at the root of the straight actuator, N mm.
+        held: something may keep it straight under its pressure.
         remarks: what casts doubt on the calibration of its winding.
     """
 
@@ -59,6 +65,7 @@ class Reach:
     height: float
     force: float
     moment: float
+    held: bool = True
     remarks: tuple[str, ...] = ()
 
 
@@ -126,3 +133,30 @@ def loads_of(case: Case) -> Loads:
     weight = _GRAVITY * sum(volume * densities[name] for name, volume in volumes.items())
     length = actuator.total_length
     return Loads(weight + FORCE, weight * length / 2 + max(MOMENT, FORCE * length))
+
+
+def loads_on(case: Case) -> Loads:
+    """What an actuator bears as a rod: the usual loads, or, where it is thin, its own alone.
+
+    50 N mm bend a tube of 8 mm by many turns: a table that reached so far would be coarse where the
+    tube is.
+    """
+    usual = loads_of(case)
+    pulls = [effect.at_rods_tip(convert.site(case).weight) for effect in case.effects]
+    told = all(pull is not None for pull in pulls) and not any(e.touches() for e in case.effects)
+    if case.time is not None or not told or _outside_strain(case) < _THIN:
+        return usual
+    force = sum(pull[0] for pull in pulls if pull is not None)
+    moment = sum(pull[1] for pull in pulls if pull is not None)
+    length = convert.dimensions(case.actuator).total_length
+    bent = usual.moment - max(MOMENT, FORCE * length) + moment + force * length
+    return Loads(usual.force - FORCE + force, bent, held=False)
+
+
+def _outside_strain(case: Case) -> float:
+    """By the usual moment on a ring as wide as the wall, whatever else stiffens it."""
+    actuator, wall = convert.dimensions(case.actuator), convert.site(case).materials["wall"]
+    outer = actuator.outline_half_width
+    inner = outer - actuator.wall
+    second = math.pi / 4 * (outer**4 - inner**4)
+    return MOMENT * outer / (3 * wall.initial_shear_modulus * second)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import hashlib
 import json
+from collections.abc import Sequence
 from pathlib import Path
 
 from fiberbend.case.case import Case
@@ -30,7 +31,7 @@ def digest_of(
     strains: tuple[str, ...],
     error: float,
     least: float | None,
-    loads: tuple[float, float],
+    loads: Sequence[float],
 ) -> str:
     """A hash of section, rubber, winding, range, error and code; titles and output do not enter."""
     parts = {"actuator": case.actuator, "materials": case.materials}

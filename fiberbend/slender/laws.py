@@ -22,8 +22,8 @@ from rod.quartic import Quartic
 
 ERROR = 1e-3
 """Of the table of a section, as `fiberbend.sectionlaw.table.law_of` has it."""
-
-
+ENOUGH = 1e-2
+"""The same where something goes slack and finer tables hardly help."""
 PLANE = ("stretch", "curvature")
 SPACE = (*PLANE, "side_curvature", "twist")
 _FEW = 6
@@ -91,27 +91,41 @@ def section_law(
     Raises:
         fiberbend.schema.problems.CaseError: a section has no law that reaches as far as the case.
     """
-    from fiberbend.sectionlaw.range import loads_of
+    from fiberbend.sectionlaw.range import loads_on
     from fiberbend.sectionlaw.store import Store
     from fiberbend.sectionlaw.table import law_of
     from fiberbend.slender.beside import section_case
 
-    store, loads = Store(), loads_of(case)
+    store, loads = Store(), loads_on(case)
+    zones = zone_cases(case)
+    names = zone_names(len(zones))
     made = [
-        law_of(section_case(zone), strains, ERROR, store=store, tell=tell, loads=loads)
-        for zone in zone_cases(case)
+        law_of(
+            *(section_case(zone), strains, ERROR),
+            store=store,
+            tell=tell,
+            loads=loads,
+            enough=ENOUGH,
+            whose=name,
+        )
+        for zone, name in zip(zones, names, strict=True)
+    ]
+    remarks = [
+        f"{name}: {remark}" if len(made) > 1 else remark
+        for name, each in zip(names, made, strict=True)
+        for remark in each.remarks
     ]
     laws = [each.law for each in made]
     pieces = np.repeat(np.arange(len(laws)), counts or 1).tolist()
     known = [each.checked for each in made]
     return SectionLaw(
-        law=laws[0] if len(laws) == 1 else Zones(laws, pieces),
+        law=laws[0] if len(laws) == 1 else Zones(laws, pieces, names),
         free=np.array([(p, state.stretch, state.curvature) for p, state in made[0].free]),
         model=made[0].model,
         states=sum(each.solved for each in made),
         seconds=sum(each.seconds for each in made),
         error=max(max(each.force, each.moment, each.area) for each in known),
-        remarks=tuple(dict.fromkeys([r for each in made for r in each.remarks] + store.remarks)),
+        remarks=tuple(dict.fromkeys(remarks + store.remarks)),
     )
 
 
@@ -140,7 +154,15 @@ def along(case: Case, made: SectionLaw, cap: Quartic, layout: Layout, chamber: s
     root = cap.times(beam / ends.flexibility)
     borders = (0, chamber.start, chamber.stop, count)
     pieces = np.repeat(np.arange(3), np.diff(borders)).tolist()
-    return ends.offset(Zones((root, made.law, cap), pieces), layout, chamber)
+    names = ("the root's cap", "" if len(zones) > 1 else "the chamber", "the tip's cap")
+    return ends.offset(Zones((root, made.law, cap), pieces, names), layout, chamber)
+
+
+def zone_names(count: int) -> tuple[str, ...]:
+    """Zones of a chamber in words, from the root on; of one it is the chamber."""
+    if count == 1:
+        return ("the chamber",)
+    return tuple(f"zone {number}" for number in range(1, count + 1))
 
 
 def cap_law(case: Case, section: Section, strains: tuple[str, ...]) -> Quartic:

@@ -201,6 +201,35 @@ def test_a_volume_is_reached_by_a_table() -> None:
     assert middle.iterations <= 6, "its slopes are exact"
 
 
+class Kinked:
+    """Φ = ½ x² + 3 max(x − P/2, 0)²: what goes taut behind a line that no axis follows."""
+
+    def __init__(self) -> None:
+        self.asked = 0
+
+    def __call__(self, points: Floats) -> tuple[Floats, Floats]:
+        """Value and slopes."""
+        self.asked += len(points)
+        x, pressure = points.T
+        taut = np.maximum(x - pressure / 2, 0.0)
+        slopes = np.column_stack([x + 6 * taut, -3 * taut])
+        return x**2 / 2 + 3 * taut**2, slopes
+
+
+def test_what_goes_slack_is_known_as_far_as_states_allow() -> None:
+    """No smooth spline has a kink: an error that serves ends it, and is told."""
+    ranges = [(-1.0, 1.0), (0.0, 1.0)]
+    with pytest.raises(NotReachedError):
+        tabulate(Kinked(), ranges, 1e-4, most=600)
+    law = Kinked()
+    table = tabulate(law, ranges, 1e-4, most=600, enough=0.05)
+    assert 1e-4 < table.errors.max() <= 0.05
+    assert law.asked <= 600
+    x = np.linspace(-0.95, 0.95, 39)[:, None]
+    off = table.gradient(x, 0.4)[:, 0] - Kinked()(np.column_stack([x, 0.4 + 0 * x]))[1][:, 0]
+    assert np.abs(off).max() <= 2 * table.errors[0] * 8.0
+
+
 def test_beyond_the_table_there_is_no_state() -> None:
     table = tabulate(Counted(), RANGES, 1e-2)
     strains = inside(4)
@@ -210,7 +239,13 @@ def test_beyond_the_table_there_is_no_state() -> None:
     assert table.outside(strains, 0.05).startswith("strain 2 from")
     linear = Linear(np.eye(2), np.zeros(2))
     both = Zones((linear, table), [0, 0, 1, 1])
-    assert both.outside(strains, 0.05).startswith("zone 2: strain 2")
+    assert both.outside(strains, 0.05).startswith("strain 2")
+    named = Zones((linear, table), [0, 0, 1, 1], ("the root's cap", "the chamber"))
+    assert named.outside(strains, 0.05).startswith("the chamber: strain 2")
+    whole = Zones((linear, named), [1, 1, 1, 1], ("the cap", ""))
+    assert whole.outside(strains, 0.05).startswith("the chamber: strain 2")
+    with pytest.raises(ValueError, match="2 names expected, not 1"):
+        Zones((linear, table), [0, 1], ("the chamber",))
     assert both.outside(inside(4), 0.05) == ""
     rod = rod_of(table)
     path = Path(Level(), Level(pressure=0.11))

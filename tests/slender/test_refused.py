@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -13,9 +14,13 @@ from fiberbend.plan.doubts import doubts
 from fiberbend.plan.plan import make_plan
 from fiberbend.reader.reader import parse_case
 from fiberbend.schema.problems import CaseError
-from fiberbend.sectionlaw import store
+from fiberbend.sectionlaw import store, table
+from fiberbend.sectionlaw.range import Loads, loads_of, loads_on
 from fiberbend.sectionlaw.store import Store
+from fiberbend.slender.beside import section_case
 from fiberbend.slender.kept import laws_to_make
+from fiberbend.slender.laws import section_law, zone_names
+from rod.table import NotReachedError
 from tests.slender.rods import QUIET, ROUND, RUBBER, WOUND, case, spec
 from tests.trial.cases import shipped
 
@@ -139,3 +144,45 @@ def test_cases_that_share_a_section_share_its_law(
     assert laws_to_make([*weighed, further])[0] == 2
     body = case({"gravity": {"direction": "-y"}}, PRESSED, model="body")
     assert laws_to_make([body]) == (0, 0)
+
+
+def test_a_law_reaches_as_far_as_the_loads_that_it_bears() -> None:
+    """A thin tube as far as its own; whoever moves or touches as far as usual."""
+    thin = ROUND | {"actuator": ROUND["actuator"] | {"radius": "3 mm", "wall": "1 mm"}}
+
+    def loads(*effects: dict[str, Any], **changes: Any) -> Loads:
+        return loads_on(case(*effects, PRESSED, **thin, **changes))
+
+    bare = loads()
+    assert not bare.held
+    weight = bare.force
+    assert weight == pytest.approx(loads_of(case(PRESSED, **thin)).force - 0.2)
+    pulled = loads({"tip-load": {"force": ["0 N", "0.03 N", "0.04 N"]}})
+    assert pulled.force == pytest.approx(weight + 0.05)
+    assert pulled.moment == pytest.approx(bare.moment + 0.05 * 120.0)
+    turned = loads({"tip-load": {"moment": ["-3 N mm", "0 N mm", "0 N mm"]}})
+    assert turned.moment == pytest.approx(bare.moment + 3.0)
+    hung = loads({"gravity": {"direction": "-y"}}, {"tip-mass": {"mass": "10 g"}})
+    assert hung.force == pytest.approx(weight + 0.0981, rel=1e-3)
+    assert loads_on(case(PRESSED)) == loads_of(case(PRESSED)), "the usual ones of a stout one"
+    ramp = {"ramp": {"to": "20 kPa", "over": "0.1 s"}}
+    moving = spec(PRESSED, time={"duration": "0.1 s", "pressure": ramp}, **thin)
+    assert loads_on(parse_case(moving)).held
+
+
+def test_a_message_names_the_law_that_it_speaks_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An option that a run does not have is not blamed, and no zone where there is none."""
+
+    def fails(*_: Any, **__: Any) -> Any:
+        raise NotReachedError("forces of the table are off")
+
+    reach = SimpleNamespace(free=((0.02, None),), remarks=())
+    monkeypatch.setattr(table, "reach_of", lambda *_: reach)
+    monkeypatch.setattr(table, "Held", lambda *_: None)
+    monkeypatch.setattr(table, "box_of", fails)
+    monkeypatch.setattr(Store, "find", lambda *_: None)
+    with pytest.raises(CaseError, match="model: the law of the chamber: forces of the table"):
+        section_law(case(PRESSED), ("stretch", "curvature"))
+    with pytest.raises(CaseError, match="--error: forces of the table"):
+        table.table_of(section_case(case(PRESSED)))
+    assert zone_names(3) == ("zone 1", "zone 2", "zone 3")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
@@ -112,37 +111,37 @@ class Held(Linked):
     # --- the line -------------------------------------------------------------------------------
 
     def _line(self, values: Any) -> Any:
-        """G of all variables, (n,); analytic. In a plane |g| = λ + k c."""
+        """G of all variables, (..., n) of (..., v); analytic. In a plane |g| = λ + k c."""
         if self._plane:
             k, stretch, y = values
             found = {LENGTHENED: abs(stretch + k * y), BEND: k}
             return self._uniform.length * np.array([found[name] for name in self.names])
-        spin, section = np.zeros(3, dtype=values.dtype), self._start.astype(values.dtype)
-        stretch = values[self._variables.index(STRETCH)]
-        for name, value in zip(self._variables, values, strict=True):
+        shape = values.shape[:-1]
+        spin = np.zeros((*shape, 3), dtype=values.dtype)
+        section = np.tile(self._start.astype(values.dtype), (*shape, 1, 1))
+        stretch = values[..., self._variables.index(STRETCH)]
+        for name, value in zip(self._variables, np.moveaxis(values, -1, 0), strict=True):
             if name in AXES:
-                spin[AXES[name]] = value
+                spin[..., AXES[name]] = value
         for name, place in zip(self.at, self._places, strict=True):
-            section[place] = values[self._variables.index(name)]
-        across = (section[1], section[2]) if self._uniform.sideways else None
-        length, rates, _ = centre_line(spin, stretch, section[0], across)
-        return self._uniform.length * np.array(
-            [length if name == LENGTHENED else rates[_RATES[name]] for name in self.names]
-        )
+            section[(..., *place)] = values[..., self._variables.index(name)]
+        centre, a_x, a_y = np.moveaxis(section, -2, 0)
+        across = (a_x, a_y) if self._uniform.sideways else None
+        length, rates, _ = centre_line(spin, stretch, centre, across)
+        lines = [length if n == LENGTHENED else rates[..., _RATES[n]] for n in self.names]
+        return self._uniform.length * np.stack(lines, axis=-1)
 
     def _gradient(self, values: Floats) -> Floats:
-        """∂G/∂(variables), (n, v), by complex steps; of a bend in its plane by hand."""
+        """∂G/∂(variables), (..., n, v), by complex steps; of a bend in its plane by hand."""
         if self._plane:
-            k, stretch, y = values
-            sign = math.copysign(1.0, stretch + k * y)
-            rows = {LENGTHENED: [sign * y, sign, sign * k], BEND: [1.0, 0.0, 0.0]}
-            return self._uniform.length * np.array([rows[name] for name in self.names])
-        columns = []
-        for number in range(len(values)):
-            moved = values.astype(complex)
-            moved[number] += 1j * _PUSH
-            columns.append(self._line(moved).imag / _PUSH)
-        return np.array(columns).T
+            k, stretch, y = np.moveaxis(values, -1, 0)
+            sign, none = np.copysign(1.0, stretch + k * y), np.zeros_like(k)
+            rows = {LENGTHENED: [sign * y, sign, sign * k], BEND: [none + 1.0, none, none]}
+            found = [np.stack(rows[name], axis=-1) for name in self.names]
+            return self._uniform.length * np.stack(found, axis=-2)
+        moved = values[..., None, :] + 1j * _PUSH * np.eye(values.shape[-1])
+        slopes: Floats = self._line(moved).imag / _PUSH
+        return np.swapaxes(slopes, -1, -2)
 
     def _at(self) -> tuple[float, ...]:
         """Values of all variables; what was found at others is forgotten."""
@@ -165,13 +164,10 @@ class Held(Linked):
         """∂²G/∂(variables)² at the present state, (n, v, v)."""
         values = np.array(self._at())
         if self._second_known is None:
-            second = np.zeros((len(self.names), len(values), len(values)))
-            for number, step in enumerate(self._steps):
-                ahead, behind = values.copy(), values.copy()
-                ahead[number] += step
-                behind[number] -= step
-                change = self._gradient(ahead) - self._gradient(behind)
-                second[:, :, number] = change / (2 * step)
+            moves = np.diag(self._steps)
+            # all at once: numpy's calls cost more than what they do
+            change = self._gradient(values + moves) - self._gradient(values - moves)
+            second = np.moveaxis(change / (2 * self._steps[:, None, None]), 0, -1)
             self._second_known = (second + second.transpose(0, 2, 1)) / 2
         return self._second_known
 

@@ -108,6 +108,10 @@ class TipLoadEffect(Effect):
             terms.append(TipMoment(self.moment[0]))
         return Built(tuple(terms), (ramp,))
 
+    def at_rods_tip(self, _weight: tuple[float, float, float] | None) -> tuple[float, float]:
+        """Both."""
+        return math.hypot(*self.force), math.hypot(*self.moment)
+
     def of_measured(self) -> float:
         """Of 0.2 N and 50 N mm that keep their directions."""
         if self.follows:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -61,6 +62,10 @@ class TipMassEffect(Effect):
         assert site.weight is not None, "checked when the case was read"
         x, y, z = (self.mass * acceleration for acceleration in site.weight)
         return Built((TipWeight((x, y, z)),))
+
+    def at_rods_tip(self, weight: tuple[float, float, float] | None) -> tuple[float, float]:
+        """What it weighs."""
+        return self.mass * math.hypot(*(weight or (0.0,))), 0.0
 
     def of_measured(self) -> float:
         """Of 20 g."""

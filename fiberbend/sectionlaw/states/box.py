@@ -17,6 +17,8 @@ MARGIN = 0.25
 """Beyond the strains of the free states, in parts of them, and beyond the loads."""
 BENT = 0.025
 """Least strain by bending or twist on the outside."""
+_FREE_BENT = 0.005
+"""The same where nothing holds the section."""
 PRESSURE_MARGIN = 0.05
 SOFT = 0.5
 """Bending stiffness over that at rest below which a section without pressure is left alone: it is
@@ -31,8 +33,8 @@ _ACROSS, _UP = (0.0, 0.25, 0.5, 0.75, 1.0), (0.0, 0.1, 0.4, 1.0)
 """Places of the walk, in parts of the strains and of the pressure."""
 _DEGREE = 3
 """Of λ₀."""
-_LEAST_PULL, _PULL = 0.005, 0.015
-"""Least half widths of e, without pressure and at the greatest."""
+_LEAST_PULL, _PULL, _FREE_PULL = 0.005, 0.015, 0.001
+"""Least half widths of e, without pressure and at the greatest, and where nothing holds it."""
 _FITTED = 1.3
 """Times what λ₀ misses at the places of the walk, for what it misses between."""
 
@@ -107,15 +109,13 @@ def box_of(
             for number in range(1, len(strains))
         ]
     )
-    rise = sign * _rise(ends, free[:, 1:], pressures, part)
+    rise = sign * _rise(ends, free[:, 1:], pressures, part if reach.held else None)
     places = _places(ends, rise, high)
     known = _walk(held, places)
     y = np.array([state.at[1:] for state in known])
     slack = np.array([state.slopes[0] / state.second[0, 0] for state in known])
     stretches = np.array([state.at[0] for state in known]) - slack
-    thrust = reach.force + pressures.max() * -min(state.slopes[-1] for state in known)
-    stiff = float(np.median([state.second[0, 0] for state in known]))
-    pull = (max(_LEAST_PULL, reach.force / stiff), max(_PULL, thrust / stiff))
+    pull = _pulls(reach, known, float(pressures.max()))
     share = y[:, -1] / high
     weights = 1.0 / (pull[0] + share * (pull[1] - pull[0]))
     unpulled = fit(y, stretches, weights, _DEGREE, 1.0)
@@ -135,11 +135,28 @@ def box_of(
     return Box(chart, (min(least, high), max(least, high)), tuple(known))
 
 
+def _pulls(reach: Reach, known: list[HeldState], pressure: float) -> tuple[float, float]:
+    """Half widths of e, without pressure and at the greatest.
+
+    What is held bears the thrust of its chamber. What is not bears its loads alone, at its softest:
+    along a strip of fabric a section is fifty times as stiff as where that is slack, and a range of
+    a hundredth would hide the kink between the two in one interval.
+    """
+    stiffnesses = [float(state.second[0, 0]) for state in known]
+    if not reach.held:
+        free = max(_FREE_PULL, reach.force / min(stiffnesses))
+        return free, free
+    thrust = reach.force + pressure * -min(float(state.slopes[-1]) for state in known)
+    stiff = float(np.median(stiffnesses))
+    return max(_LEAST_PULL, reach.force / stiff), max(_PULL, thrust / stiff)
+
+
 def _end(reach: Reach, held: Held, number: int, sign: float, part: float, free: Floats) -> float:
     """How far a strain goes without pressure: as far as loads take it, or the section bears it."""
     rest = held.rest
     stiff = _own(rest, number)
-    least = max(MARGIN * float(np.abs(free).max()), BENT / reach.height)
+    bent = BENT if reach.held else _FREE_BENT
+    least = max(MARGIN * float(np.abs(free).max()), bent / reach.height)
     load = (1 + MARGIN) * reach.moment
     most = max(least, FURTHEST[min(held.rest.at.size - 3, 1)] / reach.height)
     step = min(max(least, load / stiff), most) / _STEPS
@@ -159,15 +176,17 @@ def _end(reach: Reach, held: Held, number: int, sign: float, part: float, free: 
     return sign * part * reached
 
 
-def _rise(ends: Floats, free: Floats, pressures: Floats, part: float) -> Floats:
+def _rise(ends: Floats, free: Floats, pressures: Floats, part: float | None) -> Floats:
     """How the ends of the strains but the stretch move with a pressure's size, (2, r), rad/mm/MPa.
 
     At a pressure they are as far from the free state as they are from rest without, and include
-    what is kept straight, with a margin.
+    what is kept straight, with a part of the margin; None: nothing keeps it straight.
     """
-    margin = part * MARGIN * np.abs(free).max(axis=0)
-    low = np.minimum(free + ends[:, 0], -margin) - ends[:, 0]
-    high = np.maximum(free + ends[:, 1], margin) - ends[:, 1]
+    low = high = free
+    if part is not None:
+        margin = part * MARGIN * np.abs(free).max(axis=0)
+        low = np.minimum(free + ends[:, 0], -margin) - ends[:, 0]
+        high = np.maximum(free + ends[:, 1], margin) - ends[:, 1]
     by = pressures[:, None]
     rise: Floats = np.array([(low / by).min(axis=0), (high / by).max(axis=0)])
     return rise
