@@ -277,6 +277,10 @@ class Effect(Spec):
         """What stands for it in the section that is solved beside a case; None: left out."""
         return None
 
+    def spread(self) -> Effect:
+        """The same without what waits for a calibration, or is made by one."""
+        return self
+
     def uncalibrated(self) -> bool:
         """Whether it waits for numbers that the cell of its section gives."""
         return False
@@ -361,6 +365,10 @@ class Effect(Spec):
         if self.beside() is None:
             raise NotImplementedError(f"effect {self.name} is not known to act on a rod")
         return OnRod()
+
+    def shears(self) -> bool:
+        """Whether forces across a rod may come of it: of all but what its sections have."""
+        return self.inflation() is None and self.beside() is None
 
     def of_measured(self) -> float:
         """Load over the greatest with which a rod was put beside a body; those at a tip add up."""

@@ -37,8 +37,9 @@ class Rod(SlenderModel):
     step_s = 0.02
 
     def unknowns(self, case: Case) -> int:
-        """A stretch and a curvature each; out of its plane a side curvature and a twist too."""
-        each = 4 if any(effect.mirror_breaker() for effect in case.acting) else 2
+        """A stretch and a curvature each, out of its plane twice as many; and where it shears."""
+        planes = 2 if any(effect.mirror_breaker() for effect in case.acting) else 1
+        each = planes * (3 if any(effect.shears() for effect in case.effects) else 2)
         return each * (self.pieces + 2 * self.cap_pieces)
 
     def law_seconds(self, case: Case) -> float:

@@ -19,6 +19,7 @@ from rod.inertia import SectionMass
 from rod.law import Law, Zones
 from rod.layout import AT_REST, STRAINS, Layout
 from rod.quartic import Quartic
+from rod.sheared import Sheared
 
 ERROR = 1e-3
 """Of the table of a section, as `fiberbend.sectionlaw.table.law_of` has it."""
@@ -26,6 +27,7 @@ ERROR = 1e-3
 
 PLANE = ("stretch", "curvature")
 SPACE = (*PLANE, "side_curvature", "twist")
+_SHEARS = {PLANE: ("shear_y",), SPACE: ("shear_x", "shear_y")}
 _FEW = 6
 """Pieces that a zone has at least."""
 _ROUND, _RADIUS = 32, 0.1
@@ -57,10 +59,19 @@ class SectionLaw:
 
 
 def strains_of(case: Case) -> tuple[str, ...]:
-    """Strains of a rod: those of a plane where its sections and all that acts leave it there."""
+    """Strains of a rod: those of a plane where its sections and all that acts leave it there.
+
+    It shears where anything acts on it but what bends all its sections alike.
+    """
     zones = zone_cases(case)
     across = any(effect.mirror_breaker() for effect in case.acting)
-    return SPACE if across or not all(wound(zone).plane for zone in zones) else PLANE
+    own = SPACE if across or not all(wound(zone).plane for zone in zones) else PLANE
+    return (*_SHEARS[own], *own) if any(effect.shears() for effect in case.effects) else own
+
+
+def without_shear(strains: tuple[str, ...]) -> tuple[str, ...]:
+    """Strains of which the law of a section is."""
+    return tuple(name for name in strains if name in SPACE)
 
 
 def pieces_of(case: Case, pieces: int) -> tuple[int, ...]:
@@ -91,17 +102,24 @@ def section_law(
     Raises:
         fiberbend.schema.problems.CaseError: a section has no law that reaches as far as the case.
     """
+    from fiberbend.beam.kept import beam_of, shear_form
     from fiberbend.sectionlaw.range import loads_of
     from fiberbend.sectionlaw.store import Store
     from fiberbend.sectionlaw.table import law_of
     from fiberbend.slender.beside import section_case
 
     store, loads = Store(), loads_of(case)
+    plain, zones = without_shear(strains), zone_cases(case)
     made = [
-        law_of(section_case(zone), strains, ERROR, store=store, tell=tell, loads=loads)
-        for zone in zone_cases(case)
+        law_of(section_case(zone), plain, ERROR, store=store, tell=tell, loads=loads)
+        for zone in zones
     ]
-    laws = [each.law for each in made]
+    laws: list[Law] = [each.law for each in made]
+    if plain != strains:
+        columns = tuple(strains.index(name) for name in plain)
+        rest = AT_REST[[STRAINS.index(name) for name in strains]]
+        forms = [shear_form(beam_of(section_case(zone)).chamber, strains) for zone in zones]
+        laws = [Sheared(law, columns, form, rest) for law, form in zip(laws, forms, strict=True)]
     pieces = np.repeat(np.arange(len(laws)), counts or 1).tolist()
     known = [each.checked for each in made]
     return SectionLaw(
@@ -157,8 +175,8 @@ def cap_law(case: Case, section: Section, strains: tuple[str, ...]) -> Quartic:
         strains: of the rod.
     """
     levers = {"stretch": (0.0, 0.0, 1.0), "curvature": (0.0, 1.0, 0.0)}
-    levers |= {"side_curvature": (-1.0, 0.0, 0.0), "twist": (0.0, 0.0, 0.0)}
-    by = np.array([levers[name] for name in strains])
+    levers |= {"side_curvature": (-1.0, 0.0, 0.0)}
+    by = np.array([levers.get(name, (0.0, 0.0, 0.0)) for name in strains])
     materials = convert.site(case).materials
     slopes = {name: pulled(each) for name, each in materials.items()}
     second, third, fourth = (
@@ -169,6 +187,12 @@ def cap_law(case: Case, section: Section, strains: tuple[str, ...]) -> Quartic:
     if "twist" in strains:
         moduli = {name: each.initial_shear_modulus for name, each in materials.items()}
         stiffness[strains.index("twist"), strains.index("twist")] = torsion(section.mesh, moduli)
+    if without_shear(strains) != strains:
+        from fiberbend.beam.kept import beam_of, shear_form
+        from fiberbend.slender.beside import section_case
+
+        beam = beam_of(section_case(zone_cases(case)[0]))
+        stiffness = stiffness + shear_form(beam.cap, strains)
     return Quartic(
         stiffness,
         np.einsum("ai,bj,ck,ijk->abc", by, by, by, third[2]),
