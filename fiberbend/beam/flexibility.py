@@ -158,7 +158,7 @@ class _Sums:
             return out
 
         e, c, m = square(u, u), square(u, rate), square(rate, rate)
-        r, l = tall(u), tall(rate)
+        r, grown_by = tall(u), tall(rate)
         a = self._blocks[:, own, own].sum(axis=0)
         used = np.unique(self._dofs)
         rigid = self._rigid()[used]
@@ -180,7 +180,7 @@ class _Sums:
 
         rates, grown = solved(np.zeros((count, _NAMES)), _GROWTH)
         across = c[used][:, used]
-        m_, l_ = m[used][:, used], l[used]
+        m_, l_ = m[used][:, used], grown_by[used]
         warping, strains = solved(
             (across.T - across) @ rates + l_ @ grown, np.eye(_NAMES) - l_.T @ rates
         )

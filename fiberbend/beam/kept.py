@@ -6,13 +6,14 @@ import dataclasses
 import functools
 import hashlib
 import json
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from fiberbend.beam.flexibility import Threads, flexibility
+from fiberbend.beam.form import shear_form
+from fiberbend.beam.stressed import shear_stiffness
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.section_beside import as_section
@@ -25,11 +26,16 @@ from geometry.sections.size import MeshSize
 from geometry.sections.table import section_layout
 from geometry.winding.segments import EmbeddedFibers
 from rod.functions import Floats
-from rod.layout import STRAINS
+from rod.law import Law
+from rod.layout import AT_REST, STRAINS
+from rod.sheared import Sheared
 
 _LENGTH = 4.0
 """Of a chamber in half widths, whatever its own: nothing hangs on it."""
-_PRESSURE = 1e-3
+STATES = 3
+"""Pressures, of equal distances, through which and zero the stiffness is a polynomial."""
+_ALIKE = 1e-3
+"""Part by which a section may shear otherwise to the side and still be alike in all directions."""
 _FINE = 1
 """Elements through each part: two move the baseline's shear stiffness by 0.6 %."""
 
@@ -42,29 +48,6 @@ class Threaded(Protocol):
     stiffness: float | Floats
 
 
-def shear_form(flexibility: Floats, strains: Sequence[str]) -> Floats:
-    """Q of `rod.sheared.Sheared`: what shear costs beside the other strains, (m, m).
-
-    Of all energy σ·F σ/2 it is the part that a law of the other strains ε at V = 0 has not:
-    ½ (γ − B ε)·C (γ − B ε), B = F_γε F_εε⁻¹ and C = (F_γγ − B F_εγ)⁻¹.
-
-    Args:
-        flexibility: F of a section, (6, 6).
-        strains: of the rod, out of `rod.layout.STRAINS`.
-    """
-    free = [name for name in STRAINS[:2] if name in strains]
-    others = [name for name in strains if name not in free]
-    first, second = ([STRAINS.index(name) for name in names] for names in (free, others))
-    mixed = flexibility[np.ix_(first, second)]
-    carried = np.linalg.solve(flexibility[np.ix_(second, second)], mixed.T).T
-    stiffness = np.linalg.inv(flexibility[np.ix_(first, first)] - carried @ mixed.T)
-    turn = np.zeros((len(free), len(strains)))
-    turn[:, [strains.index(name) for name in free]] = np.eye(len(free))
-    turn[:, [strains.index(name) for name in others]] = -carried
-    out: Floats = turn.T @ stiffness @ turn
-    return (out + out.T) / 2
-
-
 @dataclasses.dataclass(frozen=True)
 class Beam:
     """Strains by forces at rest, about the line of centroids, in the order of `rod.layout.STRAINS`.
@@ -73,14 +56,45 @@ class Beam:
         chamber: of the section between the caps, its winding spread, (6, 6); 1/N, 1/(N mm) and
             1/(N mm²).
         cap: of a solid cap, (6, 6).
+        stiffening: what is added to the stiffness against shear in the plane of bending by power
+            of P in MPa from the first on, (d,), N.
     """
 
     chamber: Floats
     cap: Floats
+    stiffening: Floats
+
+    @property
+    def alike(self) -> bool:
+        """Whether it shears alike in all directions."""
+        own = self.chamber
+        return bool(abs(own[0, 0] - own[1, 1]) < _ALIKE * own[1, 1])
+
+    def beside(self, law: Law, strains: tuple[str, ...]) -> Sheared:
+        """The law of the chamber with shear.
+
+        Args:
+            law: of the other strains.
+            strains: of the rod, shears among them.
+        """
+        form = shear_form(self.chamber, strains)
+        across = STRAINS[:2] if self.alike else STRAINS[1:2]
+        places = [strains.index(name) for name in across if name in strains]
+        forms = np.zeros((1 + len(self.stiffening), *form.shape))
+        forms[0] = form
+        for place in places:
+            forms[1:, place, place] = self.stiffening
+        return Sheared(
+            law,
+            tuple(place for place, name in enumerate(strains) if name not in STRAINS[:2]),
+            forms,
+            AT_REST[[STRAINS.index(name) for name in strains]],
+        )
 
     def packed(self) -> bytes:
         """As a JSON file."""
-        return json.dumps({"chamber": self.chamber.tolist(), "cap": self.cap.tolist()}).encode()
+        content = {name: value.tolist() for name, value in dataclasses.asdict(self).items()}
+        return json.dumps(content).encode()
 
 
 def unpacked(content: bytes) -> Beam:
@@ -91,12 +105,15 @@ def unpacked(content: bytes) -> Beam:
     """
     try:
         known = json.loads(content)
-        beam = Beam(np.array(known["chamber"], dtype=float), np.array(known["cap"], dtype=float))
+        parts = {field.name: known[field.name] for field in dataclasses.fields(Beam)}
+        beam = Beam(**{name: np.array(value, dtype=float) for name, value in parts.items()})
     except (KeyError, TypeError, ValueError) as error:
         raise ValueError(f"no beam: {error}") from None
     for each in (beam.chamber, beam.cap):
         if each.shape != (6, 6) or not np.isfinite(each).all() or np.linalg.eigvalsh(each)[0] <= 0:
             raise ValueError("no beam: flexibilities of six strains expected")
+    if beam.stiffening.shape != (STATES,) or not np.isfinite(beam.stiffening).all():
+        raise ValueError(f"no beam: {STATES} numbers by the pressure expected")
     return beam
 
 
@@ -105,31 +122,33 @@ def kept(path: Path | None = None) -> Kept:
     return Kept("beams", "flexibilities of sections", ".json", path)
 
 
-def beam_of(case: Case, store: Kept | None = None) -> Beam:
+def beam_of(case: Case, greatest: float, store: Kept | None = None) -> Beam:
     """Section and cap of an actuator as beams, from the store or anew.
 
     Args:
         case: a checked case without zones.
+        greatest: pressure up to which, MPa.
         store: where they are kept; that of the user unless given.
 
     Raises:
-        fiberbend.schema.problems.CaseError: no section stands beside the case.
+        fiberbend.schema.problems.CaseError: no section stands beside the case, or it has no state
+            under one of the pressures.
     """
     width = convert.dimensions(case.actuator).outline_half_width
-    beside = as_section(case, inflate(to=_PRESSURE))
+    beside = as_section(case, inflate(to=greatest))
     actuator = case.actuator.model_copy(update={"length": _LENGTH * width})
     section = beside.model_copy(update={"actuator": actuator})
     store = kept() if store is None else store
-    own = digest_of(section, ("beam", _code()), 0.0, None, (0.0, 0.0))
+    own = digest_of(section, ("beam", _code()), greatest, None, (0.0, 0.0))
     with store.alone(own):
         known = store.read(own, unpacked)
         if known is None:
-            known = _solved(section)
+            known = _solved(section, greatest)
             store.write(own, known.packed())
     return known
 
 
-def _solved(section: Case) -> Beam:
+def _solved(section: Case, greatest: float) -> Beam:
     actuator, site = convert.dimensions(section.actuator), convert.site(section)
     layout = section_layout(actuator, MeshSize(section=_FINE, half=False))
     hollow, materials = section_mesh(layout.without_fill()), dict(site.materials)
@@ -140,9 +159,13 @@ def _solved(section: Case) -> Beam:
             built = effect.spread().build(site, hollow, convert.requests(section))
             terms = [term for term in built.terms if isinstance(term, Threaded)]
             threads += [Threads(term.segments, term.stiffness) for term in terms]
+    pressures = greatest * (1.0 + np.arange(STATES)) / STATES
+    rest, *stressed = shear_stiffness(section, pressures.tolist())
+    powers = pressures[:, None] ** (1.0 + np.arange(STATES))
     return Beam(
         flexibility(hollow, height, materials, threads),
         flexibility(section_mesh(layout), height, materials),
+        np.linalg.solve(powers, np.array(stressed) - rest),
     )
 
 

@@ -109,7 +109,7 @@ def slender(case: Case, tell: Callable[[str], None] | None = None) -> Slender:
     )
     made = section_law(case, strains, counts, tell)
     chamber = slice(CAP_PIECES, CAP_PIECES + sum(counts))
-    law = along(case, made, cap_law(case, section, strains), layout, chamber)
+    law = along(case, made, cap_law(case, section, strains, made.cap), layout, chamber)
     found = [effect.on_rod(site) for effect in case.effects]
     terms = [term for each in found for term in each.terms]
     inertia = sum((e.inertia for e in found if e.inertia is not None), site.inertia)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from fiberbend.beam.form import shear_form
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import wound
@@ -19,7 +20,6 @@ from rod.inertia import SectionMass
 from rod.law import Law, Zones
 from rod.layout import AT_REST, STRAINS, Layout
 from rod.quartic import Quartic
-from rod.sheared import Sheared
 
 ERROR = 1e-3
 """Of the table of a section, as `fiberbend.sectionlaw.table.law_of` has it."""
@@ -47,6 +47,7 @@ class SectionLaw:
         seconds: that took, of processor time, whenever that was.
         error: greatest of force, moment and chamber in parts of their range.
         remarks: what casts doubt on it, a line each.
+        cap: a cap's flexibility of six strains, (6, 6); None: the rod does not shear.
     """
 
     law: Law
@@ -56,6 +57,7 @@ class SectionLaw:
     seconds: float
     error: float
     remarks: tuple[str, ...]
+    cap: Floats | None = None
 
 
 def strains_of(case: Case) -> tuple[str, ...]:
@@ -102,7 +104,7 @@ def section_law(
     Raises:
         fiberbend.schema.problems.CaseError: a section has no law that reaches as far as the case.
     """
-    from fiberbend.beam.kept import beam_of, shear_form
+    from fiberbend.beam.kept import beam_of
     from fiberbend.sectionlaw.range import loads_of
     from fiberbend.sectionlaw.store import Store
     from fiberbend.sectionlaw.table import law_of
@@ -115,21 +117,23 @@ def section_law(
         for zone in zones
     ]
     laws: list[Law] = [each.law for each in made]
+    cap = None
+    free = np.array([(p, state.stretch, state.curvature) for p, state in made[0].free])
     if plain != strains:
-        columns = tuple(strains.index(name) for name in plain)
-        rest = AT_REST[[STRAINS.index(name) for name in strains]]
-        forms = [shear_form(beam_of(section_case(zone)).chamber, strains) for zone in zones]
-        laws = [Sheared(law, columns, form, rest) for law, form in zip(laws, forms, strict=True)]
+        beams = [beam_of(section_case(zone), float(free[:, 0].max())) for zone in zones]
+        cap = beams[0].cap
+        laws = [beam.beside(law, strains) for beam, law in zip(beams, laws, strict=True)]
     pieces = np.repeat(np.arange(len(laws)), counts or 1).tolist()
     known = [each.checked for each in made]
     return SectionLaw(
         law=laws[0] if len(laws) == 1 else Zones(laws, pieces),
-        free=np.array([(p, state.stretch, state.curvature) for p, state in made[0].free]),
+        free=free,
         model=made[0].model,
         states=sum(each.solved for each in made),
         seconds=sum(each.seconds for each in made),
         error=max(max(each.force, each.moment, each.area) for each in known),
         remarks=tuple(dict.fromkeys([r for each in made for r in each.remarks] + store.remarks)),
+        cap=cap,
     )
 
 
@@ -161,7 +165,9 @@ def along(case: Case, made: SectionLaw, cap: Quartic, layout: Layout, chamber: s
     return ends.offset(Zones((root, made.law, cap), pieces), layout, chamber)
 
 
-def cap_law(case: Case, section: Section, strains: tuple[str, ...]) -> Quartic:
+def cap_law(
+    case: Case, section: Section, strains: tuple[str, ...], flexible: Floats | None = None
+) -> Quartic:
     """The law of a solid cap: each material along the axis as in a test of tension.
 
     A line at (x, y) from the line of centroids stretches by λ + k_x y − k_y x; the materials side
@@ -173,6 +179,7 @@ def cap_law(case: Case, section: Section, strains: tuple[str, ...]) -> Quartic:
         case: the case.
         section: its moments.
         strains: of the rod.
+        flexible: a cap's flexibility of six strains, where the rod shears, (6, 6).
     """
     levers = {"stretch": (0.0, 0.0, 1.0), "curvature": (0.0, 1.0, 0.0)}
     levers |= {"side_curvature": (-1.0, 0.0, 0.0)}
@@ -187,12 +194,8 @@ def cap_law(case: Case, section: Section, strains: tuple[str, ...]) -> Quartic:
     if "twist" in strains:
         moduli = {name: each.initial_shear_modulus for name, each in materials.items()}
         stiffness[strains.index("twist"), strains.index("twist")] = torsion(section.mesh, moduli)
-    if without_shear(strains) != strains:
-        from fiberbend.beam.kept import beam_of, shear_form
-        from fiberbend.slender.beside import section_case
-
-        beam = beam_of(section_case(zone_cases(case)[0]))
-        stiffness = stiffness + shear_form(beam.cap, strains)
+    if flexible is not None:
+        stiffness = stiffness + shear_form(flexible, strains)
     return Quartic(
         stiffness,
         np.einsum("ai,bj,ck,ijk->abc", by, by, by, third[2]),
