@@ -13,7 +13,7 @@ import pytest
 from fiberbend.case.case import Case
 from fiberbend.reader.reader import parse_case
 from fiberbend.slender import actuator
-from fiberbend.slender.laws import SectionLaw
+from fiberbend.slender.laws import SectionLaw, strains_of, without_shear
 from rod.functions import Floats
 from rod.law import Law, Linear, Zones
 from rod.layout import Layout
@@ -111,11 +111,12 @@ def without_ends(_case: Case, made: SectionLaw, cap: Law, layout: Layout, chambe
 
 @pytest.fixture
 def by_law(monkeypatch: pytest.MonkeyPatch) -> Callable[[Law], None]:
-    """Puts a law in the place of the table of any section; no pressure turns its ends."""
+    """Puts a law in the place of the table of any section, without shear and without its ends."""
 
     def put(law: Law) -> None:
         made = SectionLaw(law, np.empty((0, 3)), "section", 0, 0.0, 0.0, ())
         monkeypatch.setattr(actuator, "section_law", lambda *_of: made)
         monkeypatch.setattr(actuator, "along", without_ends)
+        monkeypatch.setattr(actuator, "strains_of", lambda case: without_shear(strains_of(case)))
 
     return put
