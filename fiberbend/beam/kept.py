@@ -77,13 +77,29 @@ class Beam:
             law: of the other strains.
             strains: of the rod, shears among them.
         """
-        form = shear_form(self.chamber, strains)
+        return self._sheared(law, strains, self.chamber, 1.0)
+
+    def beside_cap(self, law: Law, strains: tuple[str, ...]) -> Sheared:
+        """The law of a cap with shear; the pressure that it closes in stiffens it in proportion.
+
+        Args:
+            law: of the other strains.
+            strains: of the rod, shears among them.
+        """
+        part = float(self.chamber[1, 1] / self.cap[1, 1])
+        return self._sheared(law, strains, self.cap, part)
+
+    def _sheared(
+        self, law: Law, strains: tuple[str, ...], flexible: Floats, part: float
+    ) -> Sheared:
+        form = shear_form(flexible, strains)
         across = STRAINS[:2] if self.alike else STRAINS[1:2]
-        places = [strains.index(name) for name in across if name in strains]
         forms = np.zeros((1 + len(self.stiffening), *form.shape))
         forms[0] = form
-        for place in places:
-            forms[1:, place, place] = self.stiffening
+        for name in across:
+            if name in strains:
+                place = strains.index(name)
+                forms[1:, place, place] = part * self.stiffening
         return Sheared(
             law,
             tuple(place for place, name in enumerate(strains) if name not in STRAINS[:2]),

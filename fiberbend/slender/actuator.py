@@ -20,6 +20,7 @@ from fiberbend.slender.laws import (
     pieces_of,
     section_law,
     strains_of,
+    without_shear,
 )
 from fiberbend.slender.moments import section_of
 from rod.contact.touch import Touch
@@ -109,7 +110,7 @@ def slender(case: Case, tell: Callable[[str], None] | None = None) -> Slender:
     )
     made = section_law(case, strains, counts, tell)
     chamber = slice(CAP_PIECES, CAP_PIECES + sum(counts))
-    law = along(case, made, cap_law(case, section, strains, made.cap), layout, chamber)
+    law = along(case, made, cap_law(case, section, without_shear(strains)), layout, chamber)
     found = [effect.on_rod(site) for effect in case.effects]
     terms = [term for each in found for term in each.terms]
     inertia = sum((e.inertia for e in found if e.inertia is not None), site.inertia)

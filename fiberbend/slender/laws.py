@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fiberbend.beam.form import shear_form
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import wound
@@ -20,6 +20,9 @@ from rod.inertia import SectionMass
 from rod.law import Law, Zones
 from rod.layout import AT_REST, STRAINS, Layout
 from rod.quartic import Quartic
+
+if TYPE_CHECKING:
+    from fiberbend.beam.kept import Beam
 
 ERROR = 1e-3
 """Of the table of a section, as `fiberbend.sectionlaw.table.law_of` has it."""
@@ -47,7 +50,7 @@ class SectionLaw:
         seconds: that took, of processor time, whenever that was.
         error: greatest of force, moment and chamber in parts of their range.
         remarks: what casts doubt on it, a line each.
-        cap: a cap's flexibility of six strains, (6, 6); None: the rod does not shear.
+        beam: section and caps with shear; None: the rod does not shear.
     """
 
     law: Law
@@ -57,7 +60,7 @@ class SectionLaw:
     seconds: float
     error: float
     remarks: tuple[str, ...]
-    cap: Floats | None = None
+    beam: Beam | None = None
 
 
 def strains_of(case: Case) -> tuple[str, ...]:
@@ -117,12 +120,11 @@ def section_law(
         for zone in zones
     ]
     laws: list[Law] = [each.law for each in made]
-    cap = None
-    free = np.array([(p, state.stretch, state.curvature) for p, state in made[0].free])
+    beam, free = None, np.array([(p, state.stretch, state.curvature) for p, state in made[0].free])
     if plain != strains:
         beams = [beam_of(section_case(zone), float(free[:, 0].max())) for zone in zones]
-        cap = beams[0].cap
-        laws = [beam.beside(law, strains) for beam, law in zip(beams, laws, strict=True)]
+        beam = beams[0]
+        laws = [each.beside(law, strains) for each, law in zip(beams, laws, strict=True)]
     pieces = np.repeat(np.arange(len(laws)), counts or 1).tolist()
     known = [each.checked for each in made]
     return SectionLaw(
@@ -133,7 +135,7 @@ def section_law(
         seconds=sum(each.seconds for each in made),
         error=max(max(each.force, each.moment, each.area) for each in known),
         remarks=tuple(dict.fromkeys([r for each in made for r in each.remarks] + store.remarks)),
-        cap=cap,
+        beam=beam,
     )
 
 
@@ -157,17 +159,17 @@ def along(case: Case, made: SectionLaw, cap: Quartic, layout: Layout, chamber: s
     ends = ends_of(section_case(zones[0]), greatest)
     if len(zones) > 1:
         ends = ends.to_tip(ends_of(section_case(zones[-1]), greatest))
-    count, place = len(layout.lengths), layout.strains.index("curvature")
+    count, place = len(layout.lengths), without_shear(layout.strains).index("curvature")
     beam = float(layout.lengths[: chamber.start].sum()) * np.linalg.inv(cap.stiffness)[place, place]
-    root = cap.times(beam / ends.flexibility)
+    caps: list[Law] = [cap.times(beam / ends.flexibility), cap]
+    if made.beam is not None:
+        caps = [made.beam.beside_cap(law, layout.strains) for law in caps]
     borders = (0, chamber.start, chamber.stop, count)
     pieces = np.repeat(np.arange(3), np.diff(borders)).tolist()
-    return ends.offset(Zones((root, made.law, cap), pieces), layout, chamber)
+    return ends.offset(Zones((caps[0], made.law, caps[1]), pieces), layout, chamber)
 
 
-def cap_law(
-    case: Case, section: Section, strains: tuple[str, ...], flexible: Floats | None = None
-) -> Quartic:
+def cap_law(case: Case, section: Section, strains: tuple[str, ...]) -> Quartic:
     """The law of a solid cap: each material along the axis as in a test of tension.
 
     A line at (x, y) from the line of centroids stretches by λ + k_x y − k_y x; the materials side
@@ -178,8 +180,7 @@ def cap_law(
     Args:
         case: the case.
         section: its moments.
-        strains: of the rod.
-        flexible: a cap's flexibility of six strains, where the rod shears, (6, 6).
+        strains: of the rod, without shear.
     """
     levers = {"stretch": (0.0, 0.0, 1.0), "curvature": (0.0, 1.0, 0.0)}
     levers |= {"side_curvature": (-1.0, 0.0, 0.0)}
@@ -194,8 +195,6 @@ def cap_law(
     if "twist" in strains:
         moduli = {name: each.initial_shear_modulus for name, each in materials.items()}
         stiffness[strains.index("twist"), strains.index("twist")] = torsion(section.mesh, moduli)
-    if flexible is not None:
-        stiffness = stiffness + shear_form(flexible, strains)
     return Quartic(
         stiffness,
         np.einsum("ai,bj,ck,ijk->abc", by, by, by, third[2]),
