@@ -80,18 +80,21 @@ class Slender:
         return place
 
 
-def slender(case: Case, tell: Callable[[str], None] | None = None) -> Slender:
+def slender(
+    case: Case, tell: Callable[[str], None] | None = None, touched: bool = False
+) -> Slender:
     """The rod of a case of model rod.
 
     Args:
         case: the case.
         tell: takes lines of progress while the law of its section is made.
+        touched: something acts on it that is not in the case.
 
     Raises:
         fiberbend.schema.problems.CaseError: its section has no law as far as the case goes.
     """
     actuator, section = convert.dimensions(case.actuator), section_of(case)
-    cap, strains = actuator.cap, strains_of(case)
+    cap, strains = actuator.cap, strains_of(case, touched)
     counts = pieces_of(case, PIECES)
     each = [cap, *lengths(case), cap] / np.array([CAP_PIECES, *counts, CAP_PIECES])
     pieces = np.repeat(each, [CAP_PIECES, *counts, CAP_PIECES])

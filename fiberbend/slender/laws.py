@@ -63,15 +63,20 @@ class SectionLaw:
     beam: Beam | None = None
 
 
-def strains_of(case: Case) -> tuple[str, ...]:
+def strains_of(case: Case, touched: bool = False) -> tuple[str, ...]:
     """Strains of a rod: those of a plane where its sections and all that acts leave it there.
 
     It shears where anything acts on it but what bends all its sections alike.
+
+    Args:
+        case: of model rod.
+        touched: something acts on it that is not in the case.
     """
     zones = zone_cases(case)
     across = any(effect.mirror_breaker() for effect in case.acting)
+    sheared = touched or any(effect.shears() for effect in case.effects)
     own = SPACE if across or not all(wound(zone).plane for zone in zones) else PLANE
-    return (*_SHEARS[own], *own) if any(effect.shears() for effect in case.effects) else own
+    return (*_SHEARS[own], *own) if sheared else own
 
 
 def without_shear(strains: tuple[str, ...]) -> tuple[str, ...]:

@@ -82,7 +82,7 @@ def test_derivatives_are_those_of_differences(pressure: float) -> None:
 def test_it_is_even_in_shear_and_twist() -> None:
     own = law(50.0, STRAINS, lever=3.0)
     at = np.array([[0.1, -0.2, 1.05, 0.01, 0.02, 0.03]])
-    turned = at * [-1, -1, 1, 1, 1, -1]
+    turned = at * np.array([-1.0, -1.0, 1.0, 1.0, 1.0, -1.0])
     assert own.value(at, 0.1) == pytest.approx(own.value(turned, 0.1), rel=1e-14)
 
 
@@ -123,7 +123,6 @@ def test_a_force_beside_the_centre_of_shear_twists() -> None:
 
 
 def test_without_shear_it_is_kirchhoffs_and_nothing_locks() -> None:
-    slender = {"pieces": 24}
     plain = Rod(
         BAR.layout(24), Linear(np.diag([160.0, BAR.second]), np.array([1.0, 0.0])),
         terms=[TipForce((0.0, -0.2, 0.0))],
@@ -131,7 +130,7 @@ def test_without_shear_it_is_kirchhoffs_and_nothing_locks() -> None:
     exact = solve(plain, plain.layout.at_rest(), ON, 1.0)
     off = []
     for shear in (1e4, 1e6, 1e8):
-        state = bent((0.0, -0.2, 0.0), shear, **slender)
+        state = bent((0.0, -0.2, 0.0), shear, pieces=24)
         off.append(float(np.abs(state.shape.places - exact.shape.places).max()))
         assert state.iterations <= exact.iterations + 2
     # what is left is what shears
