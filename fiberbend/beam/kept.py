@@ -70,6 +70,27 @@ class Beam:
         own = self.chamber
         return bool(abs(own[0, 0] - own[1, 1]) < _ALIKE * own[1, 1])
 
+    @property
+    def centre(self) -> float:
+        """y of the chamber's centre of shear from the line of centroids, mm."""
+        return float(self.chamber[0, 5] / self.chamber[5, 5])
+
+    @property
+    def cap_stiffness(self) -> Floats:
+        """Of a cap against shear along x and y, at rest, (2,), N."""
+        return np.diagonal(shear_form(self.cap, STRAINS))[:2].copy()
+
+    def stiffness(self, pressure: float) -> Floats:
+        """Of the chamber against shear along x and y, (2,), N.
+
+        Args:
+            pressure: MPa.
+        """
+        out = np.diagonal(shear_form(self.chamber, STRAINS))[:2].copy()
+        powers = pressure ** (1.0 + np.arange(len(self.stiffening)))
+        out[0 if self.alike else 1 :] += float(powers @ self.stiffening)
+        return out
+
     def beside(self, law: Law, strains: tuple[str, ...]) -> Sheared:
         """The law of the chamber with shear.
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from fiberbend.beam.kept import beam_of
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.columns import UNIFORM
@@ -47,6 +48,7 @@ def handed(case: Case, densities: Mapping[str, float]) -> Handed:
     heavy = weighed_case(case, densities)
     missing = without_density(heavy)
     mass, cap_mass = (None, None) if missing else masses(heavy, moments)
+    beam = beam_of(alone, float(law.section.pressures[-1]))
     return Handed(
         section=law.section,
         cap=cap_stiffness(case, moments),
@@ -69,6 +71,9 @@ def handed(case: Case, densities: Mapping[str, float]) -> Handed:
             },
             "validity": law.validity,
         },
+        shear=np.array([beam.stiffness(pressure) for pressure in law.section.pressures]),
+        cap_shear=beam.cap_stiffness,
+        shear_centre=beam.centre,
     )
 
 

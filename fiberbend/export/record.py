@@ -33,6 +33,10 @@ _CONVENTIONS = {
         "second derivatives of the energy per length at rest by the strains, at constant pressure, "
         "where no force acts"
     ),
+    "shear": (
+        "stiffness along x and y of sections that move past each other, by the pressure; a force "
+        "along x that does not twist acts at the centre of shear, from the centroids"
+    ),
     "axis": (
         "the same section by a line at x, y from the centroids, on which a force bends it least; "
         "its stretch is that of the centroids + y curvature - x side_curvature"
@@ -62,6 +66,11 @@ def record_of(handed: Handed) -> dict[str, Any]:
         },
         "axis": _axis(axis),
         "cap": {"stiffness_N_mm": _plain(handed.cap), **_cap(handed.cap)},
+        "shear": {
+            "section_N": _plain(handed.shear),
+            "cap_N": _plain(handed.cap_shear),
+            "centre_y_mm": _digits(handed.shear_centre),
+        },
         "mass": _masses(handed),
         "damping": None,
     }

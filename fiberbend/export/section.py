@@ -138,6 +138,9 @@ class Handed:
         cap_length: of each cap, mm.
         outline: outer line of the section, (k, 2), from the centroids, mm.
         about: provenance, law, range and errors, as the file has them.
+        shear: stiffness of the chamber against shear along x and y by the pressure, (n, 2), N.
+        cap_shear: of a cap, (2,), N.
+        shear_centre: y of the centre of shear from the centroids, mm.
     """
 
     section: Section
@@ -149,3 +152,6 @@ class Handed:
     cap_length: float
     outline: Floats
     about: Mapping[str, object]
+    shear: Floats
+    cap_shear: Floats
+    shear_centre: float

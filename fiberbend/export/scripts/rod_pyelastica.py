@@ -27,8 +27,6 @@ import elastica as ea
 import numpy as np
 
 MM, KPA = 1e-3, 1e3
-SHEAR = 0.3
-"""Stiffness against shear in parts of that against stretch: of rubber 5/6 of a third."""
 SPEED = 0.5
 """Time step in parts of that at which the stiffest motion is no longer stable."""
 
@@ -64,11 +62,13 @@ class Rod:
         self._stretch = np.array(axis["rest_stretch"])
         self._axial = np.array(axis["axial_stiffness_N"])
         self._bending = np.array(axis["bending_stiffness_N_mm2"]) * MM**2
+        self._shear = np.array(self.data["shear"]["section_N"])
+        self._cap_shear = np.array(self.data["shear"]["cap_N"])
         self._cap_axial = self.data["cap"]["axial_stiffness_N"]
         self._cap_bending = np.array(self.data["cap"]["bending_stiffness_N_mm2"]) * MM**2
 
-    def at(self, kpa: float) -> tuple[float, np.ndarray, float, np.ndarray]:
-        """Stretch and curvatures at rest, axial and bending stiffness of the chamber's section.
+    def at(self, kpa: float) -> tuple[float, np.ndarray, float, np.ndarray, np.ndarray]:
+        """Stretch and curvatures at rest, axial, bending and shear stiffness of the chamber.
 
         Args:
             kpa: pressure, within the range of rod.json.
@@ -81,20 +81,21 @@ class Rod:
         )
         before = place - 1
         part = (kpa - self.pressures[before]) / (self.pressures[place] - self.pressures[before])
-        tables = (self._stretch, self._curvatures, self._axial, self._bending)
-        stretch, curvatures, axial, bending = (
+        tables = (self._stretch, self._curvatures, self._axial, self._bending, self._shear)
+        stretch, curvatures, axial, bending, shear = (
             (1 - part) * table[before] + part * table[place] for table in tables
         )
-        return float(stretch), curvatures, float(axial), bending
+        return float(stretch), curvatures, float(axial), bending, shear
 
     def put(self, rod: ea.CosseratRod, kpa: float) -> None:
         """Write rest strains and stiffness at a pressure into a rod."""
-        stretch, curvatures, axial, bending = self.at(kpa)
+        stretch, curvatures, axial, bending, shear = self.at(kpa)
         inside = self.in_chamber
         rest = np.where(inside, stretch, 1.0)
         rod.rest_sigma[2] = rest - 1.0
         along = rest * np.where(inside, axial, self._cap_axial)
-        rod.shear_matrix[0, 0] = rod.shear_matrix[1, 1] = SHEAR * along
+        for way, (own_shear, cap_shear) in enumerate(zip(shear, self._cap_shear, strict=True)):
+            rod.shear_matrix[way, way] = rest * np.where(inside, own_shear, cap_shear)
         rod.shear_matrix[2, 2] = along
         # a node turns by what bends in the halves beside it; the ends have no node of their own
         halves = np.array([self.lengths[:-1], self.lengths[1:]]) / 2
@@ -131,9 +132,10 @@ class Rod:
         mass, _, inertia = self.masses()
         axial = np.where(self.in_chamber, self._axial.max(), self._cap_axial)
         bending = np.where(self.in_chamber, self._bending.max(), self._cap_bending.max())
+        sheared = np.where(self.in_chamber, self._shear.max(), self._cap_shear.max())
         own, h = np.linalg.eigvalsh(inertia)[:, 0], self.lengths
         along = 4 * axial / (h * mass)
-        turning = (SHEAR * axial * h + 4 * bending / h) / own
+        turning = (sheared * h + 4 * bending / h) / own
         return SPEED * 2 / float(np.sqrt(max(along.max(), turning.max())))
 
 

@@ -29,8 +29,6 @@ RAMP = 1.0
 """In s."""
 GRAVITY = (0.0, 0.0, 0.0)
 """In the scene's axes, m/s²; the weight of one that lies with its crown up is along -z."""
-SHEAR = 0.3
-"""Stiffness against shear in parts of that against stretch; rod.json has none."""
 RAYLEIGH = 0.02
 """Damping over stiffness, s: an assumption."""
 PLUGINS = [
@@ -75,6 +73,8 @@ class Rod:
         bending = 1 / np.diagonal(compliance, axis1=1, axis2=2)
         self.bending, self.side, self.twist = (float(part) for part in bending.mean(axis=0))
         self.axial = float(np.mean(axis["axial_stiffness_N"]))
+        # one number for both ways: that of the plane of bending
+        self.shear = float(np.mean(np.array(data["shear"]["section_N"])[:, 1]))
 
     def lump(self, mass: float) -> str:
         """A mass on a frame: kg, a volume that nothing reads, and its inertia over the mass, m²."""
@@ -156,7 +156,7 @@ def createScene(root: Any) -> Any:
         EIy=rod.bending,
         EIz=rod.side,
         EA=rod.axial,
-        GA=SHEAR * rod.axial,
+        GA=rod.shear,
         rayleighStiffness=RAYLEIGH,
     )
     frames = base.addChild("frames")
