@@ -366,10 +366,6 @@ class Effect(Spec):
             raise NotImplementedError(f"effect {self.name} is not known to act on a rod")
         return OnRod()
 
-    def shears(self) -> bool:
-        """Whether forces across a rod may come of it: of all but what its sections have."""
-        return self.inflation() is None and self.beside() is None
-
     def of_measured(self) -> float:
         """Load over the greatest with which a rod was put beside a body; those at a tip add up."""
         return math.inf if self.load and self.inflation() is None else 0.0

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from fiberbend.case.case import Case
-from fiberbend.case.symmetry import wound
+from fiberbend.case.symmetry import sheared, wound
 from fiberbend.columns import MIDDLE, OBSTACLES, SOLVED, TIMED
 from fiberbend.columns import ZONES as OF_ZONES
 from fiberbend.effects.blocked_tip import OF_STRIPS
@@ -39,7 +39,7 @@ class Rod(SlenderModel):
     def unknowns(self, case: Case) -> int:
         """A stretch and a curvature each, out of its plane twice as many; and where it shears."""
         planes = 2 if any(effect.mirror_breaker() for effect in case.acting) else 1
-        each = planes * (3 if any(effect.shears() for effect in case.effects) else 2)
+        each = planes * (3 if sheared(case) else 2)
         return each * (self.pieces + 2 * self.cap_pieces)
 
     def law_seconds(self, case: Case) -> float:

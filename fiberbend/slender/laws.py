@@ -10,7 +10,7 @@ import numpy as np
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.case.symmetry import wound
+from fiberbend.case.symmetry import sheared, wound
 from fiberbend.case.zones import lengths, zone_cases
 from fiberbend.slender.moments import Section, weighed
 from fiberbend.slender.torsion import torsion
@@ -74,9 +74,8 @@ def strains_of(case: Case, touched: bool = False) -> tuple[str, ...]:
     """
     zones = zone_cases(case)
     across = any(effect.mirror_breaker() for effect in case.acting)
-    sheared = touched or any(effect.shears() for effect in case.effects)
     own = SPACE if across or not all(wound(zone).plane for zone in zones) else PLANE
-    return (*_SHEARS[own], *own) if sheared else own
+    return (*_SHEARS[own], *own) if touched or sheared(case) else own
 
 
 def without_shear(strains: tuple[str, ...]) -> tuple[str, ...]:
