@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import ctypes
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 from mpi4py import MPI
 from petsc4py import PETSc
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_matrix
 
 Ties = tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]
 """Local dofs that follow others, (n,), and those that they follow, (n,); on one rank only."""
@@ -92,6 +96,17 @@ def stored_values(matrix: PETSc.Mat, count: int) -> npt.NDArray[np.float64]:
     values: npt.NDArray[np.float64] = np.ctypeslib.as_array(array, (count,))
     _petsc.MatSeqSBAIJRestoreArray(handle, ctypes.byref(array))
     return values
+
+
+def whole(matrix: PETSc.Mat) -> csc_matrix:
+    """All of a symmetric matrix of one rank, for what is solved elsewhere; a copy."""
+    from scipy.sparse import csr_matrix, triu
+
+    begin, columns = stored_rows(matrix)
+    values = stored_values(matrix, len(columns)).copy()
+    size = len(begin) - 1
+    upper = csr_matrix((values, columns.copy(), begin.copy()), shape=(size, size))
+    return (upper + triu(upper, 1).T).tocsc()
 
 
 def may_free(item: PETSc.Object) -> bool:

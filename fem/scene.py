@@ -263,8 +263,7 @@ class Scene(OwnCode):
 
     def energies(self) -> dict[str, float]:
         """Π_e of every effect that has a potential, N mm, summed over all ranks."""
-        comm = self.domain.comm
-        result = {}
+        comm, result = self.domain.comm, dict[str, float]()
         for key in self.keys:
             mine = 0.0
             if f"energy {key}" in self._forms:
@@ -352,13 +351,14 @@ class Scene(OwnCode):
         vector = self._loads[name]
         return vector.copy() if constrained else np.where(self.free[: len(vector)], vector, 0.0)
 
-    def assemble_tangent(self, opposite: bool = False) -> PETSc.Mat:
+    def assemble_tangent(self, opposite: bool = False, free: Any = None) -> PETSc.Mat:
         """K = ∂R/∂w at the present state; unit diagonal on constrained dofs.
 
         Args:
             opposite: for displacements of the symmetry opposite to that of half a body.
+            free: which dofs are, local, in place of those that are not constrained.
         """
-        free = self.free
+        free = self.free if free is None else free
         if opposite:
             assert self.free_opposite is not None, "no symmetry halves the body"
             free = self.free_opposite

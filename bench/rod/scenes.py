@@ -15,6 +15,8 @@ SHORT = "120 mm"
 """Length of the baseline that loads act on."""
 LOADED = "60 kPa"
 COARSE, FINE = "coarse", "fine"
+PLAIN = "plain"
+"""In place of a mesh, of the record of a rod without shear."""
 SECTION = "section"
 """The model whose uniform bend is that of the rod."""
 MESHES = (COARSE, FINE)

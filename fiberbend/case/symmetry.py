@@ -120,3 +120,8 @@ def stays_straight(case: Case) -> bool:
 
 def _reasons(found: Iterable[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(reason for reason in found if reason))
+
+
+def sheared(case: Case) -> bool:
+    """Whether forces across a rod may come of it: of all but what its sections have themselves."""
+    return any(each.inflation() is None and each.beside() is None for each in case.effects)

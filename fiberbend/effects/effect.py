@@ -277,6 +277,10 @@ class Effect(Spec):
         """What stands for it in the section that is solved beside a case; None: left out."""
         return None
 
+    def spread(self) -> Effect:
+        """The same without what waits for a calibration, or is made by one."""
+        return self
+
     def uncalibrated(self) -> bool:
         """Whether it waits for numbers that the cell of its section gives."""
         return False

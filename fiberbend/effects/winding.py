@@ -304,6 +304,11 @@ class WindingEffect(Effect):
             return self
         return self.model_copy(update={"representation": SMEARED, "width": None, "lines": None})
 
+    def spread(self) -> WindingEffect:
+        """The same thread on rubber that does not bulge."""
+        numbers = {"bulging": None, "bedding": None, "width": None, "lines": None}
+        return self.model_copy(update={"representation": SMEARED, **numbers})
+
     def uncalibrated(self) -> bool:
         """Where it is to be calibrated and nobody has given the numbers."""
         return self.representation == CALIBRATED and self.numbers is None

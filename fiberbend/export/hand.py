@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from fiberbend.beam.kept import beam_of
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.columns import UNIFORM
@@ -50,6 +51,7 @@ def handed(case: Case, densities: Mapping[str, float], reached: float | None = N
     missing = without_density(heavy)
     mass, cap_mass = (None, None) if missing else masses(heavy, moments)
     cap, damped = cap_stiffness(case, moments), case.time
+    beam = beam_of(alone, float(law.section.pressures[-1]))
     return Handed(
         section=law.section,
         cap=cap,
@@ -74,6 +76,9 @@ def handed(case: Case, densities: Mapping[str, float], reached: float | None = N
             },
             "validity": law.validity,
         },
+        shear=np.array([beam.stiffness(pressure) for pressure in law.section.pressures]),
+        cap_shear=beam.cap_stiffness,
+        shear_centre=beam.centre,
     )
 
 

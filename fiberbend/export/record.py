@@ -42,6 +42,10 @@ _CONVENTIONS = {
         "of Kelvin and Voigt: retardation time times the stiffness of the straight section "
         "without pressure, against the rates of the strains of the line of the centroids"
     ),
+    "shear": (
+        "stiffness along x and y of sections that move past each other, by the pressure; a force "
+        "along x that does not twist acts at the centre of shear, from the centroids"
+    ),
     "axis": (
         "the same section by a line at x, y from the centroids, on which a force bends it least; "
         "its stretch is that of the centroids + y curvature - x side_curvature"
@@ -72,6 +76,11 @@ def record_of(handed: Handed) -> dict[str, Any]:
         "axis": _axis(axis),
         "cap": {"stiffness_N_mm": _plain(handed.cap), **_cap(handed.cap)},
         "ends": _plain(handed.caps.record(section.pressures)),
+        "shear": {
+            "section_N": _plain(handed.shear),
+            "cap_N": _plain(handed.cap_shear),
+            "centre_y_mm": _digits(handed.shear_centre),
+        },
         "mass": _masses(handed),
         "damping": _damping(handed),
     }

@@ -141,6 +141,9 @@ class Handed:
         caps: what they make of the chamber's ends.
         about: provenance, law, range and errors, as the file has them.
         retardation: τ of Kelvin and Voigt, s; 0: no damping is known.
+        shear: stiffness of the chamber against shear along x and y by the pressure, (n, 2), N.
+        cap_shear: of a cap, (2,), N.
+        shear_centre: y of the centre of shear from the centroids, mm.
     """
 
     section: Section
@@ -152,5 +155,8 @@ class Handed:
     cap_length: float
     outline: Floats
     caps: Caps
+    shear: Floats
+    cap_shear: Floats
+    shear_centre: float
     about: Mapping[str, object]
     retardation: float = 0.0

@@ -90,7 +90,7 @@ class Assembled:
         made: dict[str, Slender] = {}
         for finger in hand.fingers:
             key = repr(finger.case.resolved())
-            made[key] = made.get(key) or slender(finger.case)
+            made[key] = made.get(key) or slender(finger.case, touched=True)
         own = [made[repr(finger.case.resolved())] for finger in hand.fingers]
         _refuse_lopsided(hand, own)
         yields = [

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.case.symmetry import wound
+from fiberbend.case.symmetry import sheared, wound
 from fiberbend.columns import MIDDLE, OBSTACLES, SOLVED, TIMED
 from fiberbend.columns import ZONES as OF_ZONES
 from fiberbend.effects.blocked_tip import OF_STRIPS
@@ -50,8 +50,9 @@ class Rod(SlenderModel):
     step_s = 0.02
 
     def unknowns(self, case: Case) -> int:
-        """A stretch and a curvature each; out of its plane a side curvature and a twist too."""
-        each = 4 if any(effect.mirror_breaker() for effect in case.acting) else 2
+        """A stretch and a curvature each, out of its plane twice as many; and where it shears."""
+        planes = 2 if any(effect.mirror_breaker() for effect in case.acting) else 1
+        each = planes * (3 if sheared(case) else 2)
         return each * (self.pieces + 2 * self.cap_pieces)
 
     def law_seconds(self, case: Case) -> float:

@@ -20,6 +20,7 @@ from fiberbend.slender.laws import (
     pieces_of,
     section_law,
     strains_of,
+    without_shear,
 )
 from fiberbend.slender.moments import section_of
 from rod.contact.touch import Touch
@@ -79,18 +80,21 @@ class Slender:
         return place
 
 
-def slender(case: Case, tell: Callable[[str], None] | None = None) -> Slender:
+def slender(
+    case: Case, tell: Callable[[str], None] | None = None, touched: bool = False
+) -> Slender:
     """The rod of a case of model rod.
 
     Args:
         case: the case.
         tell: takes lines of progress while the law of its section is made.
+        touched: something acts on it that is not in the case.
 
     Raises:
         fiberbend.schema.problems.CaseError: its section has no law as far as the case goes.
     """
     actuator, section = convert.dimensions(case.actuator), section_of(case)
-    cap, strains = actuator.cap, strains_of(case)
+    cap, strains = actuator.cap, strains_of(case, touched)
     counts = pieces_of(case, PIECES)
     each = [cap, *lengths(case), cap] / np.array([CAP_PIECES, *counts, CAP_PIECES])
     pieces = np.repeat(each, [CAP_PIECES, *counts, CAP_PIECES])
@@ -109,7 +113,7 @@ def slender(case: Case, tell: Callable[[str], None] | None = None) -> Slender:
     )
     made = section_law(case, strains, counts, tell)
     chamber = slice(CAP_PIECES, CAP_PIECES + sum(counts))
-    law = along(case, made, cap_law(case, section, strains), layout, chamber)
+    law = along(case, made, cap_law(case, section, without_shear(strains)), layout, chamber)
     found = [effect.on_rod(site) for effect in case.effects]
     terms = [term for each in found for term in each.terms]
     inertia = sum((e.inertia for e in found if e.inertia is not None), site.inertia)

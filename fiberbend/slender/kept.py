@@ -23,13 +23,13 @@ def laws_to_make(cases: Iterable[Case]) -> tuple[int, float]:
     from fiberbend.sectionlaw.range import loads_on
     from fiberbend.sectionlaw.store import Store, digest_of
     from fiberbend.slender.beside import section_case
-    from fiberbend.slender.laws import ERROR, strains_of
+    from fiberbend.slender.laws import ERROR, strains_of, without_shear
 
     found: dict[str, float] = {}
     for case in cases:
         rod = choose_model(case)[0].slender()
         if rod is not None:
-            strains, loads = strains_of(case), loads_on(case)
+            strains, loads = without_shear(strains_of(case)), loads_on(case)
             for zone in zone_cases(case):
                 digest = digest_of(section_case(zone), strains, ERROR, None, loads)
                 found[digest] = rod.law_seconds(zone)

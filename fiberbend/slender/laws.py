@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
-from fiberbend.case.symmetry import wound
+from fiberbend.case.symmetry import sheared, wound
 from fiberbend.case.zones import lengths, zone_cases
 from fiberbend.slender.moments import Section, weighed
 from fiberbend.slender.torsion import torsion
@@ -20,12 +21,16 @@ from rod.law import Law, Zones
 from rod.layout import AT_REST, STRAINS, Layout
 from rod.quartic import Quartic
 
+if TYPE_CHECKING:
+    from fiberbend.beam.kept import Beam
+
 ERROR = 1e-3
 """Of the table of a section, as `fiberbend.sectionlaw.table.law_of` has it."""
 ENOUGH = 1e-2
 """The same where something goes slack and finer tables hardly help."""
 PLANE = ("stretch", "curvature")
 SPACE = (*PLANE, "side_curvature", "twist")
+_SHEARS = {PLANE: ("shear_y",), SPACE: ("shear_x", "shear_y")}
 _FEW = 6
 """Pieces that a zone has at least."""
 _ROUND, _RADIUS = 32, 0.1
@@ -45,6 +50,7 @@ class SectionLaw:
         seconds: that took, of processor time, whenever that was.
         error: greatest of force, moment and chamber in parts of their range.
         remarks: what casts doubt on it, a line each.
+        beam: section and caps with shear; None: the rod does not shear.
     """
 
     law: Law
@@ -54,13 +60,27 @@ class SectionLaw:
     seconds: float
     error: float
     remarks: tuple[str, ...]
+    beam: Beam | None = None
 
 
-def strains_of(case: Case) -> tuple[str, ...]:
-    """Strains of a rod: those of a plane where its sections and all that acts leave it there."""
+def strains_of(case: Case, touched: bool = False) -> tuple[str, ...]:
+    """Strains of a rod: those of a plane where its sections and all that acts leave it there.
+
+    It shears where anything acts on it but what bends all its sections alike.
+
+    Args:
+        case: of model rod.
+        touched: something acts on it that is not in the case.
+    """
     zones = zone_cases(case)
     across = any(effect.mirror_breaker() for effect in case.acting)
-    return SPACE if across or not all(wound(zone).plane for zone in zones) else PLANE
+    own = SPACE if across or not all(wound(zone).plane for zone in zones) else PLANE
+    return (*_SHEARS[own], *own) if touched or sheared(case) else own
+
+
+def without_shear(strains: tuple[str, ...]) -> tuple[str, ...]:
+    """Strains of which the law of a section is."""
+    return tuple(name for name in strains if name in SPACE)
 
 
 def pieces_of(case: Case, pieces: int) -> tuple[int, ...]:
@@ -91,17 +111,18 @@ def section_law(
     Raises:
         fiberbend.schema.problems.CaseError: a section has no law that reaches as far as the case.
     """
+    from fiberbend.beam.kept import beam_of
     from fiberbend.sectionlaw.range import loads_on
     from fiberbend.sectionlaw.store import Store
     from fiberbend.sectionlaw.table import law_of
     from fiberbend.slender.beside import section_case
 
     store, loads = Store(), loads_on(case)
-    zones = zone_cases(case)
+    plain, zones = without_shear(strains), zone_cases(case)
     names = zone_names(len(zones))
     made = [
         law_of(
-            *(section_case(zone), strains, ERROR),
+            *(section_case(zone), plain, ERROR),
             store=store,
             tell=tell,
             loads=loads,
@@ -115,17 +136,23 @@ def section_law(
         for name, each in zip(names, made, strict=True)
         for remark in each.remarks
     ]
-    laws = [each.law for each in made]
+    laws: list[Law] = [each.law for each in made]
+    beam, free = None, np.array([(p, state.stretch, state.curvature) for p, state in made[0].free])
+    if plain != strains:
+        beams = [beam_of(section_case(zone), float(max(free[:, 0], key=abs))) for zone in zones]
+        beam = beams[0]
+        laws = [each.beside(law, strains) for each, law in zip(beams, laws, strict=True)]
     pieces = np.repeat(np.arange(len(laws)), counts or 1).tolist()
     known = [each.checked for each in made]
     return SectionLaw(
         law=laws[0] if len(laws) == 1 else Zones(laws, pieces, names),
-        free=np.array([(p, state.stretch, state.curvature) for p, state in made[0].free]),
+        free=free,
         model=made[0].model,
         states=sum(each.solved for each in made),
         seconds=sum(each.seconds for each in made),
         error=max(max(each.force, each.moment, each.area) for each in known),
         remarks=tuple(dict.fromkeys(remarks + store.remarks)),
+        beam=beam,
     )
 
 
@@ -149,13 +176,15 @@ def along(case: Case, made: SectionLaw, cap: Quartic, layout: Layout, chamber: s
     ends = ends_of(section_case(zones[0]), farthest)
     if len(zones) > 1:
         ends = ends.to_tip(ends_of(section_case(zones[-1]), farthest))
-    count, place = len(layout.lengths), layout.strains.index("curvature")
+    count, place = len(layout.lengths), without_shear(layout.strains).index("curvature")
     beam = float(layout.lengths[: chamber.start].sum()) * np.linalg.inv(cap.stiffness)[place, place]
-    root = cap.times(beam / ends.flexibility)
+    caps: list[Law] = [cap.times(beam / ends.flexibility), cap]
+    if made.beam is not None:
+        caps = [made.beam.beside_cap(law, layout.strains) for law in caps]
     borders = (0, chamber.start, chamber.stop, count)
     pieces = np.repeat(np.arange(3), np.diff(borders)).tolist()
     names = ("the root's cap", "" if len(zones) > 1 else "the chamber", "the tip's cap")
-    return ends.offset(Zones((root, made.law, cap), pieces, names), layout, chamber)
+    return ends.offset(Zones((caps[0], made.law, caps[1]), pieces, names), layout, chamber)
 
 
 def zone_names(count: int) -> tuple[str, ...]:
@@ -176,11 +205,11 @@ def cap_law(case: Case, section: Section, strains: tuple[str, ...]) -> Quartic:
     Args:
         case: the case.
         section: its moments.
-        strains: of the rod.
+        strains: of the rod, without shear.
     """
     levers = {"stretch": (0.0, 0.0, 1.0), "curvature": (0.0, 1.0, 0.0)}
-    levers |= {"side_curvature": (-1.0, 0.0, 0.0), "twist": (0.0, 0.0, 0.0)}
-    by = np.array([levers[name] for name in strains])
+    levers |= {"side_curvature": (-1.0, 0.0, 0.0)}
+    by = np.array([levers.get(name, (0.0, 0.0, 0.0)) for name in strains])
     materials = convert.site(case).materials
     slopes = {name: pulled(each) for name, each in materials.items()}
     second, third, fourth = (

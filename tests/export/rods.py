@@ -61,8 +61,11 @@ def section(lever: float = LEVER) -> Section:
 def handed(made: Section | None = None, weighs: bool = True) -> Handed:
     """All of it."""
     t = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    made = section() if made is None else made
+    # so stiff that the exact rod without shear is near
+    shear = 0.3 * np.column_stack([made.stiffness[:, 0, 0]] * 2)
     return Handed(
-        section=section() if made is None else made,
+        section=made,
         cap=CAP_STIFFNESS,
         mass=MASS if weighs else None,
         cap_mass=CAP_MASS if weighs else None,
@@ -73,6 +76,9 @@ def handed(made: Section | None = None, weighs: bool = True) -> Handed:
         cap_length=CAP,
         outline=np.column_stack([11 * np.cos(t), 9 * np.sin(t)]),
         caps=CAPS,
+        shear=shear,
+        cap_shear=0.3 * np.full(2, CAP_STIFFNESS[0, 0]),
+        shear_centre=-3.5,
         about={
             "title": 'A "made-up" rod -- & more',
             "provenance": {

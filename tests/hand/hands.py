@@ -16,6 +16,7 @@ from fiberbend.slender import actuator
 from fiberbend.slender.laws import SectionLaw
 from rod.law import Law, Linear, Zones
 from rod.layout import Layout
+from tests.slender.rods import strains_without_shear
 
 ROOT = Path(__file__).resolve().parents[2]
 FILE = ROOT / "cases" / "hands" / "three_fingers.yaml"
@@ -63,6 +64,7 @@ def known_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(actuator, "section_law", law)
     monkeypatch.setattr(actuator, "along", along)
+    monkeypatch.setattr(actuator, "strains_of", strains_without_shear)
 
 
 def assembled(folder: Path, **changes: Any) -> Assembled:

@@ -13,7 +13,7 @@ import pytest
 from fiberbend.case.case import Case
 from fiberbend.reader.reader import parse_case
 from fiberbend.slender import actuator
-from fiberbend.slender.laws import SectionLaw
+from fiberbend.slender.laws import SectionLaw, strains_of, without_shear
 from rod.functions import Floats
 from rod.law import Law, Linear, Zones
 from rod.layout import Layout
@@ -109,13 +109,19 @@ def without_ends(_case: Case, made: SectionLaw, cap: Law, layout: Layout, chambe
     return Zones((cap, made.law), pieces.tolist())
 
 
+def strains_without_shear(case: Case, _touched: bool = False) -> tuple[str, ...]:
+    """Those that a law in closed form has here."""
+    return without_shear(strains_of(case))
+
+
 @pytest.fixture
 def by_law(monkeypatch: pytest.MonkeyPatch) -> Callable[[Law], None]:
-    """Puts a law in the place of the table of any section; no pressure turns its ends."""
+    """Puts a law in the place of the table of any section, without shear and without its ends."""
 
     def put(law: Law) -> None:
         made = SectionLaw(law, np.empty((0, 3)), "section", 0, 0.0, 0.0, ())
         monkeypatch.setattr(actuator, "section_law", lambda *_of: made)
         monkeypatch.setattr(actuator, "along", without_ends)
+        monkeypatch.setattr(actuator, "strains_of", strains_without_shear)
 
     return put

@@ -63,7 +63,7 @@ def test_a_folder_has_what_a_run_leaves(folder: tuple[RunResult, Path]) -> None:
     assert run["status"] == "converged"
     assert run["stability_checked"] is True
     assert run["section_law"]["error"] < 1e-3
-    assert run["unknowns"] == 112
+    assert run["unknowns"] == 168
     with (path / "history.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == run["load_steps"] + 1 == len(result.rows)

@@ -27,8 +27,6 @@ import elastica as ea
 import numpy as np
 
 MM, KPA = 1e-3, 1e3
-SHEAR = 0.3
-"""Stiffness against shear in parts of that against stretch: of rubber 5/6 of a third."""
 SPEED = 0.5
 """Time step in parts of that at which the stiffest motion is no longer stable."""
 
@@ -64,12 +62,14 @@ class Rod:
         self._stretch = np.array(axis["rest_stretch"])
         self._axial = np.array(axis["axial_stiffness_N"])
         self._bending = np.array(axis["bending_stiffness_N_mm2"]) * MM**2
+        self._shear = np.array(self.data["shear"]["section_N"])
+        self._cap_shear = np.array(self.data["shear"]["cap_N"])
+        self._cap_axial = self.data["cap"]["axial_stiffness_N"]
+        self._cap_bending = np.array(self.data["cap"]["bending_stiffness_N_mm2"]) * MM**2
         self._added = self._ends(chamber, cap)
         """Lengths in m and turns of the elements by the ends of the chamber, by pressure."""
         self._stiffer = np.ones(len(self.lengths))
         self._stiffer[:cap] = self.data["ends"]["root_cap_over_cap_stiffness"]
-        self._cap_axial = self.data["cap"]["axial_stiffness_N"]
-        self._cap_bending = np.array(self.data["cap"]["bending_stiffness_N_mm2"]) * MM**2
 
     def _ends(self, chamber: int, cap: int) -> np.ndarray:
         ends, middle = self.data["ends"], self.data["geometry"]["chamber_length_mm"]
@@ -84,15 +84,17 @@ class Rod:
             added[:, first:last] = (np.array([longer, *turns]).T / (last - first))[:, None]
         return added
 
-    def at(self, kpa: float) -> tuple[float, np.ndarray, float, np.ndarray, np.ndarray]:
+    def at(
+        self, kpa: float
+    ) -> tuple[float, np.ndarray, float, np.ndarray, np.ndarray, np.ndarray]:
         """Of the chamber's section, and of the elements at its ends.
 
         Args:
             kpa: pressure, within the range of rod.json.
 
         Returns:
-            Stretch and curvatures at rest, axial and bending stiffness; length in m and turns of
-            each element by the ends.
+            Stretch and curvatures at rest, axial, bending and shear stiffness; length in m and
+            turns of each element by the ends.
         """
         low, high = self.pressures[[0, -1]]
         if not low <= kpa <= high:
@@ -102,20 +104,21 @@ class Rod:
         )
         before = place - 1
         part = (kpa - self.pressures[before]) / (self.pressures[place] - self.pressures[before])
-        tables = (self._stretch, self._curvatures, self._axial, self._bending, self._added)
-        stretch, curvatures, axial, bending, added = (
-            (1 - part) * table[before] + part * table[place] for table in tables
+        tables = (self._stretch, self._curvatures, self._axial, self._bending, self._shear)
+        stretch, curvatures, axial, bending, shear, added = (
+            (1 - part) * table[before] + part * table[place] for table in (*tables, self._added)
         )
-        return float(stretch), curvatures, float(axial), bending, added
+        return float(stretch), curvatures, float(axial), bending, shear, added
 
     def put(self, rod: ea.CosseratRod, kpa: float) -> None:
         """Write rest strains and stiffness at a pressure into a rod."""
-        stretch, curvatures, axial, bending, added = self.at(kpa)
+        stretch, curvatures, axial, bending, shear, added = self.at(kpa)
         inside = self.in_chamber
         rest = np.where(inside, stretch, 1.0) + added[:, 0] / self.lengths
         rod.rest_sigma[2] = rest - 1.0
         along = rest * np.where(inside, axial, self._stiffer * self._cap_axial)
-        rod.shear_matrix[0, 0] = rod.shear_matrix[1, 1] = SHEAR * along
+        for way, (own_shear, cap_shear) in enumerate(zip(shear, self._cap_shear, strict=True)):
+            rod.shear_matrix[way, way] = rest * np.where(inside, own_shear, cap_shear)
         rod.shear_matrix[2, 2] = along
         # a node turns by what bends in the halves beside it; the ends have no node of their own
         halves = np.array([self.lengths[:-1], self.lengths[1:]]) / 2
@@ -157,9 +160,10 @@ class Rod:
         inside, stiffer = self.in_chamber, self._stiffer
         axial = np.where(inside, self._axial.max(), stiffer * self._cap_axial)
         bending = np.where(inside, self._bending.max(), stiffer * self._cap_bending.max())
+        sheared = np.where(inside, self._shear.max(), self._cap_shear.max())
         own, h = np.linalg.eigvalsh(inertia)[:, 0], self.lengths
         along = 4 * axial / (h * mass)
-        turning = (SHEAR * axial * h + 4 * bending / h) / own
+        turning = (sheared * h + 4 * bending / h) / own
         return SPEED * 2 / float(np.sqrt(max(along.max(), turning.max())))
 
 

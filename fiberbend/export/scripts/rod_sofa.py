@@ -29,8 +29,6 @@ RAMP = 1.0
 """In s."""
 GRAVITY = (0.0, 0.0, 0.0)
 """In the scene's axes, m/s²; the weight of one that lies with its crown up is along -z."""
-SHEAR = 0.3
-"""Stiffness against shear in parts of that against stretch; rod.json has none."""
 RAYLEIGH = 0.02
 """Damping over stiffness, s: an assumption where rod.json has no damping."""
 PLUGINS = [
@@ -78,6 +76,8 @@ class Rod:
         bending = 1 / np.diagonal(compliance, axis1=1, axis2=2)
         self.bending, self.side, self.twist = (float(part) for part in bending.mean(axis=0))
         self.axial = float(np.mean(axis["axial_stiffness_N"]))
+        # one number for both ways: that of the plane of bending
+        self.shear = float(np.mean(np.array(data["shear"]["section_N"])[:, 1]))
 
     def _ends(self, data: dict[str, Any]) -> np.ndarray:
         """Strains of the sections near the caps, which are rigid and turn with them."""
@@ -187,6 +187,8 @@ def createScene(root: Any) -> Any:
         EA=rod.axial,
         GA=SHEAR * rod.axial,
         rayleighStiffness=rod.damping,
+        GA=rod.shear,
+        rayleighStiffness=RAYLEIGH,
     )
     frames = base.addChild("frames")
     sections.addChild(frames)

@@ -89,6 +89,16 @@ class Held:
         assert found is not None, "rest is an equilibrium"
         self.rest = found
 
+    @property
+    def small(self) -> Small:
+        """The scene in which they are found."""
+        return self._small
+
+    @property
+    def length(self) -> float:
+        """L of the actuator for which the scene stands, mm."""
+        return self._length
+
     def near(self, known: HeldState, at: Floats) -> HeldState | None:
         """A stable state near another one; None: none found.
 
