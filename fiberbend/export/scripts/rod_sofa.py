@@ -185,10 +185,8 @@ def createScene(root: Any) -> Any:
         EIy=rod.bending,
         EIz=rod.side,
         EA=rod.axial,
-        GA=SHEAR * rod.axial,
-        rayleighStiffness=rod.damping,
         GA=rod.shear,
-        rayleighStiffness=RAYLEIGH,
+        rayleighStiffness=rod.damping,
     )
     frames = base.addChild("frames")
     sections.addChild(frames)
