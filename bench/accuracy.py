@@ -67,7 +67,7 @@ What is compared is what the case asks for. Of a pressure it is what the actuato
 symmetry: bend, twist, bend to the side; where it can do none of these, how far it lengthens; where
 an effect holds a motion, the force or moment on what holds it; of zones what each zone does. Angles
 of one state are judged together, in percent of the greatest: of what bends by 90° and twists by 1°,
-half a degree more of twist is 0.6 %. Zones, strips and loads at the tip have the rungs of the models
+half a degree more of twist is 0.6 %. Zones, strips and loads at the tip have the rungs of models
 that know them, and the ladder says by name what the others refuse. A motion in time has none: a rod
 alone moves, and nothing is there to compare it with.
 

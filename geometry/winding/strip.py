@@ -74,13 +74,13 @@ def arc_at(actuator: Actuator, angle: float) -> float:
 
 
 def lay(mesh: MeshData, actuator: Actuator, window: Window) -> EmbeddedFibers:
-    """Spread fabric over a window: on each facet three pieces of its warp and three of its weft.
+    """Spread fabric over a window: bits of warp at points, pieces of weft along lines around.
 
     A facet that the window's edge crosses is integrated over the part inside, by a rule of its own:
     the area is that of the window, whatever the mesh. Warp runs along the axis, weft around; each
     is a thread for every mm across it, so that a point stands for as many mm of either as it has
-    mm² of area (of a section mm² for every mm of z). Points of a facet on one line are one piece
-    with one strain: with a strain each, stiff fabric locks, and goes slack point by point.
+    mm² of area (of a section mm² for every mm of z). Points of a facet on one line around are one
+    piece of weft with one strain: with a strain each, stiff weft goes slack point by point.
 
     Args:
         mesh: hexahedra, tetrahedra or quadrilaterals with the surface "winding"; half, full, or a
@@ -184,7 +184,7 @@ def _cut(
 
     Returns:
         For each of n points its facet, its coordinates in the reference facet, (n, k), its weight,
-        and the numbers of the lines along z and around on which it lies, (n, 2).
+        and the numbers of the pieces of warp and of weft that it belongs to, (n, 2).
     """
     along = facets.axes[:, 0, :]
     if facets.triangle:
@@ -207,17 +207,17 @@ def _cut(
 
 
 def _lines(flat: Floats, axis: Ints) -> Ints:
-    """Numbers of the lines along z and around on which the points of facets lie, (n q, 2).
+    """Numbers of the pieces of warp and of weft that the points of facets belong to, (n q, 2).
 
     Args:
         flat: points of a rule that is a product of rules along the axes, (q, k).
         axis: of each of n facets that which runs around.
     """
     levels = np.column_stack([np.unique(c, return_inverse=True)[1] for c in flat.T])
-    along = levels[:, axis].T
-    around = levels[:, 1 - axis].T if flat.shape[1] == 2 else np.zeros_like(along)
-    start = len(flat) * np.arange(len(axis))[:, None]
-    return np.stack([start + along, start + around], axis=-1).reshape(-1, 2)
+    every = np.arange(len(flat) * len(axis)).reshape(len(axis), len(flat))
+    around = levels[:, 1 - axis].T if flat.shape[1] == 2 else np.zeros_like(every)
+    # a mean along z would take end effects of fabric over whole elements
+    return np.stack([every, every[:, :1] + around], axis=-1).reshape(-1, 2)
 
 
 def _cut_triangles(
