@@ -1,6 +1,6 @@
 """The line of a rod that stays in the plane of y and z of its root, by complex numbers.
 
-A point of the plane is w = z − i y in the axes of the root: the curvature k turns it by e^{iθ}. With
+A point of the plane is w = z − i y in the axes of the root: a curvature k turns it by e^{iθ}. With
 φ = h k and the functions E_k(z) = Σ z^j/(j + k)!, which have E_k' = E_k − k E_{k+1} (Hochbruck and
 Ostermann 2010, doi 10.1017/S0962492910000048), a piece is
 

@@ -5,9 +5,9 @@ A point whose depth goes from d₀ to d₁ is pushed by k a s along ñ, with
     s = (d₁₊² − d₀₊²)/(2 (d₁ − d₀)),      ñ·(x₁ − x₀) = −(d₁ − d₀):
 
 the discrete gradients of ½ k a d₊² and of the distance (Gonzalez 1996, doi 10.1007/BF02440162; for
-contact Armero and Petőcz 1998, doi 10.1016/S0045-7825(97)00256-9). The force is one of the step, and
-its work k a s (d₁ − d₀) is what the potential changes by, to round-off: what is undamped keeps its
-energy, however a step begins and ends.
+contact Armero and Petőcz 1998, doi 10.1016/S0045-7825(97)00256-9). The force is one of the whole
+step, and its work k a s (d₁ − d₀) is what the potential changes by, to round-off: what is undamped
+keeps its energy, however a step begins and ends.
 
 Within Newton's method the mean pressures are unknowns beside the strains, as those of
 `rod.contact.penalty.Pressed`: a point that a step presses is held, wherever the turns of the rod
@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rod.contact.points import Points, placed
+from rod.contact.points import placed
 from rod.functions import Floats
 from rod.shape import Shape
 from rod.term import Push

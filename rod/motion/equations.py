@@ -47,6 +47,10 @@ class Equations:
             start=np.zeros_like(before.velocity),
         )
         self._others = [pair for pair in left if not pair[0].conservative]
+        # of a rod that rests on something forces would change with velocities that change their
+        # sign: this part of the viscosity is met by those at the end of the step
+        pressed = any(push.force.any() for push in before.pushes)
+        self._late = step / (step + motion.touching) if pressed and motion.touching else 0.0
         self._lengths = self._rod.layout.lengths
         # A = weight ΔX P + start
         self._weight = 2 / step**2 + motion.drag / step
@@ -78,8 +82,19 @@ class Equations:
         return float(sum(term.potential(shape, amount) for term, amount in self._kept))
 
     def _viscous(self, change: Floats) -> Floats:
-        """C Δε/Δt, (n, m)."""
-        return (self._motion.viscous @ change[..., None])[..., 0] / self._step
+        """C Δε/Δt in the step, (n, m)."""
+        part = (1 - self._late) / self._step
+        return part * (self._motion.viscous @ change[..., None])[..., 0]
+
+    def _resisting(self, shape: Shape) -> Floats | float:
+        """What velocities at the end of the step meet beside their masses, (n m, n m)."""
+        out = sum(impact.resisting(shape, self._step) for impact in self._impacts)
+        if not self._late:
+            return out
+        n, m = self._rod.layout.shape
+        late, place = np.zeros((n, m, n, m)), np.arange(n)
+        late[place, :, place] = self._late * self._step * self._motion.viscous
+        return out + late.reshape(n * m, n * m)
 
     # --- the pressure ----------------------------------------------------------------------------
 
@@ -204,7 +219,9 @@ class Equations:
         out += np.outer(w, row - 2 * self._missed / self._square * w)
         out[np.diag_indices_from(out)] += self._missed * motion.weights.ravel()
         if motion.viscid:
-            out.reshape(n, m, n, m)[place, :, place] += motion.viscous / self._step
+            out.reshape(n, m, n, m)[place, :, place] += (
+                (1 - self._late) / self._step * motion.viscous
+            )
         if motion.air is not None:
             out += self._stiffer()
         for term, amount in self._others:
@@ -213,7 +230,8 @@ class Equations:
 
     def stepped(self, change: Floats) -> bool:
         """Takes note of a step by Newton's method, (n, m); whether nothing changes its mind."""
-        return all([impact.stepped(change) for impact in self._impacts])
+        settled = [impact.stepped(change) for impact in self._impacts]
+        return all(settled)
 
     # --- what it leads to ------------------------------------------------------------------------
 
@@ -231,8 +249,8 @@ class Equations:
             impact.residual(self._middle, shape)
         dropped = 0.0
         if motion.damped:
-            resisting = sum(impact.resisting(shape, step) for impact in self._impacts)
-            velocity = shape.moved(motion.rates_of(shape, velocity, resisting))
+            rates = motion.rates_of(shape, velocity, self._resisting(shape))
+            velocity = shape.moved(rates)
             kinetic, dropped = motion.kinetic(velocity), kinetic - motion.kinetic(velocity)
         pressures = [self._end, self.pressure][: 2 if self._end != self.pressure else 1]
         places = [shape.strains] * len(pressures)

@@ -80,9 +80,9 @@ def test_the_tangent_of_a_step_is_that_of_differences(
     scale = np.outer(1 / motion.sizes.ravel(), 1 / motion.sizes.ravel())
     wrong = np.abs(tangent - exact) / scale
     # of a bar the direction turns with the step, of which the tangent has the greater part
-    assert wrong.max() < (1e-6 if isinstance(obstacle, Plane) else 1e-2) * np.abs(
-        exact / scale
-    ).max()
+    assert (
+        wrong.max() < (1e-6 if isinstance(obstacle, Plane) else 1e-2) * np.abs(exact / scale).max()
+    )
 
 
 def particle(touching: float) -> tuple[Motion, Touch]:
@@ -104,7 +104,9 @@ def momentum(motion: Motion, moving: Moving) -> float:
     return float(motion.inertia[-1, 3, 3] * moving.velocity[-1, 1, 3])
 
 
-def fallen(motion: Motion, table: Touch, step: float, count: int) -> tuple[list[Moving], list[Event]]:
+def fallen(
+    motion: Motion, table: Touch, step: float, count: int
+) -> tuple[list[Moving], list[Event]]:
     free = Motion(motion.rod, lambda time: Level(amounts=(1.0, 0.0)), touching=motion.touching)
     gap = Watch("table", lambda state: table.gap(state.shape, 1.0), free)
     course = Course(motion, motion.at(motion.rod.layout.at_rest()), [gap])
