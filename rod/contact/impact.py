@@ -5,9 +5,10 @@ A point whose depth goes from d₀ to d₁ is pushed by k a s along ñ, with
     s = (d₁₊² − d₀₊²)/(2 (d₁ − d₀)),      ñ·(x₁ − x₀) = −(d₁ − d₀):
 
 the discrete gradients of ½ k a d₊² and of the distance (Gonzalez 1996, doi 10.1007/BF02440162; for
-contact Armero and Petőcz 1998, doi 10.1016/S0045-7825(97)00256-9). The force is one of the whole
-step, and its work k a s (d₁ − d₀) is what the potential changes by, to round-off: what is undamped
-keeps its energy, however a step begins and ends.
+contact Armero and Petőcz 1998, Comput. Methods Appl. Mech. Eng. 158, 269–300; Doyen, Ern and
+Piperno 2011, doi 10.1137/100791440, compare such schemes). The force is one of the whole step, and
+its work k a s (d₁ − d₀) is what the potential changes by, to round-off: what is undamped keeps its
+energy, however a step begins and ends.
 
 Within Newton's method the mean pressures are unknowns beside the strains, as those of
 `rod.contact.penalty.Pressed`: a point that a step presses is held, wherever the turns of the rod
@@ -152,6 +153,10 @@ class Impact:
         self.push = Push(self._force.sum(axis=0), np.cross((x0 + x1) / 2, self._force).sum(axis=0))
         self._middle = placed(touch.skin, middle, stations).only(acts)
         return -self._middle.pulled(self._force)
+
+    def leapt(self, after: Shape) -> bool:
+        """Whether the rod may have passed through the obstacle in the step."""
+        return self._touch.leapt(self._before, after, self._amount)
 
     def stepped(self, change: Floats) -> bool:
         """Takes note of a step by Newton's method from the last residual.

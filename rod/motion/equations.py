@@ -233,6 +233,10 @@ class Equations:
         settled = [impact.stepped(change) for impact in self._impacts]
         return all(settled)
 
+    def leapt(self, shape: Shape) -> bool:
+        """Whether the rod may have passed through something on the way to the end of the step."""
+        return any(impact.leapt(shape) for impact in self._impacts)
+
     # --- what it leads to ------------------------------------------------------------------------
 
     def moved(self, change: Floats, iterations: int) -> Moving:

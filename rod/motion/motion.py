@@ -238,6 +238,9 @@ class Motion:
                 outside = self.rod.law.outside(found.strains, found.pressure)
                 if outside:
                     raise NoEquilibriumError(f"at {found.time:.6g} s: {outside}")
+                if now.leapt(found.shape):
+                    text = "it moves through a thin obstacle in one step"
+                    raise NoEquilibriumError(f"at {found.time:.6g} s: {text}")
                 return found
             slow = not settled or moves > _SLOW * last
             last = moves
