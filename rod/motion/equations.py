@@ -47,10 +47,9 @@ class Equations:
             start=np.zeros_like(before.velocity),
         )
         self._others = [pair for pair in left if not pair[0].conservative]
-        # of a rod that rests on something forces would change with velocities that change their
-        # sign: this part of the viscosity is met by those at the end of the step
-        pressed = any(push.force.any() for push in before.pushes)
-        self._late = step / (step + motion.touching) if pressed and motion.touching else 0.0
+        self._late = 0.0
+        if any(push.force.any() for push in before.pushes):
+            self._rests()
         self._lengths = self._rod.layout.lengths
         # A = weight ΔX P + start
         self._weight = 2 / step**2 + motion.drag / step
@@ -132,7 +131,18 @@ class Equations:
         if not self._impacts:
             return change
         after = self._rod.shape(self._before.strains + change)
-        return change * min(impact.begin(after) for impact in self._impacts)
+        free = min(impact.begin(after) for impact in self._impacts)
+        if free < 1:
+            self._rests()
+        return change * free
+
+    def _rests(self) -> None:
+        """Moves a part of the viscosity to the velocities at the end of the step.
+
+        Of a rod that rests on something forces would change with velocities that change their sign.
+        """
+        if self._motion.touching:
+            self._late = self._step / (self._step + self._motion.touching)
 
     @property
     def kinked(self) -> bool:

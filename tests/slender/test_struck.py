@@ -15,8 +15,8 @@ from fiberbend.case.case import Case
 from fiberbend.running.runner import run_case
 from fiberbend.slender.frequencies import vibrations
 from rod.law import Law
+from tests.slender.rods import WOUND, case, linear
 from tests.slender.rods import by_law as by_law
-from tests.slender.rods import case, linear
 
 Put = Callable[[Law], None]
 WEIGHT = {"gravity": {"direction": "-y"}}
@@ -87,9 +87,8 @@ def test_zones_that_are_alike_move_as_one(by_law: Put) -> None:
     by_law(BENT)
     time = {"duration": "100 ms", "damping": {"retardation_time": "3 ms", "drag": "1 1/s"}}
     whole = run_case(moving(WEIGHT, PRESSED, **time), None)
-    halves = case(
-        WEIGHT, PRESSED, time=SLOW | time, zones=[{"length": "50 mm"}, {"length": "50 mm"}]
-    )
+    parted = [{"length": "50 mm", "winding": WOUND}, {"length": "50 mm"}]
+    halves = case(WEIGHT, PRESSED, time=SLOW | time, zones=parted)
     parts = run_case(halves, None)
     assert parts.status == "converged", parts.reason
     for one, two in zip(whole.rows, parts.rows, strict=True):
