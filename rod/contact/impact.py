@@ -34,6 +34,8 @@ from rod.term import Push
 if TYPE_CHECKING:
     from rod.contact.touch import Touch
 
+_ROUND_OFF = 1e-12
+"""Part of a place that a distance is known to."""
 _SOON = 0.05
 """Part of a step within which after the first touch others are held to touch too."""
 
@@ -145,8 +147,9 @@ class Impact:
         way = x1 - x0
         square = np.sum(way * way, axis=1)
         missed = -self._deeper - np.sum(half.normal * way, axis=1)
-        # of points that do not move nothing is missed
-        part = np.divide(missed, square, out=np.zeros_like(square), where=square > 0)
+        # of points that hardly move it is round-off, over a square that is next to nothing
+        seen = np.abs(missed) > _ROUND_OFF * float(np.abs(x1).max())
+        part = np.divide(missed, square, out=np.zeros_like(square), where=seen & (square > 0))
         self._normal, self._bend = half.normal + part[:, None] * way, half.bend
         self._force = self._press[:, None] * self._normal
         self.work = float(self._press @ self._deeper)

@@ -42,7 +42,7 @@ from rod.statics import NoEquilibriumError, size
 from rod.term import Dead, Struck
 
 _CLOSE = 1e-12
-_LOOSE = 1e-7
+_LOOSE, _LOOSE_KINKED = 1e-7, 1e-11
 _MOST = 30
 _FAR = 1e3
 _KINKED = 12
@@ -231,9 +231,11 @@ class Motion:
             moves = float(np.max(np.abs(correction / self.sizes)))
             if not moves < _FAR or (now.kinked and iteration > _KINKED):
                 break
-            # what is left after it falls once more as the corrections do
-            falls = min(1.0, moves / last) if last < np.inf else 1.0
-            if settled and (moves * falls < _CLOSE or (moves < _LOOSE and moves > last / 2)):
+            # what is left after it falls once more as the corrections do; where something is
+            # touched they may fall otherwise, and a small one still is energy
+            falls = 1.0 if now.kinked or last == np.inf else min(1.0, moves / last)
+            loose = _LOOSE_KINKED if now.kinked else _LOOSE
+            if settled and (moves * falls < _CLOSE or (moves < loose and moves > last / 2)):
                 found = now.moved(change, iteration)
                 outside = self.rod.law.outside(found.strains, found.pressure)
                 if outside:
