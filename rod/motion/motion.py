@@ -220,10 +220,12 @@ class Motion:
         """One step by Newton's method, from the change of strains that the last two foresee."""
         now = Equations(self, moving, step)
         change = now.begin(step * moving.ahead)
-        last, slow = np.inf, True
+        last, slow, kinked = np.inf, True, False
         for iteration in range(1, _MOST + 1):
             residual = now.residual(change)
-            if slow or now.kinked:
+            # nor is one of use that knows a touch that is over
+            if slow or now.kinked or kinked:
+                kinked = now.kinked
                 # no exception by a singular one: what it gives is not finite, or too far
                 factor = dgetrf(now.tangent())[:2]
             correction = dgetrs(*factor, residual.ravel())[0].reshape(change.shape)
