@@ -129,11 +129,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print_error=False,
             result_action="return_value",
         )
-    except UnusedCliTokensError as error:
-        text = f"too many arguments, no use for {' '.join(error.unused_tokens or ())}"
-        raise SystemExit(launch.refuse(f"fiberbend: {text}", WRONG_INPUT)) from None
     except CycloptsError as error:
-        raise SystemExit(launch.refuse(f"fiberbend: {error}", WRONG_INPUT)) from None
+        text = _lacking(tokens)
+        if not text and isinstance(error, UnusedCliTokensError):
+            text = f"too many arguments, no use for {' '.join(error.unused_tokens or ())}"
+        raise SystemExit(launch.refuse(f"fiberbend: {text or error}", WRONG_INPUT)) from None
     except Exception as error:
         from fiberbend.schema.problems import CaseError
 
@@ -143,6 +143,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return launch.refuse(f"{error.filename}: {error.strerror}", WRONG_INPUT)
         raise
     return code or 0
+
+
+def _lacking(tokens: list[str]) -> str:
+    """What an option of `control` lacks, which takes the next one for its second value."""
+    if tokens[:1] != ["control"]:
+        return ""
+    from fiberbend.control.arguments import lacks_value
+
+    return lacks_value(tokens)
 
 
 @app.command(

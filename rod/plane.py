@@ -1,6 +1,6 @@
 """The line of a rod that stays in the plane of y and z of its root, by complex numbers.
 
-A point of the plane is w = z − i y in the axes of the root: the curvature k turns it by e^{iθ}. With
+A point of the plane is w = z − i y in the axes of the root: a curvature k turns it by e^{iθ}. With
 φ = h k and the functions E_k(z) = Σ z^j/(j + k)!, which have E_k' = E_k − k E_{k+1} (Hochbruck and
 Ostermann 2010, doi 10.1017/S0962492910000048), a piece is
 
@@ -43,9 +43,10 @@ class PlaneShape(Shape):
         h = layout.lengths
         full = layout.full(strains)
         self._line: Complex = full[:, _STRETCH] - 1j * full[:, _SHEAR]
-        phi = h * full[:, _CURVATURE]
-        c = stumpff(phi * phi)
-        self._e: Complex = c[:4] + 1j * phi * c[1:5]
+        phi: Floats = h * full[:, _CURVATURE]
+        square: Floats = phi * phi
+        c = stumpff(square)
+        self._e: Complex = np.asarray(c[:4] + 1j * phi * c[1:5])
         turn = np.zeros(len(h) + 1)
         np.cumsum(phi, out=turn[1:])
         self._turned: Complex = np.exp(1j * turn)
@@ -147,11 +148,11 @@ class PlaneShape(Shape):
         # of the points x = p + e^{iθ} a that a frame carries: Σ m, Σ m a, Σ m |a|²
         mass, arm = inertia[:, 3, 3], inertia[:, 2, 3] - 1j * inertia[:, 1, 3]
         second = inertia[:, 1, 1] + inertia[:, 2, 2]
-        first = mass * self._place + self._turned * arm
-        ahead = first if other is None else mass * right._place + right._turned * arm
+        first: Complex = mass * self._place + self._turned * arm
+        ahead: Complex = mass * right._place + right._turned * arm
         square = np.conj(first) * right._place
         square += right._turned * (np.conj(self._place) * arm + np.conj(self._turned) * second)
-        total, x, y, xy = (_after(each) for each in (mass, first, ahead, square))
+        total, x, y, xy = _after(mass), _after(first), _after(ahead), _after(square)
         n, m = self.layout.shape
         left = _rows(*self._columns)
         # momentum of all that j moves, tested with what moves i before j or itself

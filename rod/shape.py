@@ -183,8 +183,8 @@ class Shape:
         """Rates of all frames [R | r], (n + 1, 3, 4), by rates of the strains, (n, m)."""
         u0, omega = self._screws
         spin, shift = np.zeros_like(self.places), np.zeros_like(self.places)
-        np.cumsum(_apply(omega, rates), axis=0, out=spin[1:])
-        np.cumsum(_apply(u0, rates), axis=0, out=shift[1:])
+        np.cumsum(np.einsum("nkm,nm->nk", omega, rates), axis=0, out=spin[1:])
+        np.cumsum(np.einsum("nkm,nm->nk", u0, rates), axis=0, out=shift[1:])
         shift += cross(spin, self.places)
         return np.concatenate([cross_matrix(spin) @ self.rotations, shift[..., None]], axis=-1)
 
@@ -263,7 +263,7 @@ class Shape:
         With ∂x = u0 + ω × x of a point x, a stiffness D there is the block AᵀD A, A = (I, −[x×]).
 
         Args:
-            blocks: B of each frame about the origin, (n + 1, 6, 6); symmetric without another shape.
+            blocks: B of each frame about the origin, (n + 1, 6, 6); symmetric with one shape alone.
             other: the shape at which s_j are taken; this one if none is given.
 
         Returns:
@@ -273,13 +273,13 @@ class Shape:
         screws = np.concatenate(self._screws, axis=1)
         ahead = screws if other is None else np.concatenate(other._screws, axis=1)
         sums = _after(blocks)
-        left, right = (_six(part, n * m) for part in (screws, sums @ ahead))
+        left, right = (_flat(part, n * m) for part in (screws, sums @ ahead))
         out = _upper(left.T @ right, n, m)
         if other is None:
             out = out + out.T
         else:
-            back = _six(np.swapaxes(sums, 1, 2) @ screws, n * m)
-            out += _upper(back.T @ _six(ahead, n * m), n, m, lower=True)
+            back = _flat(np.swapaxes(sums, 1, 2) @ screws, n * m)
+            out += _upper(back.T @ _flat(ahead, n * m), n, m, lower=True)
         place = np.arange(n)
         out.reshape(n, m, n, m)[place, :, place] = np.swapaxes(screws, 1, 2) @ sums @ ahead
         return out
@@ -389,20 +389,11 @@ def _before(n: int, m: int, lower: bool) -> Floats:
 
 
 def _flat(columns: Floats, count: int) -> Floats:
-    """(3, n m) of (n, 3, m)."""
-    return np.ascontiguousarray(np.swapaxes(columns, 0, 1)).reshape(3, count)
-
-
-def _six(columns: Floats, count: int) -> Floats:
-    """(6, n m) of (n, 6, m)."""
-    return np.swapaxes(columns, 0, 1).reshape(6, count)
+    """(k, n m) of (n, k, m)."""
+    rows = np.ascontiguousarray(np.swapaxes(columns, 0, 1))
+    return rows.reshape(columns.shape[1], count)
 
 
 def _stacked(first: Floats, second: Floats, count: int) -> Floats:
     """(6, n m) of two of (n, 3, m)."""
     return np.concatenate([_flat(first, count), _flat(second, count)])
-
-
-def _apply(columns: Floats, rates: Floats) -> Floats:
-    out: Floats = np.einsum("nkm,nm->nk", columns, rates)
-    return out

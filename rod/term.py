@@ -82,6 +82,9 @@ class Impact(Protocol):
     def stepped(self, change: Floats) -> bool:
         """Takes note of a step by Newton's method, (n, m); whether it has not changed its mind."""
 
+    def leapt(self, after: Shape) -> bool:
+        """Whether the rod may have passed through it on the way to the end of the step."""
+
     def resisting(self, shape: Shape, step: float) -> Floats | float:
         """Viscosity times Δt that the velocities at the end meet, (n m, n m)."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import typing
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -40,6 +41,25 @@ def _text(name: str) -> tuple[str, Any, Any]:
         allow_leading_hyphen=True,
     )
     return name, Annotated[annotation | None, option], dataclasses.field(default=None)
+
+
+def lacks_value(tokens: Sequence[str]) -> str:
+    """What is wrong with a command line in which an option of two values has fewer; else nothing.
+
+    Args:
+        tokens: of the command line.
+    """
+    for field in Options.model_fields.values():
+        option, default = f"--{field.alias}", field.default
+        if not isinstance(default, tuple) or option not in tokens:
+            continue
+        after = tokens[tokens.index(option) + 1 :][: len(default)]
+        count = next((n for n, t in enumerate(after) if t.startswith("--")), len(after))
+        if count < len(default):
+            such = " ".join(f'"{part}"' for part in default)
+            said = "no value" if not count else f'"{after[0]}" alone'
+            return f"{option}: {said}, expected two values, such as {such}"
+    return ""
 
 
 if TYPE_CHECKING:

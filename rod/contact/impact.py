@@ -5,7 +5,8 @@ A point whose depth goes from d₀ to d₁ is pushed by k a s along ñ, with
     s = (d₁₊² − d₀₊²)/(2 (d₁ − d₀)),      ñ·(x₁ − x₀) = −(d₁ − d₀):
 
 the discrete gradients of ½ k a d₊² and of the distance (Gonzalez 1996, doi 10.1007/BF02440162; for
-contact Armero and Petőcz 1998, doi 10.1016/S0045-7825(97)00256-9). The force is one of the step, and
+contact Armero and Petőcz 1998, Comput. Methods Appl. Mech. Eng. 158, 269–300; Doyen, Ern and
+Piperno 2011, doi 10.1137/100791440, compare such schemes). The force is one of the whole step, and
 its work k a s (d₁ − d₀) is what the potential changes by, to round-off: what is undamped keeps its
 energy, however a step begins and ends.
 
@@ -25,7 +26,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rod.contact.points import Points, placed
+from rod.contact.points import placed
 from rod.functions import Floats
 from rod.shape import Shape
 from rod.term import Push
@@ -33,6 +34,8 @@ from rod.term import Push
 if TYPE_CHECKING:
     from rod.contact.touch import Touch
 
+_ROUND_OFF = 1e-12
+"""Part of a place that a distance is known to."""
 _SOON = 0.05
 """Part of a step within which after the first touch others are held to touch too."""
 
@@ -144,14 +147,19 @@ class Impact:
         way = x1 - x0
         square = np.sum(way * way, axis=1)
         missed = -self._deeper - np.sum(half.normal * way, axis=1)
-        # of points that do not move nothing is missed
-        part = np.divide(missed, square, out=np.zeros_like(square), where=square > 0)
+        # of points that hardly move it is round-off, over a square that is next to nothing
+        seen = np.abs(missed) > _ROUND_OFF * float(np.abs(x1).max())
+        part = np.divide(missed, square, out=np.zeros_like(square), where=seen & (square > 0))
         self._normal, self._bend = half.normal + part[:, None] * way, half.bend
         self._force = self._press[:, None] * self._normal
         self.work = float(self._press @ self._deeper)
         self.push = Push(self._force.sum(axis=0), np.cross((x0 + x1) / 2, self._force).sum(axis=0))
         self._middle = placed(touch.skin, middle, stations).only(acts)
         return -self._middle.pulled(self._force)
+
+    def leapt(self, after: Shape) -> bool:
+        """Whether the rod may have passed through the obstacle in the step."""
+        return self._touch.leapt(self._before, after, self._amount)
 
     def stepped(self, change: Floats) -> bool:
         """Takes note of a step by Newton's method from the last residual.

@@ -35,6 +35,10 @@ class Gap(NamedTuple):
 class Obstacle(Protocol):
     """A rigid body that keeps its place."""
 
+    @property
+    def thickness(self) -> float:
+        """Half of its least extent, mm: what moves by less in a step does not pass through it."""
+
     def gap(self, x: Floats) -> Floats:
         """Signed distance of points to its surface, (p,), mm; negative inside.
 
@@ -77,6 +81,11 @@ class Plane:
     def __post_init__(self) -> None:
         _unit(self.normal, "normal of a plane")
 
+    @property
+    def thickness(self) -> float:
+        """See `Obstacle`: there is no other side."""
+        return math.inf
+
     def gap(self, x: Floats) -> Floats:
         """See `Obstacle`."""
         out: Floats = (x - np.asarray(self.point, dtype=float)) @ _unit(self.normal, "normal")
@@ -105,6 +114,11 @@ class Sphere:
 
     def __post_init__(self) -> None:
         _positive(self.radius, "radius of a sphere")
+
+    @property
+    def thickness(self) -> float:
+        """See `Obstacle`."""
+        return self.radius
 
     def gap(self, x: Floats) -> Floats:
         """See `Obstacle`."""
@@ -142,6 +156,11 @@ class Cylinder:
         _unit(self.axis, "axis of a cylinder")
         _positive(self.radius, "radius of a cylinder")
         _positive(self.length, "length of a cylinder")
+
+    @property
+    def thickness(self) -> float:
+        """See `Obstacle`."""
+        return min(self.radius, self.length / 2)
 
     def gap(self, x: Floats) -> Floats:
         """See `Obstacle`."""

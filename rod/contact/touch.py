@@ -113,6 +113,12 @@ class Touch(Penalty):
         out: Bools = (self._rooms(shape, amount) <= 0)[self.skin.pieces]
         return out
 
+    def leapt(self, before: Shape, after: Shape, amount: float) -> bool:
+        """Whether what is near may have passed through the obstacle between two shapes."""
+        way = float(np.linalg.norm(after.places - before.places, axis=1).max())
+        thin = way > self._obstacle.thickness
+        return thin and self.room(before, amount) <= way
+
     def depth(self, points: Points, amount: float) -> Floats:
         """d of points, (q,), mm; negative apart."""
         if not len(points.x):

@@ -47,6 +47,9 @@ class Equations:
             start=np.zeros_like(before.velocity),
         )
         self._others = [pair for pair in left if not pair[0].conservative]
+        self._late = 0.0
+        if any(push.force.any() for push in before.pushes):
+            self._rests()
         self._lengths = self._rod.layout.lengths
         # A = weight ΔX P + start
         self._weight = 2 / step**2 + motion.drag / step
@@ -78,8 +81,19 @@ class Equations:
         return float(sum(term.potential(shape, amount) for term, amount in self._kept))
 
     def _viscous(self, change: Floats) -> Floats:
-        """C Δε/Δt, (n, m)."""
-        return (self._motion.viscous @ change[..., None])[..., 0] / self._step
+        """C Δε/Δt in the step, (n, m)."""
+        part = (1 - self._late) / self._step
+        return part * (self._motion.viscous @ change[..., None])[..., 0]
+
+    def _resisting(self, shape: Shape) -> Floats | float:
+        """What velocities at the end of the step meet beside their masses, (n m, n m)."""
+        out = sum(impact.resisting(shape, self._step) for impact in self._impacts)
+        if not self._late:
+            return out
+        n, m = self._rod.layout.shape
+        late, place = np.zeros((n, m, n, m)), np.arange(n)
+        late[place, :, place] = self._late * self._step * self._motion.viscous
+        return out + late.reshape(n * m, n * m)
 
     # --- the pressure ----------------------------------------------------------------------------
 
@@ -117,7 +131,18 @@ class Equations:
         if not self._impacts:
             return change
         after = self._rod.shape(self._before.strains + change)
-        return change * min(impact.begin(after) for impact in self._impacts)
+        free = min(impact.begin(after) for impact in self._impacts)
+        if free < 1:
+            self._rests()
+        return change * free
+
+    def _rests(self) -> None:
+        """Moves a part of the viscosity to the velocities at the end of the step.
+
+        Of a rod that rests on something forces would change with velocities that change their sign.
+        """
+        if self._motion.touching:
+            self._late = self._step / (self._step + self._motion.touching)
 
     @property
     def kinked(self) -> bool:
@@ -204,7 +229,9 @@ class Equations:
         out += np.outer(w, row - 2 * self._missed / self._square * w)
         out[np.diag_indices_from(out)] += self._missed * motion.weights.ravel()
         if motion.viscid:
-            out.reshape(n, m, n, m)[place, :, place] += motion.viscous / self._step
+            out.reshape(n, m, n, m)[place, :, place] += (
+                (1 - self._late) / self._step * motion.viscous
+            )
         if motion.air is not None:
             out += self._stiffer()
         for term, amount in self._others:
@@ -213,7 +240,12 @@ class Equations:
 
     def stepped(self, change: Floats) -> bool:
         """Takes note of a step by Newton's method, (n, m); whether nothing changes its mind."""
-        return all([impact.stepped(change) for impact in self._impacts])
+        settled = [impact.stepped(change) for impact in self._impacts]
+        return all(settled)
+
+    def leapt(self, shape: Shape) -> bool:
+        """Whether the rod may have passed through something on the way to the end of the step."""
+        return any(impact.leapt(shape) for impact in self._impacts)
 
     # --- what it leads to ------------------------------------------------------------------------
 
@@ -231,8 +263,8 @@ class Equations:
             impact.residual(self._middle, shape)
         dropped = 0.0
         if motion.damped:
-            resisting = sum(impact.resisting(shape, step) for impact in self._impacts)
-            velocity = shape.moved(motion.rates_of(shape, velocity, resisting))
+            rates = motion.rates_of(shape, velocity, self._resisting(shape))
+            velocity = shape.moved(rates)
             kinetic, dropped = motion.kinetic(velocity), kinetic - motion.kinetic(velocity)
         pressures = [self._end, self.pressure][: 2 if self._end != self.pressure else 1]
         places = [shape.strains] * len(pressures)

@@ -42,7 +42,7 @@ from rod.statics import NoEquilibriumError, size
 from rod.term import Dead, Struck
 
 _CLOSE = 1e-12
-_LOOSE = 1e-7
+_LOOSE, _LOOSE_KINKED = 1e-7, 1e-11
 _MOST = 30
 _FAR = 1e3
 _KINKED = 12
@@ -220,10 +220,12 @@ class Motion:
         """One step by Newton's method, from the change of strains that the last two foresee."""
         now = Equations(self, moving, step)
         change = now.begin(step * moving.ahead)
-        last, slow = np.inf, True
+        last, slow, kinked = np.inf, True, False
         for iteration in range(1, _MOST + 1):
             residual = now.residual(change)
-            if slow or now.kinked:
+            # nor is one of use that knows a touch that is over
+            if slow or now.kinked or kinked:
+                kinked = now.kinked
                 # no exception by a singular one: what it gives is not finite, or too far
                 factor = dgetrf(now.tangent())[:2]
             correction = dgetrs(*factor, residual.ravel())[0].reshape(change.shape)
@@ -231,13 +233,18 @@ class Motion:
             moves = float(np.max(np.abs(correction / self.sizes)))
             if not moves < _FAR or (now.kinked and iteration > _KINKED):
                 break
-            # what is left after it falls once more as the corrections do
-            falls = min(1.0, moves / last) if last < np.inf else 1.0
-            if settled and (moves * falls < _CLOSE or (moves < _LOOSE and moves > last / 2)):
+            # what is left after it falls once more as the corrections do; where something is
+            # touched they may fall otherwise, and a small one still is energy
+            falls = 1.0 if now.kinked or last == np.inf else min(1.0, moves / last)
+            loose = _LOOSE_KINKED if now.kinked else _LOOSE
+            if settled and (moves * falls < _CLOSE or (moves < loose and moves > last / 2)):
                 found = now.moved(change, iteration)
                 outside = self.rod.law.outside(found.strains, found.pressure)
                 if outside:
                     raise NoEquilibriumError(f"at {found.time:.6g} s: {outside}")
+                if now.leapt(found.shape):
+                    text = "it moves through a thin obstacle in one step"
+                    raise NoEquilibriumError(f"at {found.time:.6g} s: {text}")
                 return found
             slow = not settled or moves > _SLOW * last
             last = moves

@@ -73,6 +73,11 @@ def test_wrong_input_ends_with_1(
         (["sweep", BASELINE, "--jobs", "x"], "Invalid value for --jobs"),
         (["control", BASELINE, "--suply", "1"], "Unknown option: --suply. Did you mean --supply?"),
         (["control", BASELINE, "--plant", "sectio"], 'Invalid value "sectio" for --plant'),
+        (["control", BASELINE, "--steps", "60 deg"], '--steps: "60 deg" alone, expected two val'),
+        (
+            ["control", BASELINE, "--sine", "60 deg", "--hold", "1 s"],
+            '--sine: "60 deg" alone, expected two values, such as ',
+        ),
         (["completion", "bsh"], 'Invalid value "bsh" for SHELL'),
     ],
 )

@@ -80,9 +80,9 @@ def test_the_tangent_of_a_step_is_that_of_differences(
     scale = np.outer(1 / motion.sizes.ravel(), 1 / motion.sizes.ravel())
     wrong = np.abs(tangent - exact) / scale
     # of a bar the direction turns with the step, of which the tangent has the greater part
-    assert wrong.max() < (1e-6 if isinstance(obstacle, Plane) else 1e-2) * np.abs(
-        exact / scale
-    ).max()
+    assert (
+        wrong.max() < (1e-6 if isinstance(obstacle, Plane) else 1e-2) * np.abs(exact / scale).max()
+    )
 
 
 def particle(touching: float) -> tuple[Motion, Touch]:
@@ -104,7 +104,9 @@ def momentum(motion: Motion, moving: Moving) -> float:
     return float(motion.inertia[-1, 3, 3] * moving.velocity[-1, 1, 3])
 
 
-def fallen(motion: Motion, table: Touch, step: float, count: int) -> tuple[list[Moving], list[Event]]:
+def fallen(
+    motion: Motion, table: Touch, step: float, count: int
+) -> tuple[list[Moving], list[Event]]:
     free = Motion(motion.rod, lambda time: Level(amounts=(1.0, 0.0)), touching=motion.touching)
     gap = Watch("table", lambda state: table.gap(state.shape, 1.0), free)
     course = Course(motion, motion.at(motion.rod.layout.at_rest()), [gap])
@@ -182,3 +184,18 @@ def test_a_rod_comes_to_rest_in_its_equilibrium_on_a_table() -> None:
     apart = np.linalg.norm(state.shape.places - last.shape.places, axis=1).max()
     assert apart < 2e-3
     assert force == pytest.approx(float(table.touched(state.shape, 1.0).force[1]), rel=2e-2)
+
+
+def test_no_step_passes_through_a_thin_bar() -> None:
+    """A step of the tip by far more than a bar is halved until the bar is met."""
+    layout = BAR.layout(6)
+    inertia = spread(layout, [BAR.mass()])
+    bar = Touch(skin(layout), Cylinder((0.0, -16.0, 100.0), (1.0, 0.0, 0.0), 2.0), 0.05)
+    rod = Rod(layout, BAR.law(PLANE), inertia, [Weight(inertia, DOWN), bar])
+    motion = Motion(rod, lambda time: ON, retarded(rod, 0.004), touching=0.004)
+    rates = np.zeros(layout.shape)
+    rates[:, 1] = 25 / BAR.length
+    *_, last = motion.run(motion.at(layout.at_rest(), rates), 0.03, 5)
+    # over the bar at last, not below it
+    place = last.shape.along(np.array([100.0]))[0, :, 3]
+    assert place[1] > -16.0
