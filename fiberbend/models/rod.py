@@ -61,9 +61,10 @@ class Rod(SlenderModel):
                 yield path, "the law of a section is of pressures above zero, and no vacuum"
             if case.time is not None and (effect.touches() or effect.strips() is not None):
                 yield path, "what a rod in motion touches is not known: it is put beside nothing"
-        if not wound(case).plane:
-            reason = wound(case).words()
-            yield "effects", f"the law of a section that twists by itself is not known: {reason}"
+            if not wound(case).plane and (effect.touches() or effect.strips() is not None):
+                yield path, "what a rod touches that twists by itself is not known"
+        if not wound(case).plane and case.time is not None:
+            yield "time", "a motion is known of sections that keep to their plane"
         if case.output.fields and "fields" in case.output.model_fields_set:
             yield "output.fields", "a rod has no fields: its sections are known by their law alone"
 

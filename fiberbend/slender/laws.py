@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +20,10 @@ from rod.inertia import SectionMass
 from rod.law import Law, Zones
 from rod.layout import AT_REST, STRAINS, Layout
 from rod.quartic import Quartic
+
+if TYPE_CHECKING:
+    from fiberbend.sectionlaw.made import Made
+    from fiberbend.sectionlaw.path.made import PathMade
 
 ERROR = 1e-3
 """Of the table of a section, as `fiberbend.sectionlaw.table.law_of` has it."""
@@ -58,9 +63,13 @@ class SectionLaw:
 
 def strains_of(case: Case) -> tuple[str, ...]:
     """Strains of a rod: those of a plane where its sections and all that acts leave it there."""
-    zones = zone_cases(case)
     across = any(effect.mirror_breaker() for effect in case.acting)
-    return SPACE if across or not all(wound(zone).plane for zone in zones) else PLANE
+    return SPACE if across or twists_by_itself(case) else PLANE
+
+
+def twists_by_itself(case: Case) -> bool:
+    """Whether a section of it twists or bends to the side: its laws are about free states then."""
+    return not all(wound(zone).plane for zone in zone_cases(case))
 
 
 def pieces_of(case: Case, pieces: int) -> tuple[int, ...]:
@@ -91,16 +100,7 @@ def section_law(
     Raises:
         fiberbend.schema.problems.CaseError: a section has no law that reaches as far as the case.
     """
-    from fiberbend.sectionlaw.range import loads_of
-    from fiberbend.sectionlaw.store import Store
-    from fiberbend.sectionlaw.table import law_of
-    from fiberbend.slender.beside import section_case
-
-    store, loads = Store(), loads_of(case)
-    made = [
-        law_of(section_case(zone), strains, ERROR, store=store, tell=tell, loads=loads)
-        for zone in zone_cases(case)
-    ]
+    made, remarks = _made(case, strains, tell)
     laws = [each.law for each in made]
     pieces = np.repeat(np.arange(len(laws)), counts or 1).tolist()
     known = [each.checked for each in made]
@@ -111,8 +111,28 @@ def section_law(
         states=sum(each.solved for each in made),
         seconds=sum(each.seconds for each in made),
         error=max(max(each.force, each.moment, each.area) for each in known),
-        remarks=tuple(dict.fromkeys([r for each in made for r in each.remarks] + store.remarks)),
+        remarks=tuple(dict.fromkeys([r for each in made for r in each.remarks] + remarks)),
     )
+
+
+def _made(
+    case: Case, strains: tuple[str, ...], tell: Callable[[str], None] | None
+) -> tuple[Sequence[Made | PathMade], list[str]]:
+    """The law of each zone, and what is wrong with the cache."""
+    from fiberbend.sectionlaw.path.make import law_about
+    from fiberbend.sectionlaw.path.store import PathStore
+    from fiberbend.sectionlaw.range import loads_of
+    from fiberbend.sectionlaw.store import Store
+    from fiberbend.sectionlaw.table import law_of
+    from fiberbend.slender.beside import section_case
+
+    loads, zones = loads_of(case), [section_case(zone) for zone in zone_cases(case)]
+    if twists_by_itself(case):
+        about = PathStore()
+        return [law_about(zone, ERROR, about, tell, loads) for zone in zones], about.remarks
+    store = Store()
+    made = [law_of(zone, strains, ERROR, store=store, tell=tell, loads=loads) for zone in zones]
+    return made, store.remarks
 
 
 def along(case: Case, made: SectionLaw, cap: Quartic, layout: Layout, chamber: slice) -> Law:
