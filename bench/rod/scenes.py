@@ -151,6 +151,7 @@ _STRIPS = [
     {"winding": WINDING},
     {"blocked-tip": {"roof_width": "4 mm", "post_length": "2 mm"}},
 ]
+_HELIX = {"at_pressures": [f"{p} kPa" for p in range(10, 110, 10)]}
 _THUMB = {"at_pressures": [f"{p} kPa" for p in range(2, 26, 2)]}
 
 SCENES = (
@@ -191,6 +192,10 @@ SCENES = (
     ),
     _tube("tube", "a tube that twists"),
     _tube("tube_weight", "the tube, weight along −y", WEIGHT),
+    Scene(
+        "helix", "one helix alone", "single_helix", {"output": _HELIX}, (8.0, 4.0), (1, 1),
+        band=3.0,
+    ),
     Scene(
         "thumb", "a thumb of three zones", "thumb", {"output": _THUMB}, (4.0, 2.0), (1, 1),
         band=3.0,

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import wound
+from fiberbend.case.zones import zone_cases
 from fiberbend.columns import MIDDLE, OBSTACLES, SOLVED, TIMED
 from fiberbend.columns import ZONES as OF_ZONES
 from fiberbend.effects.blocked_tip import OF_STRIPS
@@ -18,8 +19,9 @@ from fiberbend.models.model import ModelKind, Objection, SlenderModel
 _MEASURED = ("hemicircle",)
 """Sections with which it is beside a body (docs/evidence/rod.md)."""
 _ROUNDING = 1e-9
-_SECTION_S, _CELL_S = 8.0, 15.0
-"""Seconds for the table of a section and of a cell, of the baseline (`fiberbend table`)."""
+_SECTION_S, _CELL_S, _ABOUT_S = 8.0, 15.0, 30.0
+"""Seconds for the table of a section and of a cell, of the baseline (`fiberbend table`), and for
+the law of a section that twists."""
 
 
 class Rod(SlenderModel):
@@ -38,11 +40,14 @@ class Rod(SlenderModel):
 
     def unknowns(self, case: Case) -> int:
         """A stretch and a curvature each; out of its plane a side curvature and a twist too."""
-        each = 4 if any(effect.mirror_breaker() for effect in case.acting) else 2
+        across = any(effect.mirror_breaker() for effect in case.acting)
+        each = 4 if across or not all(wound(zone).plane for zone in zone_cases(case)) else 2
         return each * (self.pieces + 2 * self.cap_pieces)
 
     def law_seconds(self, case: Case) -> float:
-        """Of a cell more than of a section."""
+        """Of a cell more than of a section, and of what twists by itself most."""
+        if not wound(case).plane:
+            return _ABOUT_S
         turns = case.turns
         return _CELL_S if turns is not None and turns.discrete else _SECTION_S
 

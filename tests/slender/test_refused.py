@@ -16,6 +16,7 @@ from fiberbend.schema.problems import CaseError
 from fiberbend.sectionlaw import store
 from fiberbend.sectionlaw.store import Store
 from fiberbend.slender.kept import laws_to_make
+from fiberbend.slender.laws import SPACE, strains_of
 from tests.slender.rods import QUIET, ROUND, RUBBER, WOUND, case, spec
 
 PRESSED = {"pressure": {"to": "20 kPa"}}
@@ -46,10 +47,32 @@ def test_what_it_cannot_have_is_refused_by_name(
     assert line in str(refused.value)
 
 
-def test_a_winding_with_a_hand_is_refused() -> None:
-    wound = WOUND | {"pattern": "single-helix-left"}
-    with pytest.raises(CaseError, match="that twists by itself is not known: half a turn about y"):
-        parse_case(spec() | {"effects": [PRESSED, {"winding": wound}]})
+MOVES = {"duration": "1 s", "pressure": {"ramp": {"to": "20 kPa", "over": "0.1 s"}}}
+HANDED = {"winding": WOUND | {"pattern": "single-helix-left"}}
+
+
+def test_a_winding_with_a_hand_is_a_rod_in_space() -> None:
+    handed = parse_case(spec() | {"effects": [PRESSED, HANDED]})
+    assert strains_of(handed) == SPACE
+    assert make_plan(handed).unknowns == 4 * (48 + 2 * 4)
+    assert choose_model(parse_case(handed.resolved() | {"model": "auto"}))[0].name != "rod"
+
+
+@pytest.mark.parametrize(
+    ("effects", "changes", "line"),
+    [
+        ([{"blocked-tip": {}}], {}, "effects.2.blocked-tip: model rod does not support it"),
+        ([], {"time": MOVES}, "time: model rod does not support it"),
+    ],
+)
+def test_what_a_twisting_rod_cannot_have(
+    effects: list[dict[str, Any]], changes: dict[str, Any], line: str
+) -> None:
+    data = spec(PRESSED, **changes)
+    data["effects"] = [PRESSED, HANDED, *effects]
+    with pytest.raises(CaseError) as refused:
+        parse_case(data)
+    assert line in str(refused.value)
 
 
 def test_one_line_makes_a_body_of_it() -> None:

@@ -16,12 +16,17 @@ from rod.spline import Axis
 
 DEGREE = 5
 """Of the splines by the pressure."""
+_LINEAR, _BY_PRESSURE = 2, 3
+"""Forces and stiffnesses of the free states, terms of no higher degree in u, follow the pressure
+by splines; the terms beyond by polynomials of this degree, which few states determine."""
 _SINGULAR = 1e-12
 
 
 def unknowns(degree: int, intervals: int, kept: Kept) -> int:
     """Coefficients of a law."""
-    return len(terms(degree, kept).weights) * (intervals + DEGREE)
+    orders = terms(degree, kept).orders
+    low = int(np.sum(orders <= _LINEAR))
+    return low * (intervals + DEGREE) + (len(orders) - low) * (1 + _BY_PRESSURE)
 
 
 def fitted(
@@ -31,11 +36,13 @@ def fitted(
     intervals: int,
     high: float,
     samples: Sequence[About],
+    ranges: Floats,
+    area: float,
 ) -> PathLaw:
     """The law nearest to energies, forces, areas and stiffnesses of states, by least squares.
 
-    Derivatives count by the usual stiffness against their own coordinate, so that the strains count
-    that an error makes, and units do not matter.
+    A force counts as `errors` has it, by the strain that its error makes; a second derivative by
+    what it makes of both of its forces over the box.
 
     Args:
         chart: coordinates u.
@@ -44,37 +51,65 @@ def fitted(
         intervals: of the splines by the pressure.
         high: greatest pressure, MPa.
         samples: states.
+        ranges: of the strains, (4,).
+        area: range of the area of the chamber, mm².
     """
     axis, found = Axis(graded(high, intervals), DEGREE), terms(degree, kept)
     u = np.array([each.point[:4] for each in samples])
-    by_u, by_p = found.rows(u), rows(axis, np.array([each.point[4] for each in samples]))
+    pressures = np.array([each.point[4] for each in samples])
+    by_u, by_p = found.rows(u), rows(axis, pressures)
+    low, beyond = found.orders <= _LINEAR, _polynomials(pressures / high) / high**_ORDERS
     slopes = np.array([each.slopes for each in samples])
     second = np.array([each.second for each in samples])
     stiff = np.median(np.diagonal(second, axis1=1, axis2=2)[:, :4], axis=0)
-    unit = float(np.sqrt(stiff.min()))
-    weight = unit / np.sqrt(stiff)
-    blocks = [_product(by_p[0], by_u[0])]
-    aims = [np.array([each.state.energy for each in samples])]
+    # of errors of ∂Φ/∂u and of ∂Φ/∂(P over the greatest)
+    weight = np.append(np.abs(chart.sizes) / (stiff * ranges), 1 / (area * high))
+    blocks, aims = list[Floats](), list[Floats]()
 
     def add(order: int, polynomials: Floats, aim: Floats, factor: float) -> None:
-        blocks.append(factor * _product(by_p[order], polynomials))
+        factor *= high**order
+        both = [_product(by_p[order], polynomials[:, low])]
+        both.append(_product(beyond[order], polynomials[:, ~low]))
+        blocks.append(factor * np.concatenate(both, axis=1))
         aims.append(factor * aim)
 
-    for order in (1, 2):
-        aim = slopes[:, 4] if order == 1 else second[:, 4, 4]
-        add(order, by_u[0], aim, high**order)
+    add(0, by_u[0], np.array([each.state.energy for each in samples]), weight[4])
+    add(1, by_u[0], slopes[:, 4], weight[4])
+    add(2, by_u[0], second[:, 4, 4], weight[4])
     for i in range(VARIABLES):
         add(0, by_u[1][i], slopes[:, i], weight[i])
-        add(1, by_u[1][i], second[:, i, 4], weight[i] * high)
+        add(1, by_u[1][i], second[:, i, 4], np.sqrt(weight[i] * weight[4]))
         for j in range(i, VARIABLES):
-            add(0, by_u[2][i, j], second[:, i, j], weight[i] * weight[j])
+            add(0, by_u[2][i, j], second[:, i, j], np.sqrt(weight[i] * weight[j]))
     matrix = np.concatenate(blocks)
     lengths = np.sqrt(np.sum(matrix**2, axis=0))
     lengths[lengths == 0] = 1.0
     best, *_ = np.linalg.lstsq(matrix / lengths, np.concatenate(aims), rcond=_SINGULAR)
-    by_spline = (best / lengths).reshape(axis.count, -1)
+    best = best / lengths
+    by_spline, count = np.empty((axis.count, len(low))), axis.count * int(low.sum())
+    by_spline[:, low] = best[:count].reshape(axis.count, -1)
+    by_spline[:, ~low] = _as_splines(axis) @ best[count:].reshape(1 + _BY_PRESSURE, -1)
     curve = Curve(axis.lines, DEGREE, by_spline @ found.weights)
     return PathLaw(chart, degree, curve, kept.alike)
+
+
+_ORDERS = np.arange(3.0)[:, None, None]
+
+
+def _polynomials(parts: Floats) -> Floats:
+    """Powers of P over the greatest with two derivatives by it, (3, n, powers)."""
+    j = np.arange(1 + _BY_PRESSURE)
+    t = parts[:, None]
+    rates = (t**j, j * t ** np.maximum(j - 1, 0), j * (j - 1) * t ** np.maximum(j - 2, 0))
+    return np.array(rates)
+
+
+def _as_splines(axis: Axis) -> Floats:
+    """Coefficients of splines that are the powers of P over the greatest, exactly."""
+    places = np.linspace(0.0, 1.0, 4 * axis.count)
+    known = rows(axis, places * axis.lines[-1])[0]
+    found, *_ = np.linalg.lstsq(known, _polynomials(places)[0], rcond=None)
+    return np.asarray(found)
 
 
 def _product(splines: Floats, polynomials: Floats) -> Floats:

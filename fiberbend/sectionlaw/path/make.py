@@ -34,17 +34,19 @@ from fiberbend.trial.calibrations import Calibrations
 from rod.functions import Floats
 from rod.table import NotReachedError
 
-_PARTS = ((1.0, 1.0), (0.5, 1.0), (0.2, 1.0), (0.2, 0.5), (0.1, 0.2))
+_PARTS = ((1.0, 1.0), (0.5, 1.0), (0.2, 0.5), (0.05, 0.2))
 """Of the usual range, at rest and at the greatest pressure, tried in turn where a section has no
 state at its faces, or no law there that so many states make exact."""
-_DEGREES, _INTERVALS = (2, 3, 4, 5, 6), (1, 2, 3, 4)
+_DEGREES, _INTERVALS = (3, 4, 5, 6), (2, 4, 6)
 """Of the polynomials, and of their splines by the pressure, from which one is chosen."""
 _KNOWN = 21
 """Numbers that a state tells: Φ, its slopes and second derivatives."""
 _MORE = 1.5
 """Numbers that are known over unknowns of a law, at least."""
-_FIRST, _GROWN, _MOST = 16, 1.6, 110
+_FIRST, _GROWN, _MOST = 24, 1.6, 110
 """States to begin with, how they grow, and the greatest number of those that are fitted."""
+_FAR, _LATE = 10.0, 40
+"""Times the error that is asked for, beyond which so many states or more end an attempt."""
 _CHECKS = 16
 """States that are never fitted."""
 _PRESSURES, _RANDOM = 40, 200
@@ -159,21 +161,21 @@ def _reached(
     """
     # the checks are bent in any direction, also where one stands for all that are fitted
     about.ask(spread(0, _CHECKS, kept.alike, turned=True))
-    begun, wanted, worst = _CHECKS, _FIRST, np.inf
-    while wanted <= _MOST:
+    high = float(path[-1].at[4])
+    begun, wanted, least = _CHECKS, _FIRST, np.inf
+    while wanted <= _MOST and not (wanted > _LATE and least > _FAR * error):
         about.ask(spread(begun, _CHECKS + wanted - begun, kept.alike))
         begun = _CHECKS + wanted
         checks, samples = about.found[:_CHECKS], about.found[_CHECKS:]
         ranges, area = _ranges(about.chart.sizes, path, about.found)
         for degree, intervals in _tried(kept, wanted):
-            law = fitted(about.chart, kept, degree, intervals, float(path[-1].at[4]), samples)
+            law = fitted(about.chart, kept, degree, intervals, high, samples, ranges, area)
             off = float(errors(law, checks, ranges, area).max())
-            off = max(off, _angle(law, reach))
-            worst = min(worst, off)
-            if off <= error:
+            least = min(least, off)
+            if off <= error and _angle(law, reach) <= error:
                 return law, _CHECKS
         wanted = round(_GROWN * wanted)
-    text = f"forces of the law are off by {worst:.2g} of their range, {error:.2g} asked for"
+    text = f"forces of the law are off by {least:.2g} of their range, {error:.2g} asked for"
     raise NotReachedError(f"{text}, with {len(about.found)} states")
 
 
@@ -200,7 +202,11 @@ def _angle(law: PathLaw, reach: Reach) -> float:
     turns = max(float(np.abs(state[1:]).max()) for _, state in reach.free)
     bends = turns * reach.height > 1e-6
     size = turns if bends else max(abs(state.stretch - 1.0) for _, state in reach.free)
-    off = [np.abs(np.array(law.free_at(p)) - np.array(state)) for p, state in reach.free]
+    try:
+        off = [np.abs(np.array(law.free_at(p)) - np.array(state)) for p, state in reach.free]
+    except ValueError:
+        # so far off that it is not within the range
+        return np.inf
     return max(float((each[1:] if bends else each[:1]).max()) for each in off) / size
 
 

@@ -16,9 +16,10 @@ from rod.functions import Floats
 
 MARGIN = 0.25
 """Beyond what loads make."""
-BENT, LONG = 0.1, 0.01
-"""Greatest strain of the outside by bending or twist about a free state, times two, and of the line
-by forces, whatever the loads."""
+BENT, TWISTED, LONG = 0.08, 0.05, 0.01
+"""Greatest curvature and twist about a free state, times the height of the section, and strain of
+the line by forces, whatever the loads: a helix of threads yields to a twist at once, and then
+hardly."""
 _ALONG = 12
 """Free states from rest to the greatest pressure."""
 _LINES, _DEGREE = 4, 5
@@ -32,13 +33,14 @@ _TRIED = 2
 """Neighbours from which a state is looked for."""
 _COUNTS = (1, 3, 8)
 """Steps to it, tried in turn."""
+_GRADED = 1.25
 _TOLD = 20
 """States between two lines of progress."""
 
 
 def graded(high: float, intervals: int) -> Floats:
     """Lines of splines by the pressure: threads go taut in the first kilopascals."""
-    lines: Floats = high * (np.arange(intervals + 1) / intervals) ** 1.5
+    lines: Floats = high * (np.arange(intervals + 1) / intervals) ** _GRADED
     return lines
 
 
@@ -104,7 +106,7 @@ def chart_of(
     joined = Curve(curve.lines, curve.degree, np.concatenate([curve.coefficients, beside], axis=1))
     own = [np.diag(_condensed(state)) for state in path]
     turns = (1 + MARGIN) * reach.moment / np.min(own, axis=0)
-    turns = np.minimum(turns, BENT / reach.height)
+    turns = np.minimum(turns, np.array([BENT, BENT, TWISTED]) / reach.height)
     if alike:
         turns[:2] = turns[:2].min()
     stiff = min(float(state.second[0, 0]) for state in path)

@@ -51,6 +51,12 @@ class Terms:
     powers: npt.NDArray[np.intp]
     weights: Floats
 
+    @property
+    def orders(self) -> npt.NDArray[np.intp]:
+        """Degree of each polynomial, (t,)."""
+        found: npt.NDArray[np.intp] = ((self.weights != 0) * self.powers.sum(axis=1)).max(axis=1)
+        return found
+
     def rows(self, u: Floats) -> tuple[Floats, Floats, Floats]:
         """Value, slopes and second derivatives of the polynomials at points.
 

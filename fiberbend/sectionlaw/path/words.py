@@ -37,7 +37,8 @@ def lines(made: PathMade) -> Iterator[str]:
         )
     yield f"  stretch        ±{sizes[0]:.3g} by forces along the line, free 1 to {free.stretch:.4g}"
     if law.chart.least < 1:
-        yield f"  range      {100 * law.chart.least:.3g} % of that at rest, growing with the pressure"
+        share = 100 * law.chart.least
+        yield f"  at rest    {share:.3g} % of these ranges, which grow with the pressure"
     if law.alike:
         yield "  bent alike in all directions"
     yield (
