@@ -17,6 +17,8 @@ COLUMNS = (
 )
 """Of the CSV; energy is that of section and air, whose slopes are forces and chamber."""
 
+_ROUND_OFF = 1e-6
+
 
 def lines(made: PathMade) -> Iterator[str]:
     """What a law is: range, states, errors, seconds."""
@@ -31,6 +33,8 @@ def lines(made: PathMade) -> Iterator[str]:
     free, sizes = law.free_at(high), law.chart.at(high)
     for name, size in zip(law.strains[1:], sizes[1:].tolist(), strict=True):
         value = getattr(free, name)
+        # by symmetry it has none, but for round-off
+        value = value if abs(value) > _ROUND_OFF * size else 0.0
         yield (
             f"  {name.replace('_', ' '):<14} ±{1e3 * size:.4g} 1/m about the free one, 0 to "
             f"{1e3 * value:.4g} 1/m: {np.degrees(value * made.length):.4g}° over {made.length:g} mm"
