@@ -34,9 +34,10 @@ from fiberbend.trial.calibrations import Calibrations
 from rod.functions import Floats
 from rod.table import NotReachedError
 
-_PARTS = ((1.0, 1.0), (0.5, 1.0), (0.2, 0.5), (0.05, 0.2))
+_PARTS = ((1.0, 1.0), (0.5, 1.0), (0.2, 0.5), (0.0002, 0.02))
 """Of the usual range, at rest and at the greatest pressure, tried in turn where a section has no
-state at its faces, or no law there that so many states make exact."""
+state at its faces, or no law there that so many states make exact: where parts of a strip go slack
+one after another, none but next to the free states."""
 _DEGREES, _INTERVALS = (3, 4, 5, 6), (2, 4, 6)
 """Of the polynomials, and of their splines by the pressure, from which one is chosen."""
 _KNOWN = 21
@@ -45,8 +46,8 @@ _MORE = 1.5
 """Numbers that are known over unknowns of a law, at least."""
 _FIRST, _GROWN, _MOST = 24, 1.6, 110
 """States to begin with, how they grow, and the greatest number of those that are fitted."""
-_FAR, _LATE = 10.0, 40
-"""Times the error that is asked for, beyond which so many states or more end an attempt."""
+_FAR = 10.0
+"""Times the error that is asked for, beyond which more states are not tried."""
 _CHECKS = 16
 """States that are never fitted."""
 _PRESSURES, _RANDOM = 40, 200
@@ -147,7 +148,7 @@ def _made(
             seconds=time.process_time() - began,
             remarks=tuple(remarks),
         )
-    raise CaseError([Problem("effects.pressure", f"{last}, expected a smaller one")])
+    raise CaseError([Problem("effects", f"no law of the section about its free states: {last}")])
 
 
 def _reached(
@@ -163,7 +164,7 @@ def _reached(
     about.ask(spread(0, _CHECKS, kept.alike, turned=True))
     high = float(path[-1].at[4])
     begun, wanted, least = _CHECKS, _FIRST, np.inf
-    while wanted <= _MOST and not (wanted > _LATE and least > _FAR * error):
+    while wanted <= _MOST and (wanted == _FIRST or least <= _FAR * error):
         about.ask(spread(begun, _CHECKS + wanted - begun, kept.alike))
         begun = _CHECKS + wanted
         checks, samples = about.found[:_CHECKS], about.found[_CHECKS:]
