@@ -12,12 +12,16 @@ from fiberbend.sectionlaw.made import Checked
 from fiberbend.sectionlaw.path.chart import PathChart
 from fiberbend.sectionlaw.path.curve import Curve, through
 from fiberbend.sectionlaw.path.fit import errors, fitted, unknowns
-from fiberbend.sectionlaw.path.law import PathLaw
+from fiberbend.sectionlaw.path.law import SPACE, PathLaw
 from fiberbend.sectionlaw.path.made import PathMade, States, unpacked
-from fiberbend.sectionlaw.path.states import About, graded, spread
+from fiberbend.sectionlaw.path.states import About, graded
+from fiberbend.sectionlaw.path.states import spread as spread_out
 from fiberbend.sectionlaw.path.terms import Kept, powers_of, terms
 from fiberbend.sectionlaw.states.held import HeldState
 from rod.functions import Floats
+from rod.inertia import SectionMass, spread
+from rod.layout import Layout
+from rod.rod import Level, Rod
 
 HIGH, PRESSURE = 0.1, 0.037
 TURNED = Kept(turn=True)
@@ -129,7 +133,7 @@ def about(law: PathLaw, points: Floats) -> list[About]:
 def test_a_fit_finds_the_law_that_is_there(kept: Kept) -> None:
     """From few states: each tells twenty-one numbers."""
     law = law_of(kept)
-    points = spread(0, 30, kept.alike) * np.array([1, 1, 1, 1, HIGH])
+    points = spread_out(0, 30, kept.alike) * np.array([1, 1, 1, 1, HIGH])
     known = about(law, points)
     assert unknowns(3, 2, kept) < 21 * 24
     found = fitted(law.chart, kept, 3, 2, HIGH, known[:24], np.ones(4), 1.0)
@@ -172,3 +176,24 @@ def test_a_file_has_it_whole() -> None:
     np.testing.assert_array_equal(again.samples.slopes, made.samples.slopes)
     with pytest.raises(ValueError, match="no law"):
         unpacked(made.packed()[:-100])
+
+
+def test_the_law_of_the_other_hand_is_the_mirror_image() -> None:
+    """With the same numbers at mirrored places; a rod of it stands mirrored in x = 0."""
+    law, image = law_of(Kept()), np.array([1.0, 1.0, -1.0, -1.0])
+    own = law.chart
+    turned = own.path.coefficients * np.array([*image, *image[1:]])
+    path = dataclasses.replace(own.path, coefficients=turned)
+    chart = dataclasses.replace(own, path=path, sizes=tuple(image * own.sizes))
+    other = dataclasses.replace(law, chart=chart)
+    strains = places(law, 5)
+    forces = other.gradient(strains * image, PRESSURE) * image
+    np.testing.assert_allclose(forces, law.gradient(strains, PRESSURE), rtol=1e-11)
+    shapes = []
+    for each, sign in ((law, np.ones(4)), (other, image)):
+        layout = Layout(np.full(5, 12.0), SPACE)
+        rod = Rod(layout, each, spread(layout, [SectionMass(0.0)]))
+        shapes.append(rod.shape(strains * sign))
+        assert rod.outside(shapes[-1], Level(PRESSURE)) == ""
+    mirrored = shapes[1].places * np.array([-1.0, 1.0, 1.0])
+    np.testing.assert_allclose(mirrored, shapes[0].places, atol=1e-12)
