@@ -53,18 +53,18 @@ def rows(axis: Axis, pressures: Floats) -> Floats:
 
 
 def through(lines: Floats, degree: int, pressures: Floats, values: Floats, slopes: Floats) -> Curve:
-    """By least squares of values and slopes.
+    """By least squares of values, and of slopes at the last of them.
 
     Args:
         lines: ends of the intervals, MPa.
         degree: of the splines.
         pressures: (n,), MPa.
         values: (n, ...).
-        slopes: by the pressure, (n, ...).
+        slopes: by the pressure, (m, ...).
     """
     axis, span = Axis(lines, degree), float(lines[-1] - lines[0])
     own, slope, _ = rows(axis, pressures)
-    matrix = np.concatenate([own, span * slope])
-    aim = np.concatenate([values, span * slopes]).reshape(2 * len(pressures), -1)
+    matrix = np.concatenate([own, span * slope[-len(slopes) :]])
+    aim = np.concatenate([values, span * slopes]).reshape(len(matrix), -1)
     found, *_ = np.linalg.lstsq(matrix, aim, rcond=None)
     return Curve(lines, degree, found.reshape(axis.count, *values.shape[1:]))

@@ -18,7 +18,7 @@ SPACE = ("stretch", "curvature", "side_curvature", "twist")
 _OUTSIDE = 1e-9
 _PLACES, _KEPT = 3, 1000
 """Places that a law remembers, of no more sections."""
-_STEPS, _CLOSE = 50, 1e-11
+_STEPS, _CLOSE, _ROUND_OFF = 50, 1e-11, 1e-13
 _PAIRS = [(i, j) for i in range(VARIABLES) for j in range(i, VARIABLES)]
 
 
@@ -166,7 +166,7 @@ class PathLaw(Derived):
         for _ in range(_STEPS):
             step = np.linalg.solve(self.hessian(at, pressure)[0], self.gradient(at, pressure)[0])
             at = at - step
-            if np.abs(step / sizes).max() < _CLOSE:
+            if np.all(np.abs(step) < _CLOSE * sizes + _ROUND_OFF):
                 break
         else:
             raise ValueError(f"no free state of the law at {1e3 * pressure:.6g} kPa")

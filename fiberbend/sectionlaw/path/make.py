@@ -126,7 +126,7 @@ def _made(
     for part in _PARTS:
         about = Surroundings(held, chart_of(path, reach, part, kept.alike), path, tell)
         try:
-            law, checks = _reached(about, kept, path, reach, error)
+            law, known = _reached(about, kept, path, reach, error, part[1])
         except (NoStateError, NotReachedError) as stop:
             last = str(stop)
             continue
@@ -136,8 +136,8 @@ def _made(
             remarks.append(f"{last}: {text}, {full:g} % at the greatest pressure")
         return PathMade(
             law=law,
-            checked=_checked(law, about.found[:checks], path, reach),
-            samples=_states(about.found, checks),
+            checked=known,
+            samples=_states(about.found, known.states),
             error=error,
             digest=digest,
             title=case.title or "",
@@ -152,9 +152,22 @@ def _made(
 
 
 def _reached(
-    about: Surroundings, kept: Kept, path: list[HeldState], reach: Reach, error: float
-) -> tuple[PathLaw, int]:
-    """A law that is as exact as asked for, and how many of the first states it is checked at.
+    about: Surroundings,
+    kept: Kept,
+    path: list[HeldState],
+    reach: Reach,
+    error: float,
+    part: float,
+) -> tuple[PathLaw, Checked]:
+    """A law that is as exact as asked for, checked at the first states.
+
+    Args:
+        about: the section about its free states.
+        kept: symmetries.
+        path: free states.
+        reach: with those that trials have found.
+        error: asked for, in parts of the usual ranges, however wide the law's own are.
+        part: of the usual range that it has.
 
     Raises:
         NoStateError: a state is not found.
@@ -168,13 +181,13 @@ def _reached(
         about.ask(spread(begun, _CHECKS + wanted - begun, kept.alike))
         begun = _CHECKS + wanted
         checks, samples = about.found[:_CHECKS], about.found[_CHECKS:]
-        ranges, area = _ranges(about.chart.sizes, path, about.found)
+        ranges, area = _ranges(np.abs(about.chart.sizes) / part, path, about.found)
         for degree, intervals in _tried(kept, wanted):
             law = fitted(about.chart, kept, degree, intervals, high, samples, ranges, area)
-            off = float(errors(law, checks, ranges, area).max())
-            least = min(least, off)
-            if off <= error and _angle(law, reach) <= error:
-                return law, _CHECKS
+            off = errors(law, checks, ranges, area)
+            least = min(least, float(off.max()))
+            if off.max() <= error and (angle := _angle(law, reach)) <= error:
+                return law, _checked(law, off, angle)
         wanted = round(_GROWN * wanted)
     text = f"forces of the law are off by {least:.2g} of their range, {error:.2g} asked for"
     raise NotReachedError(f"{text}, with {len(about.found)} states")
@@ -188,13 +201,11 @@ def _tried(kept: Kept, states: int) -> Iterator[tuple[int, int]]:
             yield degree, intervals
 
 
-def _ranges(
-    sizes: Sequence[float], path: list[HeldState], states: Sequence[About]
-) -> tuple[Floats, float]:
-    """Of the strains and of the area: what is about the free states, and these from rest on."""
+def _ranges(sizes: Floats, path: list[HeldState], states: Sequence[About]) -> tuple[Floats, float]:
+    """Of the strains and of the area: the usual about the free states, and these from rest on."""
     along = np.ptp(np.array([state.at[:4] for state in path]), axis=0)
     areas = [each.state.slopes[4] for each in states]
-    ranges: Floats = 2 * np.abs(sizes) + along
+    ranges: Floats = 2 * sizes + along
     return ranges, float(np.ptp(areas))
 
 
@@ -211,16 +222,14 @@ def _angle(law: PathLaw, reach: Reach) -> float:
     return max(float((each[1:] if bends else each[:1]).max()) for each in off) / size
 
 
-def _checked(law: PathLaw, checks: Sequence[About], path: list[HeldState], reach: Reach) -> Checked:
-    ranges, area = _ranges(law.chart.sizes, path, checks)
-    off = errors(law, checks, ranges, area)
+def _checked(law: PathLaw, off: Floats, angle: float) -> Checked:
     softest, where = _softest(law)
     return Checked(
-        states=len(checks),
+        states=_CHECKS,
         force=float(off[0]),
         moment=float(off[1:4].max()),
         area=float(off[4]),
-        angle=_angle(law, reach),
+        angle=angle,
         softest=softest,
         where=where,
     )

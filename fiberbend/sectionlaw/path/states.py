@@ -97,12 +97,13 @@ def chart_of(
     """
     pressures = np.array([state.at[4] for state in path])
     high = float(pressures[-1])
-    rates = np.array([_rate(state) for state in path])
+    rates = np.array([_rate(state) for state in path[1:]])
     # what is left to a free state, to the first order
     ends = np.array([s.at[:4] - np.linalg.solve(s.second[:4, :4], s.slopes[:4]) for s in path])
+    # at rest threads and strips may be about to go slack: what it is there is no rate
     curve = through(graded(high, _LINES), _DEGREE, pressures, ends, rates)
-    slopes = np.array([state.second[0, 1:4] / state.second[0, 0] for state in path])
-    beside = _values(curve, pressures, slopes)
+    slopes = np.array([state.second[0, 1:4] / state.second[0, 0] for state in path[1:]])
+    beside = _values(curve, pressures[1:], slopes)
     joined = Curve(curve.lines, curve.degree, np.concatenate([curve.coefficients, beside], axis=1))
     own = [np.diag(_condensed(state)) for state in path]
     turns = (1 + MARGIN) * reach.moment / np.min(own, axis=0)
