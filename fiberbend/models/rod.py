@@ -77,6 +77,13 @@ class Rod(SlenderModel):
         """What no law of one zone knows of the whole."""
         if case.time is not None:
             yield "time", "a motion is known of actuators that are alike all along"
+        zones = zone_cases(case)
+        slack = any(effect.slackens() for zone in zones for effect in zone.effects)
+        if slack and not all(wound(zone).plane for zone in zones):
+            text = (
+                "beside a zone that twists by itself no law of one is known whose strip goes slack"
+            )
+            yield "zones", text
         for index, effect in enumerate(case.effects):
             own = effect.inflation()
             if own is not None and own.angle is not None:

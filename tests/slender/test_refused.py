@@ -18,6 +18,7 @@ from fiberbend.sectionlaw.store import Store
 from fiberbend.slender.kept import laws_to_make
 from fiberbend.slender.laws import SPACE, strains_of
 from tests.slender.rods import QUIET, ROUND, RUBBER, WOUND, case, spec
+from tests.trial.cases import shipped
 
 PRESSED = {"pressure": {"to": "20 kPa"}}
 
@@ -73,6 +74,12 @@ def test_what_a_twisting_rod_cannot_have(
     with pytest.raises(CaseError) as refused:
         parse_case(data)
     assert line in str(refused.value)
+
+
+def test_the_thumb_is_refused_for_its_strip() -> None:
+    """Each zone by itself could be a rod; what is not fitted to its error is no law."""
+    with pytest.raises(CaseError, match="zones: model rod does not.*whose strip goes slack"):
+        parse_case(shipped("thumb") | {"model": "rod"})
 
 
 def test_one_line_makes_a_body_of_it() -> None:

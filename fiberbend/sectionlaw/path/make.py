@@ -34,10 +34,9 @@ from fiberbend.trial.calibrations import Calibrations
 from rod.functions import Floats
 from rod.table import NotReachedError
 
-_PARTS = ((1.0, 1.0), (0.5, 1.0), (0.2, 0.5), (0.0002, 0.02))
+_PARTS = ((1.0, 1.0), (0.5, 1.0), (0.2, 0.5))
 """Of the usual range, at rest and at the greatest pressure, tried in turn where a section has no
-state at its faces, or no law there that so many states make exact: where parts of a strip go slack
-one after another, none but next to the free states."""
+state at its faces, or no law there that so many states make exact."""
 _DEGREES, _INTERVALS = (3, 4, 5, 6), (2, 4, 6)
 """Of the polynomials, and of their splines by the pressure, from which one is chosen."""
 _KNOWN = 21
