@@ -68,9 +68,9 @@ LEFT = """## What is left, and why
   what the bar is nearer to the body; the outline of the rod is that at rest.
 - Between roof and post: shear. Tried with 62 N in every piece, the force of the roof was too small
   instead of too great, and the tip force moved by ten percent ([On a rod](../contact.md#on-a-rod)).
-- The tube under its weight: its threads have a hand, and across a force they bend it to the side, by
-  1.03 mm at its tip without pressure in both bodies. That is shear and bending together, and a rod
-  has no shear.
+- The tube under its weight: its threads have a hand, and across a force they bend it to the side,
+  by 1.03 mm at its tip without pressure in both bodies. That is shear and bending together, and a
+  rod has no shear.
 """
 
 

@@ -81,7 +81,7 @@ class Rod(SlenderModel):
         slack = any(effect.slackens() for zone in zones for effect in zone.effects)
         if slack and not all(wound(zone).plane for zone in zones):
             text = (
-                "beside a zone that twists by itself no law of one is known whose strip goes slack"
+                "beside a zone that twists by itself no law is known of one whose strip slackens"
             )
             yield "zones", text
         for index, effect in enumerate(case.effects):
