@@ -29,11 +29,13 @@ def table(
 ) -> int:
     """Write the law of a section as a table: energy, force, moment by stretch, curvature, pressure.
 
+    Of a section that twists or bends to the side by itself it is one about its free states.
+
     States are solved until force, moment and chamber are known to the error, then kept: the
     next call takes no time. The range is what the case takes, with margins for loads.
 
     Args:
-        case: Case file of model section or cell that bends in its plane.
+        case: Case file of model section or cell.
         settings: Changes to it.
         error: Greatest error, of strains by errors of forces, of the chamber and of the free angle.
         least: Least pressure; zero unless given.
@@ -54,20 +56,16 @@ def table(
     settle_folders()
     launch.start_mpi()
     from fiberbend.drawing.page import save
-    from fiberbend.sectionlaw import words
-    from fiberbend.sectionlaw.picture import draw
-    from fiberbend.sectionlaw.store import Store
-    from fiberbend.sectionlaw.table import table_of
+    from fiberbend.sectionlaw.shown import shown
 
-    store = Store()
-    made = table_of(checked, asked, start, store, lambda line: say(line, sys.stderr))
-    for line in (*words.lines(made), *(f"  note: {remark}" for remark in store.remarks)):
+    found = shown(checked, asked, start, lambda line: say(line, sys.stderr))
+    for line in found.lines:
         say(line)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        files[0].write_bytes(made.packed())
-        files[1].write_text(words.text(made), encoding="utf-8")
-        save(draw(made), files[2])
+        files[0].write_bytes(found.packed)
+        files[1].write_text(found.text, encoding="utf-8")
+        save(found.page, files[2])
     except OSError as stop:
         raise CaseError([Problem(str(folder), f"{stop.strerror}, expected a folder")]) from None
     say(f"table: {files[0]}, {files[1]}")

@@ -130,6 +130,10 @@ class Effect(Spec):
         """
         return f"{self.name} is not known to be its own image by half a turn about y"
 
+    def slackens(self) -> bool:
+        """Whether parts of it bear tension alone and go slack one after another."""
+        return False
+
     def bends(self) -> bool:
         """Whether it may bend an actuator that is alike above and below."""
         return True

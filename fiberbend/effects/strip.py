@@ -136,6 +136,10 @@ class StripEffect(Effect):
         middle = self.at.arc == 0 if turned is None else _multiple(turned, math.pi)
         return "" if middle else f"a strip at {self.at} is not its own mirror image"
 
+    def slackens(self) -> bool:
+        """Fabric that is not bonded, point by point."""
+        return self.tension_only
+
     def end_breaker(self) -> str:
         """None: it is alike all along."""
         return ""

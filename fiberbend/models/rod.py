@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.symmetry import sheared, wound
+from fiberbend.case.zones import zone_cases
 from fiberbend.columns import MIDDLE, OBSTACLES, SOLVED, TIMED
 from fiberbend.columns import ZONES as OF_ZONES
 from fiberbend.effects.blocked_tip import OF_STRIPS
@@ -29,8 +30,9 @@ from fiberbend.models.model import ModelKind, Objection, SlenderModel
 _MEASURED = ("hemicircle",)
 """Sections with which it is beside a body (docs/evidence/rod.md)."""
 _ROUNDING = 1e-9
-_SECTION_S, _CELL_S = 8.0, 15.0
-"""Seconds for the table of a section and of a cell, of the baseline (`fiberbend table`)."""
+_SECTION_S, _CELL_S, _ABOUT_S = 8.0, 15.0, 30.0
+"""Seconds for the table of a section and of a cell, of the baseline (`fiberbend table`), and for
+the law of a section that twists."""
 
 
 class Rod(SlenderModel):
@@ -51,12 +53,15 @@ class Rod(SlenderModel):
 
     def unknowns(self, case: Case) -> int:
         """A stretch and a curvature each, out of its plane twice as many; and where it shears."""
-        planes = 2 if any(effect.mirror_breaker() for effect in case.acting) else 1
+        across = any(effect.mirror_breaker() for effect in case.acting)
+        planes = 2 if across or not all(wound(zone).plane for zone in zone_cases(case)) else 1
         each = planes * (3 if sheared(case) else 2)
         return each * (self.pieces + 2 * self.cap_pieces)
 
     def law_seconds(self, case: Case) -> float:
-        """Of a cell more than of a section."""
+        """Of a cell more than of a section, and of what twists by itself most."""
+        if not wound(case).plane:
+            return _ABOUT_S
         turns = case.turns
         return _CELL_S if turns is not None and turns.discrete else _SECTION_S
 
@@ -67,13 +72,33 @@ class Rod(SlenderModel):
             text = "the law of a section reaches from rest to a pressure, a volume or an angle"
             yield "effects", f"{text}, expected effect pressure with one"
         if not wound(case).plane:
-            reason = wound(case).words()
-            yield "effects", f"the law of a section that twists by itself is not known: {reason}"
+            yield from self._limits_of_twisting(case)
         if case.output.fields and "fields" in case.output.model_fields_set:
             yield "output.fields", "a rod has no fields: its sections are known by their law alone"
 
+    def _limits_of_twisting(self, case: Case) -> Iterator[Objection]:
+        """Its law is about the free states at pressures from rest on, and was put beside few."""
+        for index, effect in enumerate(case.effects):
+            path, own = f"effects.{index}.{effect.name}", effect.inflation()
+            if effect.touches() or effect.strips() is not None:
+                yield path, "what a rod touches that twists by itself is not known"
+            if own is not None and own.volume is not None:
+                text = (
+                    "the law of a section that twists by itself reaches to a pressure or an angle"
+                )
+                yield f"{path}.volume", f"{text}, expected one"
+            if own is not None and ((own.to or 0.0) < 0 or (own.angle or 0.0) < 0):
+                yield path, "the law of a section that twists by itself is of pressures above zero"
+        if case.time is not None:
+            yield "time", "a motion is known of sections that keep to their plane"
+
     def limits_of_zones(self, case: Case) -> Iterator[Objection]:
         """What no law of one zone knows of the whole."""
+        zones = zone_cases(case)
+        slack = any(effect.slackens() for zone in zones for effect in zone.effects)
+        if slack and not all(wound(zone).plane for zone in zones):
+            text = "beside a zone that twists by itself no law is known of one whose strip slackens"
+            yield "zones", text
         for index, effect in enumerate(case.effects):
             own = effect.inflation()
             for key in ("volume", "angle"):
@@ -105,7 +130,7 @@ class Rod(SlenderModel):
         if case.mesh.element != type(case.mesh)().element:
             yield "mesh.element", "elements of this kind are asked for, and a rod has none"
         if any(effect.mirror_breaker() for effect in case.acting):
-            yield "effects", "a rod is beside a body that bends in the plane x = 0 alone"
+            yield "effects", "out of the plane x = 0 a rod is beside a body in few scenes alone"
         load = case.inflation
         least = 0.0 if load is None else min(load.to or 0.0, load.angle or 0.0)
         rest = convert.dimensions(case.actuator).chamber_volume
@@ -148,6 +173,12 @@ class Rod(SlenderModel):
             "under its weight, 0.2 N, 50 N mm or 20 g at the tip, the angle is within 0.7 % and "
             "the tip within 1 mm of a body of 8 mm elements (docs/evidence/rod.md)"
         )
+        if not all(wound(zone).plane for zone in zone_cases(case)):
+            yield (
+                "a section that twists by itself: free, a tube and a finger under one helix are "
+                "within 1 mm of a body (docs/evidence/rod.md); across a force threads of one hand "
+                "bend it to the side by shear, which a rod does not have"
+            )
         if not case.straight and any(effect.touches() for effect in case.effects):
             yield (
                 "obstacles: around a bar and on a table the baseline touches within 1.6 % of the "

@@ -26,7 +26,7 @@ from fiberbend.sectionlaw.store import Store, digest_of
 from fiberbend.trial.calibrations import Calibrations
 from rod.functions import Floats
 from rod.spline import Samples
-from rod.table import HIGH_DEGREE, NotReachedError, tabulate
+from rod.table import NotReachedError, tabulate
 
 ERROR = 1e-3
 """Of forces by the strains that they make, and of the angle of a free state, see `Checked`."""
@@ -38,11 +38,7 @@ _LEAST = 1e-3
 _PRESSURES: Floats = np.array([0.0, 0.08, 0.22, 0.44, 0.7, 1.0])
 """Lines of a table at first. Threads go taut and the floor arches in the first kilopascals."""
 _PLANE_LINES = (np.linspace(0.0, 1.0, 3), np.linspace(0.0, 1.0, 7), _PRESSURES)
-_TWISTED_LINES = (np.linspace(0.0, 1.0, 2), np.linspace(0.0, 1.0, 5), _PRESSURES[[0, 1, 2, 4, 5]])
-"""Of the pull, of curvature and twist, and of the pressure from the one nearest to rest."""
-_TWISTED_DEGREE, _MOST = 3, 900
-"""A table of three strains has some thousand coefficients: splines of a lower degree, and no more
-states than a minute and a gigabyte take."""
+"""Of the pull, of the curvature, and of the pressure from the one nearest to rest."""
 
 
 def table_of(
@@ -69,8 +65,9 @@ def law_of(
 ) -> Made:
     """The law of a section, from the store or anew.
 
-    Stretch and curvature, and the twist of a section that twists by itself, are tabulated; what
-    loads alone make of side curvature and twist is quadratic, from exact second derivatives.
+    Stretch and curvature are tabulated; what loads alone make of side curvature and twist is
+    quadratic, from exact second derivatives. The law of a section that twists or bends to the side
+    by itself is `fiberbend.sectionlaw.path.make.law_about`.
 
     Args:
         case: a checked case of model section or cell.
@@ -102,15 +99,11 @@ def law_of(
     return made
 
 
-def refuse(case: Case, strains: tuple[str, ...] = PLANE) -> None:
-    """Say by name what the law of a section cannot have.
+def no_law(case: Case) -> list[Problem]:
+    """What no law of a section has, of whatever strains, by name.
 
     Args:
         case: a checked case.
-        strains: of the rod.
-
-    Raises:
-        CaseError: the case has that.
     """
     problems = [
         Problem(f"effects.{index}.{effect.name}", "a table knows no load but a pressure")
@@ -125,14 +118,23 @@ def refuse(case: Case, strains: tuple[str, ...] = PLANE) -> None:
     model, _ = choose_model(case)
     if UNIFORM not in model.fills and not problems:
         problems.append(Problem("model", f"{model.name}, expected section or cell"))
-    symmetry = Symmetry.of(case.acting)
+    return problems
+
+
+def refuse(case: Case, strains: tuple[str, ...] = PLANE) -> None:
+    """Say by name what a table cannot have.
+
+    Args:
+        case: a checked case.
+        strains: of the rod.
+
+    Raises:
+        CaseError: the case has that.
+    """
+    problems, symmetry = no_law(case), Symmetry.of(case.acting)
     if strains[:2] != PLANE:
         problems.append(Problem("strains", f"{', '.join(strains)}: expected stretch and curvature"))
-    if symmetry.sideways and not problems:
-        text = "a table is of a section that keeps to its plane but for a twist"
-        problems.append(Problem("effects", f"{text}; of this one: {symmetry.words()}"))
-    if symmetry.twists and not problems:
-        # a table over twist too has not been made and compared yet: `_TWISTED_LINES`
+    if not symmetry.plane and not problems:
         text = f"a table of {' and '.join(strains)} is of a section that bends in its plane"
         problems.append(Problem("effects", f"{text}; of this one: {symmetry.words()}"))
     if problems:
@@ -157,18 +159,16 @@ def _made(
     if least is not None and not 0 <= least / farthest < 1:
         text = f"{1e3 * least:g} kPa, expected between 0 and {1e3 * farthest:.4g} kPa"
         raise CaseError([Problem("--from", text)])
-    twists = Symmetry.of(case.acting).twists
-    large = (*PLANE, "twist") if twists else PLANE
-    more = set(strains) - set(large)
+    more = set(strains) - set(PLANE)
     alike = convert.dimensions(case.actuator).alike_around and stays_straight(case)
-    held = Held(ready, large)
+    held = Held(ready, PLANE)
     all_held = Held(ready, strains) if more else held
     remarks, last = list(reach.remarks), ""
     for part in _PARTS:
         try:
-            box = box_of(reach, held, large, part, least or 0.0)
+            box = box_of(reach, held, PLANE, part, least or 0.0)
             walk = Walk(held, box, tell)
-            law, known = _fitted(large, walk, box, reach, error, enough)
+            law, known = _fitted(walk, box, reach, error, enough)
             side = None
             if more:
                 side = side_of(all_held, strains, law, box, reach, alike, tell)
@@ -207,28 +207,24 @@ def _made(
 
 
 def _fitted(
-    strains: tuple[str, ...], walk: Walk, box: Box, reach: Reach, error: float, enough: float
+    walk: Walk, box: Box, reach: Reach, error: float, enough: float
 ) -> tuple[SectionLaw, Checked]:
     """A law whose forces and free angles are as exact as asked for."""
     asked = error
-    plane = len(strains) == len(PLANE)
-    pull, turns, pressures = _PLANE_LINES if plane else _TWISTED_LINES
+    pull, turns, pressures = _PLANE_LINES
     low, high = box.pressures
-    first = (box.at(pressures) - low) / (high - low)
-    begin = [pull, *[turns] * (len(strains) - 1), first]
+    begin = (pull, turns, (box.at(pressures) - low) / (high - low))
     measure = sizes(box.chart)
     while True:
         table = tabulate(
             walk.sample,
             box.ranges,
             asked,
-            most=2000 if plane else _MOST,
             begin=begin,
             sizes=measure,
-            degree=HIGH_DEGREE if plane else _TWISTED_DEGREE,
             enough=enough,
         )
-        law = SectionLaw(table, box.chart, strains)
+        law = SectionLaw(table, box.chart)
         known = checked(law, _samples(walk), reach)
         coarse = float(table.errors.max()) > asked
         if known.worst <= error or coarse or asked < _LEAST * error:

@@ -20,19 +20,27 @@ def laws_to_make(cases: Iterable[Case]) -> tuple[int, float]:
     Returns:
         How many, and the seconds that making them takes.
     """
+    from fiberbend.sectionlaw.path.store import PathStore, digest_about
     from fiberbend.sectionlaw.range import loads_on
     from fiberbend.sectionlaw.store import Store, digest_of
     from fiberbend.slender.beside import section_case
-    from fiberbend.slender.laws import ERROR, strains_of, without_shear
+    from fiberbend.slender.laws import ERROR, strains_of, twists_by_itself, without_shear
 
-    found: dict[str, float] = {}
+    tables, laws = Store(), PathStore()
+    found: dict[str, tuple[bool, float]] = {}
     for case in cases:
         rod = choose_model(case)[0].slender()
         if rod is not None:
-            strains, loads = without_shear(strains_of(case)), loads_on(case)
+            strains, twists = without_shear(strains_of(case)), twists_by_itself(case)
+            loads = loads_on(case)
             for zone in zone_cases(case):
-                digest = digest_of(section_case(zone), strains, ERROR, None, loads)
-                found[digest] = rod.law_seconds(zone)
-    store = Store()
-    left = [seconds for digest, seconds in found.items() if store.find(digest) is None]
+                own = section_case(zone)
+                if twists:
+                    digest = digest_about(own, ERROR, loads)
+                    known = laws.find(digest) is not None
+                else:
+                    digest = digest_of(own, strains, ERROR, None, loads)
+                    known = tables.find(digest) is not None
+                found[digest] = known, rod.law_seconds(zone)
+    left = [seconds for known, seconds in found.values() if not known]
     return len(left), sum(left)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +23,8 @@ from rod.quartic import Quartic
 
 if TYPE_CHECKING:
     from fiberbend.beam.kept import Beam
+    from fiberbend.sectionlaw.made import Made
+    from fiberbend.sectionlaw.path.made import PathMade
 
 ERROR = 1e-3
 """Of the table of a section, as `fiberbend.sectionlaw.table.law_of` has it."""
@@ -72,10 +74,14 @@ def strains_of(case: Case, touched: bool = False) -> tuple[str, ...]:
         case: of model rod.
         touched: something acts on it that is not in the case.
     """
-    zones = zone_cases(case)
     across = any(effect.mirror_breaker() for effect in case.acting)
-    own = SPACE if across or not all(wound(zone).plane for zone in zones) else PLANE
+    own = SPACE if across or twists_by_itself(case) else PLANE
     return (*_SHEARS[own], *own) if touched or sheared(case) else own
+
+
+def twists_by_itself(case: Case) -> bool:
+    """Whether a section of it twists or bends to the side: its laws are about free states then."""
+    return not all(wound(zone).plane for zone in zone_cases(case))
 
 
 def without_shear(strains: tuple[str, ...]) -> tuple[str, ...]:
@@ -112,25 +118,11 @@ def section_law(
         fiberbend.schema.problems.CaseError: a section has no law that reaches as far as the case.
     """
     from fiberbend.beam.kept import beam_of
-    from fiberbend.sectionlaw.range import loads_on
-    from fiberbend.sectionlaw.store import Store
-    from fiberbend.sectionlaw.table import law_of
     from fiberbend.slender.beside import section_case
 
-    store, loads = Store(), loads_on(case)
     plain, zones = without_shear(strains), zone_cases(case)
     names = zone_names(len(zones))
-    made = [
-        law_of(
-            *(section_case(zone), plain, ERROR),
-            store=store,
-            tell=tell,
-            loads=loads,
-            enough=ENOUGH,
-            whose=name,
-        )
-        for zone, name in zip(zones, names, strict=True)
-    ]
+    made, known_of_cache = _made(case, plain, names, tell)
     remarks = [
         f"{name}: {remark}" if len(made) > 1 else remark
         for name, each in zip(names, made, strict=True)
@@ -151,9 +143,35 @@ def section_law(
         states=sum(each.solved for each in made),
         seconds=sum(each.seconds for each in made),
         error=max(max(each.force, each.moment, each.area) for each in known),
-        remarks=tuple(dict.fromkeys(remarks + store.remarks)),
+        remarks=tuple(dict.fromkeys(remarks + known_of_cache)),
         beam=beam,
     )
+
+
+def _made(
+    case: Case,
+    strains: tuple[str, ...],
+    names: Sequence[str],
+    tell: Callable[[str], None] | None,
+) -> tuple[Sequence[Made | PathMade], list[str]]:
+    """The law of each zone, and what is wrong with the cache."""
+    from fiberbend.sectionlaw.path.make import law_about
+    from fiberbend.sectionlaw.path.store import PathStore
+    from fiberbend.sectionlaw.range import loads_on
+    from fiberbend.sectionlaw.store import Store
+    from fiberbend.sectionlaw.table import law_of
+    from fiberbend.slender.beside import section_case
+
+    loads, zones = loads_on(case), [section_case(zone) for zone in zone_cases(case)]
+    if twists_by_itself(case):
+        about = PathStore()
+        return [law_about(zone, ERROR, about, tell, loads) for zone in zones], about.remarks
+    store = Store()
+    made = [
+        law_of(*(zone, strains, ERROR), store=store, tell=tell, loads=loads, enough=ENOUGH, whose=n)
+        for zone, n in zip(zones, names, strict=True)
+    ]
+    return made, store.remarks
 
 
 def along(case: Case, made: SectionLaw, cap: Quartic, layout: Layout, chamber: slice) -> Law:

@@ -19,7 +19,7 @@ from fiberbend.sectionlaw.range import Loads, loads_of, loads_on
 from fiberbend.sectionlaw.store import Store
 from fiberbend.slender.beside import section_case
 from fiberbend.slender.kept import laws_to_make
-from fiberbend.slender.laws import section_law, zone_names
+from fiberbend.slender.laws import SPACE, section_law, strains_of, zone_names
 from rod.table import NotReachedError
 from tests.slender.rods import QUIET, ROUND, RUBBER, WOUND, case, spec
 from tests.trial.cases import shipped
@@ -55,10 +55,38 @@ def test_what_it_cannot_have_is_refused_by_name(
     assert line in str(refused.value)
 
 
-def test_a_winding_with_a_hand_is_refused() -> None:
-    wound = WOUND | {"pattern": "single-helix-left"}
-    with pytest.raises(CaseError, match="that twists by itself is not known: half a turn about y"):
-        parse_case(spec() | {"effects": [PRESSED, {"winding": wound}]})
+MOVES = {"duration": "1 s", "pressure": {"ramp": {"to": "20 kPa", "over": "0.1 s"}}}
+HANDED = {"winding": WOUND | {"pattern": "single-helix-left"}}
+
+
+def test_a_winding_with_a_hand_is_a_rod_in_space() -> None:
+    handed = parse_case(spec() | {"effects": [PRESSED, HANDED]})
+    assert strains_of(handed) == SPACE
+    assert make_plan(handed).unknowns == 4 * (48 + 2 * 4)
+    assert choose_model(parse_case(handed.resolved() | {"model": "auto"}))[0].name != "rod"
+
+
+@pytest.mark.parametrize(
+    ("effects", "changes", "line"),
+    [
+        ([{"blocked-tip": {}}], {}, "effects.2.blocked-tip: model rod does not support it"),
+        ([], {"time": MOVES}, "time: model rod does not support it"),
+    ],
+)
+def test_what_a_twisting_rod_cannot_have(
+    effects: list[dict[str, Any]], changes: dict[str, Any], line: str
+) -> None:
+    data = spec(PRESSED, **changes)
+    data["effects"] = [PRESSED, HANDED, *effects]
+    with pytest.raises(CaseError) as refused:
+        parse_case(data)
+    assert line in str(refused.value)
+
+
+def test_the_thumb_is_refused_for_its_strip() -> None:
+    """Each zone by itself could be a rod; what is not fitted to its error is no law."""
+    with pytest.raises(CaseError, match=r"zones: model rod does not.*whose strip slackens"):
+        parse_case(shipped("thumb") | {"model": "rod"})
 
 
 def test_one_line_makes_a_body_of_it() -> None:

@@ -84,9 +84,7 @@ class Rod:
             added[:, first:last] = (np.array([longer, *turns]).T / (last - first))[:, None]
         return added
 
-    def at(
-        self, kpa: float
-    ) -> tuple[float, np.ndarray, float, np.ndarray, np.ndarray, np.ndarray]:
+    def at(self, kpa: float) -> tuple[float, np.ndarray, float, np.ndarray, np.ndarray, np.ndarray]:
         """Of the chamber's section, and of the elements at its ends.
 
         Args:
