@@ -39,7 +39,10 @@ def moving(*effects: dict[str, Any], **changes: Any) -> Case:
     return case(*effects, time=SLOW | changes)
 
 
-@pytest.mark.parametrize("obstacle", [TABLE, BAR, TILTED, ROOF, BLOCKED])
+LONG = [pytest.param(each, marks=pytest.mark.long) for each in (BAR, TILTED, BLOCKED)]
+
+
+@pytest.mark.parametrize("obstacle", [TABLE, ROOF, *LONG])
 def test_a_slow_motion_ends_where_the_run_at_rest_does(
     obstacle: dict[str, Any], by_law: Put
 ) -> None:
