@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 
 from rod.functions import Floats
-from rod.law import Law
+from rod.law import Law, Sections, whole
 
 
 @dataclasses.dataclass(frozen=True)
@@ -53,6 +53,28 @@ class Sheared:
     def _energy(self, strains: Floats, form: Floats) -> Floats:
         away = strains - self.rest
         out: Floats = np.sum(away @ form * away, axis=1) / 2
+        return out
+
+    def whole(self, strains: Floats, pressures: Floats) -> Sections:
+        """See `rod.law.whole`."""
+        k, n, m = strains.shape
+        own = whole(self.law, strains[..., self.columns], pressures)
+        at = pressures.tolist()
+        form, slope, bend = (np.stack([self._form(p, order) for p in at]) for order in range(3))
+        away = strains - self.rest
+        pulled, grown = away @ form, away @ slope
+        out = Sections(
+            own.value + np.sum(pulled * away, axis=-1) / 2,
+            np.empty((k, n, m + 1)),
+            np.empty((k, n, m + 1, m + 1)),
+        )
+        out.first[..., :m], out.first[..., m] = pulled, np.sum(grown * away, axis=-1) / 2
+        out.second[..., :m, :m] = form[:, None]
+        out.second[..., :m, m] = out.second[..., m, :m] = grown
+        out.second[..., m, m] = np.sum(away @ bend * away, axis=-1) / 2
+        inner = np.array([*self.columns, m])
+        out.first[..., inner] += own.first
+        out.second[..., inner[:, None], inner] += own.second
         return out
 
     def value(self, strains: Floats, pressure: float) -> Floats:

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from rod.functions import Floats
-from rod.law import Linear, Zones, whole
+from rod.law import Law, Linear, Zones, whole
 from rod.layout import Layout
 from rod.offset import Offset
 from rod.plane import PlaneShape, placed
 from rod.quartic import Quartic
 from rod.shape import Shape
+from rod.sheared import Sheared
 from tests.rod.bars import PLANE, SPACE, bent
 from tests.rod.test_shape import inertia, loads, turned
 
@@ -78,16 +79,26 @@ def test_a_law_tells_all_at_once_what_it_tells_one_by_one() -> None:
     beam = Quartic(stiffness, cubic, quartic, rest)
     tube = Linear(stiffness, rest, area=70.0, thrust=np.array([30.0, 400.0]))
     law = Offset(Zones([beam, tube], [0, 0, 1, 1, 1, 0]), rng.normal(size=(3, 6, 2)))
-    strains = rest + 0.1 * rng.normal(size=(3, 6, 2))
-    pressures = np.array([0.02, 0.0, -0.01])
+    told_at_once(law, rest + 0.1 * rng.normal(size=(3, 6, 2)))
+    forms = rng.normal(size=(4, 3, 3))
+    sheared = Sheared(law, (1, 2), forms + forms.transpose(0, 2, 1), np.array([0.0, *rest]))
+    told_at_once(sheared, sheared.rest + 0.1 * rng.normal(size=(3, 6, 3)))
+
+
+def told_at_once(law: Law, strains: Floats) -> None:
+    pressures, count = np.array([0.02, 0.0, -0.01]), strains.shape[-1]
     value, first, second = whole(law, strains, pressures)
     for k, pressure in enumerate(pressures.tolist()):
         at = strains[k], pressure
-        close = {"rtol": 1e-12, "atol": 1e-12}
-        np.testing.assert_allclose(value[k], law.value(*at), **close)
-        np.testing.assert_allclose(first[k, :, :2], law.gradient(*at), **close)
-        np.testing.assert_allclose(-first[k, :, 2], law.chamber(*at), **close)
-        np.testing.assert_allclose(second[k, :, :2, :2], law.hessian(*at), **close)
-        for mixed in (second[k, :, :2, 2], second[k, :, 2, :2]):
-            np.testing.assert_allclose(-mixed, law.chamber_gradient(*at), **close)
-        np.testing.assert_allclose(-second[k, :, 2, 2], law.chamber_slope(*at), **close)
+        mixed = law.chamber_gradient(*at)
+        pairs = (
+            (value[k], law.value(*at)),
+            (first[k, :, :count], law.gradient(*at)),
+            (-first[k, :, count], law.chamber(*at)),
+            (second[k, :, :count, :count], law.hessian(*at)),
+            (-second[k, :, :count, count], mixed),
+            (-second[k, :, count, :count], mixed),
+            (-second[k, :, count, count], law.chamber_slope(*at)),
+        )
+        for found, known in pairs:
+            np.testing.assert_allclose(found, known, rtol=1e-12, atol=1e-12)

@@ -25,7 +25,7 @@ BENT = linear((30.0, 400.0))
 TABLE = {"contact": {"plane": {"point": ["0 mm", "-12 mm", "0 mm"], "normal": [0, 1, 0]}}}
 BAR = {"contact": {"cylinder": {"center": ["-16 mm", "80 mm"], "radius": "10 mm"}}}
 TILTED = {"contact": {"plane": {"point": ["0 mm", "-15 mm", "60 mm"], "normal": [0, 1, 0.2]}}}
-ROOF = {"contact": {"roof": {}, "post": {}}}
+ROOF: dict[str, Any] = {"contact": {"roof": {}, "post": {}}}
 BLOCKED: dict[str, Any] = {"blocked-tip": {}}
 SLOW = {
     "duration": "800 ms",

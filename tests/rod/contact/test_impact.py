@@ -110,7 +110,8 @@ def fallen(
     free = Motion(motion.rod, lambda time: Level(amounts=(1.0, 0.0)), touching=motion.touching)
     gap = Watch("table", lambda state: table.gap(state.shape, 1.0), free)
     course = Course(motion, motion.at(motion.rod.layout.at_rest()), [gap])
-    states, events = [], []
+    states: list[Moving] = []
+    events: list[Event] = []
     for passed in course.through([step * (n + 1) for n in range(count)]):
         states.append(passed.moving)
         events += passed.events
