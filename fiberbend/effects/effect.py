@@ -7,65 +7,28 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from fiberbend.effects.records import (
-    ARC as ARC,
-)
-from fiberbend.effects.records import (
-    CHAMBER as CHAMBER,
-)
-from fiberbend.effects.records import (
-    ENDS as ENDS,
-)
-from fiberbend.effects.records import (
-    HELD as HELD,
-)
-from fiberbend.effects.records import (
-    HOOPS as HOOPS,
-)
-from fiberbend.effects.records import (
-    SIDE as SIDE,
-)
-from fiberbend.effects.records import (
-    SPACE as SPACE,
-)
-from fiberbend.effects.records import (
-    STRIPS as STRIPS,
-)
-from fiberbend.effects.records import (
-    THREAD as THREAD,
-)
-from fiberbend.effects.records import (
-    TURNS as TURNS,
-)
-from fiberbend.effects.records import (
-    TWIST as TWIST,
-)
-from fiberbend.effects.records import (
-    VOLUME as VOLUME,
-)
-from fiberbend.effects.records import (
-    WOUND as WOUND,
-)
-from fiberbend.effects.records import (
-    ZONES as ZONES,
-)
-from fiberbend.effects.records import (
-    Built as Built,
-)
-from fiberbend.effects.records import (
-    Draft as Draft,
-)
-from fiberbend.effects.records import (
-    Inflation as Inflation,
-)
-from fiberbend.effects.records import OnRod, RodSite
-from fiberbend.effects.records import (
-    Requests as Requests,
-)
-from fiberbend.effects.records import (
-    Site as Site,
-)
-from fiberbend.effects.records import (
-    Stretch as Stretch,
+    ARC,
+    CHAMBER,
+    ENDS,
+    HELD,
+    HOOPS,
+    SIDE,
+    SPACE,
+    STRIPS,
+    THREAD,
+    TURNS,
+    TWIST,
+    VOLUME,
+    WOUND,
+    ZONES,
+    Built,
+    Draft,
+    Inflation,
+    OnRod,
+    Requests,
+    RodSite,
+    Site,
+    Stretch,
 )
 from fiberbend.schema.problems import Problem
 from fiberbend.schema.quantities import Spec
@@ -82,6 +45,31 @@ if TYPE_CHECKING:
     from geometry.winding.strip import Window
     from materials.bedding import Bedding
     from materials.bulging import Bulging
+
+__all__ = [
+    "ARC",
+    "CHAMBER",
+    "ENDS",
+    "HELD",
+    "HOOPS",
+    "SIDE",
+    "SPACE",
+    "STRIPS",
+    "THREAD",
+    "TURNS",
+    "TWIST",
+    "VOLUME",
+    "WOUND",
+    "ZONES",
+    "Built",
+    "Draft",
+    "Effect",
+    "Inflation",
+    "Requests",
+    "Site",
+    "Stretch",
+    "keep_straight",
+]
 
 
 class Effect(Spec):

@@ -71,8 +71,15 @@ class Rod(SlenderModel):
         if load is None:
             text = "the law of a section reaches from rest to a pressure, a volume or an angle"
             yield "effects", f"{text}, expected effect pressure with one"
-        if not wound(case).plane:
+        zones = zone_cases(case)
+        if not all(wound(zone).plane for zone in zones):
             yield from self._limits_of_twisting(case)
+        for number, zone in enumerate(zones):
+            slack = any(effect.slackens() for effect in zone.effects)
+            if slack and not wound(zone).plane:
+                path = f"zones.{number}" if case.zones is not None else "effects"
+                text = "no law is known of a section that twists by itself and has a slack strip"
+                yield path, text
         if case.output.fields and "fields" in case.output.model_fields_set:
             yield "output.fields", "a rod has no fields: its sections are known by their law alone"
 
@@ -94,11 +101,6 @@ class Rod(SlenderModel):
 
     def limits_of_zones(self, case: Case) -> Iterator[Objection]:
         """What no law of one zone knows of the whole."""
-        zones = zone_cases(case)
-        slack = any(effect.slackens() for zone in zones for effect in zone.effects)
-        if slack and not all(wound(zone).plane for zone in zones):
-            text = "beside a zone that twists by itself no law is known of one whose strip slackens"
-            yield "zones", text
         for index, effect in enumerate(case.effects):
             own = effect.inflation()
             for key in ("volume", "angle"):

@@ -24,7 +24,7 @@ def laws_to_make(cases: Iterable[Case]) -> tuple[int, float]:
     from fiberbend.sectionlaw.range import loads_on
     from fiberbend.sectionlaw.store import Store, digest_of
     from fiberbend.slender.beside import section_case
-    from fiberbend.slender.laws import ERROR, strains_of, twists_by_itself, without_shear
+    from fiberbend.slender.laws import ERROR, slackens, strains_of, twists_by_itself, without_shear
 
     tables, laws = Store(), PathStore()
     found: dict[str, tuple[bool, float]] = {}
@@ -35,7 +35,7 @@ def laws_to_make(cases: Iterable[Case]) -> tuple[int, float]:
             loads = loads_on(case)
             for zone in zone_cases(case):
                 own = section_case(zone)
-                if twists:
+                if twists and not slackens(zone):
                     digest = digest_about(own, ERROR, loads)
                     known = laws.find(digest) is not None
                 else:

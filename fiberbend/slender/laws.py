@@ -80,8 +80,13 @@ def strains_of(case: Case, touched: bool = False) -> tuple[str, ...]:
 
 
 def twists_by_itself(case: Case) -> bool:
-    """Whether a section of it twists or bends to the side: its laws are about free states then."""
+    """Whether a section of it twists or bends to the side: laws are about free states then."""
     return not all(wound(zone).plane for zone in zone_cases(case))
+
+
+def slackens(zone: Case) -> bool:
+    """Whether fabric in it may go slack, which leaves kinks: no polynomials about free states."""
+    return any(effect.slackens() for effect in zone.effects)
 
 
 def without_shear(strains: tuple[str, ...]) -> tuple[str, ...]:
@@ -162,16 +167,17 @@ def _made(
     from fiberbend.sectionlaw.table import law_of
     from fiberbend.slender.beside import section_case
 
-    loads, zones = loads_on(case), [section_case(zone) for zone in zone_cases(case)]
-    if twists_by_itself(case):
-        about = PathStore()
-        return [law_about(zone, ERROR, about, tell, loads) for zone in zones], about.remarks
-    store = Store()
-    made = [
-        law_of(*(zone, strains, ERROR), store=store, tell=tell, loads=loads, enough=ENOUGH, whose=n)
-        for zone, n in zip(zones, names, strict=True)
-    ]
-    return made, store.remarks
+    loads, tables, laws = loads_on(case), Store(), PathStore()
+    twists = twists_by_itself(case)
+    made: list[Made | PathMade] = []
+    for zone, name in zip(zone_cases(case), names, strict=True):
+        own = section_case(zone)
+        if twists and not slackens(zone):
+            made.append(law_about(own, ERROR, laws, tell, loads))
+        else:
+            more = (tables, tell, loads, ENOUGH, name)
+            made.append(law_of(own, strains, ERROR, None, *more))
+    return made, tables.remarks + laws.remarks
 
 
 def along(case: Case, made: SectionLaw, cap: Quartic, layout: Layout, chamber: slice) -> Law:
