@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import math
 import time as clock
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from fiberbend import columns as col
-from fiberbend.answer.answer import answer
 from fiberbend.answer.timed import ENTRY
 from fiberbend.case.case import Case
 from fiberbend.case.timed.frames import frame_time
@@ -19,14 +17,14 @@ from fiberbend.models.result import RunResult
 from fiberbend.plan.doubts import doubts
 from fiberbend.process import signals
 from fiberbend.process.signals import stop_of
-from fiberbend.results.folder import MESH, RunFolder
+from fiberbend.results.folder import RunFolder
 from fiberbend.results.states import LAST, step_label, write_snapshot
 from fiberbend.running import record
 from fiberbend.running.calibrated import Own
-from fiberbend.running.hooks import shows_states
 from fiberbend.running.launch import on_rank_0
-from fiberbend.running.outputs import draw, pictures, write_page
+from fiberbend.running.outputs import pictures
 from fiberbend.running.progress import Progress
+from fiberbend.running.slender.frame import RodFrame
 from fiberbend.running.slender.solid import Solid
 from fiberbend.running.slender.touch import passes_itself
 from fiberbend.slender.actuator import Slender, slender
@@ -75,13 +73,8 @@ def run_moving(
         raise stop from None
 
 
-class _MovingRun:
-    """The steps of one run, and what they share; see `run_moving`.
-
-    Attributes:
-        rows: of the history.
-        warnings: so far.
-    """
+class _MovingRun(RodFrame):
+    """The steps of one run; see `run_moving`."""
 
     def __init__(
         self,
@@ -93,11 +86,7 @@ class _MovingRun:
         own: Own,
         scratch: RunFolder | None,
     ) -> None:
-        self.case, self.model, self.folder = case, model, folder
-        self.progress, self.ranks, self.own = progress, ranks, own
-        self.states = folder or scratch
-        self.rows: list[dict[str, Any]] = []
-        self.warnings: list[str] = []
+        super().__init__(case, model, folder, progress, ranks, own, scratch)
         self._kept: list[tuple[int, Moving]] = []
         self._events: list[Event] = []
         self._spent = 0.0
@@ -130,15 +119,16 @@ class _MovingRun:
             text = f"at {self.rows[step][col.TIME]:.4g} s it passes through itself: not modelled"
             self.warn([text])
         self.warn(record.doubts(case, self.rows), silent=True)
-        return self._finish(rod, motion, rows, status, reason, touching)
+        told = self._told(motion)
 
-    def warn(self, lines: Sequence[str], silent: bool = False) -> None:
-        """Report each line once; `silent`: with the others at the end only."""
-        for text in lines:
-            if text not in self.warnings:
-                self.warnings.append(text)
-                if not silent:
-                    self.progress.message(text)
+        def shots(solid: Solid) -> list[Snapshot]:
+            return self._shots(rows, solid, touching)
+
+        def draws(folder: RunFolder, why: str | None) -> None:
+            self._draw_over_time(folder, why, told[ENTRY])
+
+        ended, counts = (status, reason), self._counted(rod)
+        return self.finish(rod, ended, counts, shots, told, pictures=draws)
 
     # --- the motion ----------------------------------------------------------------------------
 
@@ -149,8 +139,7 @@ class _MovingRun:
         for passed in motion.run():
             moving, step = passed.moving, len(self.rows)
             row = rows.row(step, moving)
-            col.check(row, self.model)
-            self.rows.append(row)
+            self.add(row)
             self._events += passed.events
             # of the states around the time of a frame the one that is first
             if moving.time >= shown * frame * (1 - 1e-9) or moving.time == duration:
@@ -161,59 +150,6 @@ class _MovingRun:
                 told = (row[col.PRESSURE], row[col.ANGLE], moving.iterations)
                 self.progress.step(step, part, *told)
             signals.check()
-
-    # --- what is left --------------------------------------------------------------------------
-
-    def _finish(
-        self,
-        rod: Slender,
-        motion: Timed,
-        rows: TimedRows,
-        status: str,
-        reason: str,
-        touching: int | None,
-    ) -> RunResult:
-        case, folder, progress = self.case, self.folder, self.progress
-        progress.phase("output")
-        solid, shots = None, list[Snapshot]()
-        if self.states is not None and (folder is None or shows_states(case.output)):
-            solid = Solid(case, rod)
-            self.states.write(MESH, solid.model_mesh.mesh.save)
-            shots = self._shots(rows, solid, touching)
-        run = record.entries(
-            status,
-            reason,
-            self.model.name,
-            self._counted(rod),
-            self._wall(),
-            record.peak_memory_mb(),
-            self.ranks,
-            {"numpy": np.__version__},
-        )
-        run |= record.of_effects(case, self.rows) | self.own.entries | self._told(motion)
-        if folder is not None:
-            folder.write_history(self.rows)
-            folder.write_run(**run)
-            if solid is not None and folder.writes:
-                why = f"{status}: {reason}" if reason else None
-                shown = (solid.model_mesh, shots, self.rows, why, self._say)
-                draw(folder, case, *shown, None, self.model.name)
-                if case.output.pictures:
-                    self._draw_over_time(folder, why, run[ENTRY])
-                if case.output.report:
-                    progress.phase("report")
-                    write_page(folder, case, self.rows, run, self._say)
-            progress.close()
-            run |= {"wall_s": self._wall(), "warnings": list(self.warnings)}
-            folder.write_run(**run)
-        progress.answer(answer(case, self.rows, run))
-        return RunResult(status, reason, self.rows, run, folder.path if folder else None)
-
-    def _say(self, text: str) -> None:
-        self.warn([text])
-
-    def _wall(self) -> dict[str, float]:
-        return {name: round(value, 3) for name, value in self.progress.wall_s.items()}
 
     def _shots(self, rows: TimedRows, solid: Solid, touching: int | None) -> list[Snapshot]:
         """The farthest state and the last one; all that are kept go to the folder."""
@@ -234,20 +170,12 @@ class _MovingRun:
         return shots
 
     def _counted(self, rod: Slender) -> dict[str, Any]:
-        """What the run has counted, and the law that it has."""
-        section = rod.section
+        """What the run has counted."""
         return {
             "unknowns": rod.rod.layout.at_rest().size,
             "pieces": len(rod.rod.layout.lengths),
             "load_steps": len(self.rows) - 1,
             "newton_iterations": sum(row[col.ITERATIONS] for row in self.rows),
-            "warnings": list(self.warnings),
-            "section_law": {
-                "model": section.model,
-                "states": section.states,
-                "seconds": round(section.seconds, 3),
-                "error": section.error,
-            },
         }
 
     def _told(self, motion: Timed) -> dict[str, Any]:
@@ -274,7 +202,7 @@ class _MovingRun:
             for e in entry["events"]
         ]
         more = (self.case.title, why, events, entry["rest_angle_deg"])
-        with pictures(self._say):
+        with pictures(self.say):
             folder.write(
                 "pictures/over_time.png",
                 lambda file: plot_over_time(self.rows, file, *more),

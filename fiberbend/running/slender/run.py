@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from fem.march.records import Ramp
 from fiberbend import columns as col
-from fiberbend.answer.answer import answer
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.measured import read_measured
@@ -19,15 +17,15 @@ from fiberbend.models.result import Curve, RunResult
 from fiberbend.plan.doubts import doubts
 from fiberbend.process import signals
 from fiberbend.process.signals import stop_of
-from fiberbend.results.folder import MESH, RunFolder
+from fiberbend.results.folder import RunFolder
 from fiberbend.results.states import LAST, step_label, write_snapshot
 from fiberbend.running import messages, record
 from fiberbend.running.calibrated import Own
 from fiberbend.running.history import departures, work_of
-from fiberbend.running.hooks import SAME, not_reached, shows_states
+from fiberbend.running.hooks import SAME, not_reached
 from fiberbend.running.launch import on_rank_0
-from fiberbend.running.outputs import draw, write_page
 from fiberbend.running.progress import Progress
+from fiberbend.running.slender.frame import RodFrame
 from fiberbend.running.slender.solid import Solid
 from fiberbend.running.slender.touch import passes_itself
 from fiberbend.slender.actuator import Slender, slender
@@ -74,13 +72,8 @@ def run_rod(
         raise stop from None
 
 
-class _RodRun:
-    """The steps of one run, and what they share; see `run_rod`.
-
-    Attributes:
-        rows: of the history.
-        warnings: so far.
-    """
+class _RodRun(RodFrame):
+    """The steps of one run; see `run_rod`."""
 
     def __init__(
         self,
@@ -92,11 +85,8 @@ class _RodRun:
         own: Own,
         scratch: RunFolder | None,
     ) -> None:
-        self.case, self.model, self.folder = case, model, folder
-        self.progress, self.ranks, self.own = progress, ranks, own
-        self.states = folder or scratch
-        self.rows: list[dict[str, Any]] = []
-        self.warnings: list[str] = []
+        super().__init__(case, model, folder, progress, ranks, own, scratch)
+        self.model = model
 
     def go(self) -> RunResult:
         """Make the law, solve, write."""
@@ -107,7 +97,7 @@ class _RodRun:
         progress.phase("solve")
         course = self._course(rod)
         maker = Rows(rod, course.tells)
-        self._add(maker.row(0, course.points[0]))
+        self.add(maker.row(0, course.points[0]))
         self._rows = maker
         report = course.run()
         self._work()
@@ -128,14 +118,6 @@ class _RodRun:
         self.warn(record.doubts(case, self.rows), silent=True)
         return self._finish(rod, course, status, reason, touching)
 
-    def warn(self, lines: Sequence[str], silent: bool = False) -> None:
-        """Report each line once; `silent`: with the others at the end only."""
-        for text in lines:
-            if text not in self.warnings:
-                self.warnings.append(text)
-                if not silent:
-                    self.progress.message(text)
-
     # --- the path ------------------------------------------------------------------------------
 
     def _course(self, rod: Slender) -> Course:
@@ -148,14 +130,10 @@ class _RodRun:
 
     def _listen(self, point: Point, part: float) -> None:
         row = self._rows.row(len(self.rows), point)
-        self._add(row)
+        self.add(row)
         step = (row[col.STEP], part, row[col.PRESSURE], row[col.ANGLE], point.iterations)
         self.progress.step(*step)
         signals.check()
-
-    def _add(self, row: dict[str, Any]) -> None:
-        col.check(row, self.model)
-        self.rows.append(row)
 
     def _work(self) -> None:
         """Fill in the work of the loads since rest."""
@@ -214,52 +192,18 @@ class _RodRun:
     def _finish(
         self, rod: Slender, course: Course, status: str, reason: str, touching: int | None
     ) -> RunResult:
-        case, folder, progress = self.case, self.folder, self.progress
         check: Check | None = None
-        if folder is not None:
-            progress.phase("crosscheck")
-            curve = self._section(rod)
-            check = crosscheck(case, self.model, self.rows, curve, read_measured(case))
+        if self.folder is not None:
+            self.progress.phase("crosscheck")
+            curve, measured = self._section(rod), read_measured(self.case)
+            check = crosscheck(self.case, self.model, self.rows, curve, measured)
             self.warn(check.doubts(), silent=True)
-        progress.phase("output")
-        solid, shots = None, list[Snapshot]()
-        if self.states is not None and (folder is None or shows_states(case.output)):
-            solid = Solid(case, rod)
-            self.states.write(MESH, solid.model_mesh.mesh.save)
-            shots = self._shots(course, solid, touching)
-        rows = check.beside(self.rows) if check else self.rows
-        run = record.entries(
-            status,
-            reason,
-            self.model.name,
-            self._counted(rod, course),
-            self._wall(),
-            record.peak_memory_mb(),
-            self.ranks,
-            {"numpy": np.__version__},
-        )
-        run |= record.of_effects(case, self.rows) | record.beside(check) | self.own.entries
-        if folder is not None:
-            folder.write_history(rows)
-            folder.write_run(**run)
-            if solid is not None and folder.writes:
-                why = f"{status}: {reason}" if reason else None
-                shown = (solid.model_mesh, shots, rows, why, self._say)
-                draw(folder, case, *shown, check, self.model.name)
-                if case.output.report:
-                    progress.phase("report")
-                    write_page(folder, case, rows, run, self._say)
-            progress.close()
-            run |= {"wall_s": self._wall(), "warnings": list(self.warnings)}
-            folder.write_run(**run)
-        progress.answer(answer(case, rows, run))
-        return RunResult(status, reason, rows, run, folder.path if folder else None)
 
-    def _say(self, text: str) -> None:
-        self.warn([text])
+        def shots(solid: Solid) -> list[Snapshot]:
+            return self._shots(course, solid, touching)
 
-    def _wall(self) -> dict[str, float]:
-        return {name: round(value, 3) for name, value in self.progress.wall_s.items()}
+        ended, counts = (status, reason), self._counted(rod, course)
+        return self.finish(rod, ended, counts, shots, check=check)
 
     def _section(self, rod: Slender) -> Curve | None:
         """P(θ) of the section by itself, where that is what the law of the rod was made of."""
@@ -305,8 +249,8 @@ class _RodRun:
         return shots
 
     def _counted(self, rod: Slender, course: Course) -> dict[str, Any]:
-        """What the run has counted, and the law that it has."""
-        report, section = course.report, rod.section
+        """What the run has counted."""
+        report = course.report
         return {
             "unknowns": rod.rod.layout.at_rest().size,
             "pieces": len(rod.rod.layout.lengths),
@@ -314,13 +258,6 @@ class _RodRun:
             "newton_iterations": report.iterations,
             "factorisations": report.factorisations,
             "cutbacks": report.cutbacks,
-            "warnings": list(self.warnings),
             "stability_checked": course.tells,
             "critical_points": messages.critical_points(report, 1.0),
-            "section_law": {
-                "model": section.model,
-                "states": section.states,
-                "seconds": round(section.seconds, 3),
-                "error": section.error,
-            },
         }
