@@ -15,10 +15,12 @@ from fiberbend.drawing.style import DEFAULT
 from fiberbend.states.snapshot import Target
 from geometry.mesh.data import Floats
 
-SIZE = (1200, 1000)
+SIZE = (1200, 1040)
 """Width and height in pixels."""
-_ROWS = ((0.735, 0.165), (0.505, 0.195), (0.30, 0.17), (0.075, 0.19))
+_ROWS = ((0.707, 0.144), (0.486, 0.187), (0.288, 0.163), (0.072, 0.183))
 """Bottom and height of pressure, angle, tip and energies on the page."""
+_LINES = 3
+"""Of names of events, one above the other."""
 _GRAY = "0.45"
 _ENERGIES = (
     (col.KINETIC, "kinetic", BLUE, "-"),
@@ -67,11 +69,13 @@ def plot_over_time(
         axes.margins(y=0.16)
     greatest = int(np.argmax(np.abs(angle)))
     panels[1].plot(time[greatest], angle[greatest], "o", color=RED, markersize=6)
+    late = time[greatest] > time[0] + 0.85 * (time[-1] - time[0])
     panels[1].annotate(
         f"{angle[greatest]:.4g}° at {time[greatest]:.4g} s",
         (time[greatest], angle[greatest]),
-        xytext=(8, 3),
+        xytext=(-8 if late else 8, 3),
         textcoords="offset points",
+        ha="right" if late else "left",
         va="bottom",
         fontsize=11,
         color=RED,
@@ -117,14 +121,39 @@ def _energies(axes: Any, rows: Sequence[Mapping[str, Any]], time: Floats) -> Non
 
 
 def _written(axes: Any, events: Sequence[tuple[float, str]]) -> None:
-    """Names of the events over the first panel, each on one of two lines."""
-    for number, (when, text) in enumerate(events[:8]):
-        axes.annotate(
-            literal(text),
+    """Names of the events over the first panel, on the lowest line that has room.
+
+    Where none has, an event is counted in the name before it.
+    """
+    page, free = axes.figure, [-np.inf] * _LINES
+    name, first, line, more = None, "", 0, 0
+    for when, text in events:
+        place = float(axes.transData.transform((when, 0.0))[0])
+        new = axes.annotate(
+            _counted(text, 99),
             (when, 1.0),
             xycoords=("data", "axes fraction"),
-            xytext=(2, 3 + 12 * (number % 2)),
+            xytext=(2, 3),
             textcoords="offset points",
             fontsize=9.5,
             color=_GRAY,
         )
+        width = new.get_window_extent().width + 0.01 * page.bbox.width
+        # on the other side of its dashes where the page ends
+        left = place + width > page.bbox.width
+        begin = place - width if left else place
+        found = next((n for n, end in enumerate(free) if end <= begin), None)
+        if found is None:
+            new.remove()
+            more += 1
+        else:
+            name, first, line, more = new, text, found, 0
+            name.set_ha("right" if left else "left")
+            name.xyann = (-2 if left else 2, 3 + 12 * line)
+        name.set_text(_counted(first, more))
+        # a name that is counted on grows
+        free[line] = name.get_window_extent().x1 + 0.005 * page.bbox.width
+
+
+def _counted(text: str, more: int) -> str:
+    return literal(text) + (f" and {more} more" if more else "")

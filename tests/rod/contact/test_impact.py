@@ -165,7 +165,11 @@ def dropped(step: float, damping: float) -> tuple[Floats, float, Moving]:
     table = Touch(skin(layout), Plane((0.0, -25.0, 0.0), (0.0, 1.0, 0.0)), 0.05)
     rod = Rod(layout, BAR.law(PLANE), inertia, [Weight(inertia, DOWN), table])
     motion = Motion(rod, lambda time: ON, retarded(rod, damping), touching=damping)
-    *states, last = motion.run(motion.at(layout.at_rest()), step, round(0.8 / step))
+    start = motion.at(layout.at_rest())
+    *states, last = motion.run(start, step, round(0.8 / step))
+    open_ = [each.energy.total - start.energy.total - each.work.gained for each in [*states, last]]
+    print(f"damped contact: {np.abs(open_).max():.1e} mJ of {last.work.lost:.2g} mJ taken")
+    assert np.abs(open_).max() < 1e-8 < last.work.touch
     force = np.mean([state.pushes[0].force[1] for state in [*states[-9:], last]])
     held = float(table.touched(last.shape, 1.0).force[1])
     assert force == pytest.approx(held, rel=2e-2)
