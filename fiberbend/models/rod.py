@@ -71,15 +71,8 @@ class Rod(SlenderModel):
         if load is None:
             text = "the law of a section reaches from rest to a pressure, a volume or an angle"
             yield "effects", f"{text}, expected effect pressure with one"
-        zones = zone_cases(case)
-        if not all(wound(zone).plane for zone in zones):
+        if not wound(case).plane:
             yield from self._limits_of_twisting(case)
-        for number, zone in enumerate(zones):
-            slack = any(effect.slackens() for effect in zone.effects)
-            if slack and not wound(zone).plane:
-                path = f"zones.{number}" if case.zones is not None else "effects"
-                text = "no law is known of a section that twists by itself and has a slack strip"
-                yield path, text
         if case.output.fields and "fields" in case.output.model_fields_set:
             yield "output.fields", "a rod has no fields: its sections are known by their law alone"
 
@@ -96,6 +89,11 @@ class Rod(SlenderModel):
                 yield f"{path}.volume", f"{text}, expected one"
             if own is not None and ((own.to or 0.0) < 0 or (own.angle or 0.0) < 0):
                 yield path, "the law of a section that twists by itself is of pressures above zero"
+            if effect.slackens():
+                yield (
+                    path,
+                    "no law is known of a section that twists by itself and has slack fabric",
+                )
         if case.time is not None:
             yield "time", "a motion is known of sections that keep to their plane"
 

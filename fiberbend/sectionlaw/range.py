@@ -10,6 +10,7 @@ import numpy as np
 
 from fiberbend.case import convert
 from fiberbend.case.case import Case
+from fiberbend.case.symmetry import sheared
 from fiberbend.models.choice import meshed
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.sectionlaw.law import Free
@@ -40,11 +41,13 @@ class Loads(NamedTuple):
         force: of weight and tip load, N.
         moment: of weight and of either tip load at the root of the straight actuator, N mm.
         held: what it touches, or is held by, may keep it from bending under its pressure.
+        idle: nothing acts on it but its pressure.
     """
 
     force: float
     moment: float
     held: bool = True
+    idle: bool = False
 
 
 @dataclasses.dataclass(frozen=True)
@@ -58,6 +61,7 @@ class Reach:
         force: of weight and tip load, N.
         moment: of weight and of either tip load at the root of the straight actuator, N mm.
         held: something may keep it straight under its pressure.
+        idle: nothing acts on it but its pressure.
         remarks: what casts doubt on the calibration of its winding.
     """
 
@@ -66,6 +70,7 @@ class Reach:
     force: float
     moment: float
     held: bool = True
+    idle: bool = False
     remarks: tuple[str, ...] = ()
 
 
@@ -150,7 +155,7 @@ def loads_on(case: Case) -> Loads:
     moment = sum(pull[1] for pull in pulls if pull is not None)
     length = convert.dimensions(case.actuator).total_length
     bent = usual.moment - max(MOMENT, FORCE * length) + moment + force * length
-    return Loads(usual.force - FORCE + force, bent, held=False)
+    return Loads(usual.force - FORCE + force, bent, held=False, idle=not sheared(case))
 
 
 def _outside_strain(case: Case) -> float:

@@ -185,7 +185,7 @@ def _made(
         if known.worst > error:
             remarks.append(
                 f"the law of the section is known to {100 * known.worst:.2g} % of its range, "
-                f"{100 * error:.2g} % asked for: something in it goes slack"
+                f"{100 * error:.2g} % asked for (docs/table.md)"
             )
         return Made(
             section=law,

@@ -32,8 +32,8 @@ FAMILIES = {
     "grasp": [*ROD, *BODY],
     "rectangle": ["section-spread", "cell-turns", *ROD, *BODY],
     "s_shape": ["section-spread", "cell-turns", *ROD, *BODY],
-    "thumb": ["section-spread", "cell-turns", *BODY],
-    "twisting": ["section-spread", "cell-turns", *BODY],
+    "thumb": ["section-spread", "cell-turns", *ROD, *BODY],
+    "twisting": ["section-spread", "cell-turns", *ROD, *BODY],
 }
 
 

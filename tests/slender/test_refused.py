@@ -19,7 +19,7 @@ from fiberbend.sectionlaw.range import Loads, loads_of, loads_on
 from fiberbend.sectionlaw.store import Store
 from fiberbend.slender.beside import section_case
 from fiberbend.slender.kept import laws_to_make
-from fiberbend.slender.laws import SPACE, section_law, strains_of, zone_names
+from fiberbend.slender.laws import SPACE, section_law, strains_of, twists_by_itself, zone_names
 from rod.table import NotReachedError
 from tests.slender.rods import QUIET, ROUND, RUBBER, WOUND, case, spec
 from tests.trial.cases import shipped
@@ -83,10 +83,13 @@ def test_what_a_twisting_rod_cannot_have(
     assert line in str(refused.value)
 
 
-def test_the_thumb_is_refused_for_its_strip() -> None:
-    """Each zone by itself could be a rod; what is not fitted to its error is no law."""
-    with pytest.raises(CaseError, match=r"zones: model rod does not.*whose strip slackens"):
-        parse_case(shipped("thumb") | {"model": "rod"})
+def test_what_twists_and_has_a_slack_strip_is_refused() -> None:
+    """Each by itself has a law, and zones may have one each: the thumb is a rod."""
+    data = shipped("thumb") | {"model": "rod"}
+    assert twists_by_itself(parse_case(data))
+    data["zones"][2]["strip"] = data["zones"][1]["strip"]
+    with pytest.raises(CaseError, match="twists by itself and has slack fabric"):
+        parse_case(data)
 
 
 def test_one_line_makes_a_body_of_it() -> None:
