@@ -17,6 +17,7 @@ from fiberbend.beam.stressed import shear_stiffness
 from fiberbend.case import convert
 from fiberbend.case.case import Case
 from fiberbend.case.section_beside import as_section
+from fiberbend.case.symmetry import wound
 from fiberbend.effects.pressure import inflate
 from fiberbend.process.kept import Kept
 from fiberbend.sectionlaw.store import digest_of
@@ -57,7 +58,7 @@ class Beam:
             1/(N mm²).
         cap: of a solid cap, (6, 6).
         stiffening: what is added to the stiffness against shear in the plane of bending by power
-            of P in MPa from the first on, (d,), N.
+            of P in MPa from the first on, (d,), N; nothing of a section that has no such plane.
     """
 
     chamber: Floats
@@ -196,14 +197,14 @@ def _solved(section: Case, greatest: float) -> Beam:
             built = effect.spread().build(site, hollow, convert.requests(section))
             terms = [term for term in built.terms if isinstance(term, Threaded)]
             threads += [Threads(term.segments, term.stiffness) for term in terms]
+    known = flexibility(hollow, height, materials, threads)
+    cap = flexibility(section_mesh(layout), height, materials)
+    if not wound(section).plane:
+        return Beam(known, cap, np.zeros(STATES))
     pressures = greatest * (1.0 + np.arange(STATES)) / STATES
     rest, *stressed = shear_stiffness(section, pressures.tolist())
     powers = pressures[:, None] ** (1.0 + np.arange(STATES))
-    return Beam(
-        flexibility(hollow, height, materials, threads),
-        flexibility(section_mesh(layout), height, materials),
-        np.linalg.solve(powers, np.array(stressed) - rest),
-    )
+    return Beam(known, cap, np.linalg.solve(powers, np.array(stressed) - rest))
 
 
 @functools.cache

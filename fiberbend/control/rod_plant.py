@@ -17,6 +17,7 @@ from fiberbend.effects.records import Requests
 from fiberbend.schema.problems import CaseError, Problem
 from fiberbend.slender.actuator import Slender, slender
 from fiberbend.slender.air import ValveAir
+from fiberbend.slender.laws import twists_by_itself
 from fiberbend.slender.path import PRESSURE, Course, Limits
 from fiberbend.slender.timed import equilibrium
 from rod.motion import Motion, Moving
@@ -42,12 +43,14 @@ def rod_of(case: Case, highest: float) -> Slender:
     Raises:
         CaseError: the rod cannot have an effect of the case, or a material has no density.
     """
-    from fiberbend.models.rod import MODEL
+    from fiberbend.models.rod import MODEL, MOVED
 
     loads = [effect for effect in case.effects if effect.inflation() is None]
     given = {"model": MODEL.name, "time": None, "accuracy": None}
     bent = case.model_copy(update=given | {"effects": (*loads, inflate(angle=_BEYOND * highest))})
     problems = [Problem(path, f"plant rod: {text}") for path, text in MODEL.refuses(bent)]
+    if twists_by_itself(bent):
+        problems.append(Problem("effects", f"plant rod: {MOVED}"))
     problems += [
         Problem(f"materials.{name}.density", "missing, expected one: what moves has mass")
         for name, material in convert.site(case).materials.items()

@@ -10,11 +10,14 @@ from typing import Any
 from pydantic import ValidationError
 
 from fiberbend.case.case import Case
+from fiberbend.case.symmetry import wound
+from fiberbend.case.zones import zone_cases
 from fiberbend.effects.gravity import GravityEffect
 from fiberbend.effects.pressure import PressureEffect
 from fiberbend.hand.file import HandFile, HandOutput, name_of, problems
 from fiberbend.hand.objects import ObjectSpec
 from fiberbend.hand.pose import Pose, Triple
+from fiberbend.models.rod import TOUCHED
 from fiberbend.reader.base_case import HAND, BaseCase, read_base
 from fiberbend.reader.reader import parse_case
 from fiberbend.reader.yaml_file import YamlContent, line_numbers, read_yaml
@@ -228,6 +231,8 @@ def _not_in_a_hand(case: Case, file: HandFile) -> Iterator[Problem]:
     if load is None or load.to is None:
         text = "expected pressure with to: fingers are driven together, by pressures"
         yield Problem("effects", text)
+    if not all(wound(zone).plane for zone in zone_cases(case)):
+        yield Problem("effects", f"not known in a hand: {TOUCHED}")
     own = [effect for effect in case.effects if file.gravity is None or not effect.weight()]
     for number, effect in enumerate(own):
         if effect.inflation() is None and effect.beside() is None:

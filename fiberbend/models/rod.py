@@ -30,6 +30,8 @@ from fiberbend.models.model import ModelKind, Objection, SlenderModel
 _MEASURED = ("hemicircle",)
 """Sections with which it is beside a body (docs/evidence/rod.md)."""
 _ROUNDING = 1e-9
+TOUCHED = "what a rod touches that twists by itself is not known"
+MOVED = "a motion is known of sections that keep to their plane"
 _SECTION_S, _CELL_S, _ABOUT_S = 8.0, 15.0, 30.0
 """Seconds for the table of a section and of a cell, of the baseline (`fiberbend table`), and for
 the law of a section that twists."""
@@ -54,8 +56,9 @@ class Rod(SlenderModel):
     def unknowns(self, case: Case) -> int:
         """A stretch and a curvature each, out of its plane twice as many; and where it shears."""
         across = any(effect.mirror_breaker() for effect in case.acting)
-        planes = 2 if across or not all(wound(zone).plane for zone in zone_cases(case)) else 1
-        each = planes * (3 if sheared(case) else 2)
+        twists = not all(wound(zone).plane for zone in zone_cases(case))
+        planes = 2 if across or twists else 1
+        each = planes * (3 if sheared(case) and not twists else 2)
         return each * (self.pieces + 2 * self.cap_pieces)
 
     def law_seconds(self, case: Case) -> float:
@@ -81,7 +84,7 @@ class Rod(SlenderModel):
         for index, effect in enumerate(case.effects):
             path, own = f"effects.{index}.{effect.name}", effect.inflation()
             if effect.touches() or effect.strips() is not None:
-                yield path, "what a rod touches that twists by itself is not known"
+                yield path, TOUCHED
             if own is not None and own.volume is not None:
                 text = (
                     "the law of a section that twists by itself reaches to a pressure or an angle"
@@ -95,7 +98,7 @@ class Rod(SlenderModel):
                     "no law is known of a section that twists by itself and has slack fabric",
                 )
         if case.time is not None:
-            yield "time", "a motion is known of sections that keep to their plane"
+            yield "time", MOVED
 
     def limits_of_zones(self, case: Case) -> Iterator[Objection]:
         """What no law of one zone knows of the whole."""

@@ -68,14 +68,17 @@ class SectionLaw:
 def strains_of(case: Case, touched: bool = False) -> tuple[str, ...]:
     """Strains of a rod: those of a plane where its sections and all that acts leave it there.
 
-    It shears where anything acts on it but what bends all its sections alike.
+    It shears where anything acts on it but what bends all its sections alike. One that twists by
+    itself does not: its law is about free states, its shear is known about rest alone.
 
     Args:
         case: of model rod.
         touched: something acts on it that is not in the case.
     """
+    if twists_by_itself(case):
+        return SPACE
     across = any(effect.mirror_breaker() for effect in case.acting)
-    own = SPACE if across or twists_by_itself(case) else PLANE
+    own = SPACE if across else PLANE
     return (*_SHEARS[own], *own) if touched or sheared(case) else own
 
 

@@ -207,6 +207,17 @@ def test_changes_that_would_change_nothing_are_refused(
     assert all("no effect" in text for text in wrong.values())
 
 
+def test_a_finger_that_twists_by_itself_is_refused(tmp_path: Path) -> None:
+    data = yaml.safe_load(Path(content()["case"]).read_text(encoding="utf-8"))
+    for effect in data["effects"]:
+        if "winding" in effect:
+            effect["winding"]["pattern"] = "single-helix-left"
+    case = tmp_path / "case.yaml"
+    case.write_text(yaml.safe_dump(data), encoding="utf-8")
+    wrong = problems(tmp_path, case=str(case))
+    assert any("touches that twists by itself is not known" in text for text in wrong.values())
+
+
 def test_a_finger_in_motion_is_refused(tmp_path: Path) -> None:
     time = {"duration": "1 s", "pressure": {"ramp": {"to": "10 kPa", "over": "1 s"}}}
     wrong = problems(tmp_path, set=content()["set"] | {"time": time})

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from fiberbend.case.case import Case
+from fiberbend.control.rod_plant import rod_of
 from fiberbend.models.choice import MODELS, choose_model, objection
 from fiberbend.plan.doubts import doubts
 from fiberbend.plan.plan import make_plan
@@ -64,6 +65,19 @@ def test_a_winding_with_a_hand_is_a_rod_in_space() -> None:
     assert strains_of(handed) == SPACE
     assert make_plan(handed).unknowns == 4 * (48 + 2 * 4)
     assert choose_model(parse_case(handed.resolved() | {"model": "auto"}))[0].name != "rod"
+
+
+def test_a_rod_that_twists_by_itself_does_not_shear() -> None:
+    """Weight makes no shears of it: they are known about rest alone, and it is far from there."""
+    effects = [PRESSED, HANDED, {"gravity": {"direction": "-y"}}]
+    heavy = parse_case(spec() | {"effects": effects})
+    assert strains_of(heavy) == strains_of(heavy, touched=True) == SPACE
+    assert make_plan(heavy).unknowns == 4 * (48 + 2 * 4)
+
+
+def test_a_twisting_rod_is_no_plant() -> None:
+    with pytest.raises(CaseError, match=r"plant rod: a motion is known .* keep to their plane"):
+        rod_of(parse_case(spec() | {"effects": [PRESSED, HANDED]}), 0.3)
 
 
 @pytest.mark.parametrize(
