@@ -136,7 +136,7 @@ TWO: tuple[dict[str, Any], ...] = ({"length": "60 mm", "winding": HAND}, {})
     ("changes", "line"),
     [
         ({"model": "analytic"}, "zones: model analytic does not support it"),
-        ({"accuracy": "1 %"}, "accuracy: no error is known"),
+        ({"accuracy": "1 %"}, "accuracy: nothing is promised of an actuator with zones"),
         (
             {"model": "section", "effects": [{"pressure": {"angle": "9 deg"}}, {"winding": WOUND}]},
             "effects.0.pressure: model section does not support it: zones share one pressure",
