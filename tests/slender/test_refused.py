@@ -69,8 +69,7 @@ def test_a_winding_with_a_hand_is_a_rod_in_space() -> None:
 
 def test_a_rod_that_twists_by_itself_does_not_shear() -> None:
     """Weight makes no shears of it: they are known about rest alone, and it is far from there."""
-    effects = [PRESSED, HANDED, {"gravity": {"direction": "-y"}}]
-    heavy = parse_case(spec() | {"effects": effects})
+    heavy = case(PRESSED, HANDED, {"gravity": {"direction": "-y"}})
     assert strains_of(heavy) == strains_of(heavy, touched=True) == SPACE
     assert make_plan(heavy).unknowns == 4 * (48 + 2 * 4)
 
