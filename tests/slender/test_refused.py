@@ -22,7 +22,7 @@ from fiberbend.slender.beside import section_case
 from fiberbend.slender.kept import laws_to_make
 from fiberbend.slender.laws import SPACE, section_law, strains_of, twists_by_itself, zone_names
 from rod.table import NotReachedError
-from tests.slender.rods import QUIET, ROUND, RUBBER, WOUND, case, spec
+from tests.slender.rods import DENSITY, QUIET, ROUND, RUBBER, WOUND, case, spec
 from tests.trial.cases import shipped
 
 PRESSED = {"pressure": {"to": "20 kPa"}}
@@ -69,7 +69,10 @@ def test_a_winding_with_a_hand_is_a_rod_in_space() -> None:
 
 def test_a_rod_that_twists_by_itself_does_not_shear() -> None:
     """Weight makes no shears of it: they are known about rest alone, and it is far from there."""
-    heavy = case(PRESSED, HANDED, {"gravity": {"direction": "-y"}})
+    data = spec() | {"effects": [PRESSED, HANDED, {"gravity": {"direction": "-y"}}]}
+    for material in data["materials"].values():
+        material["density"] = DENSITY
+    heavy = parse_case(data)
     assert strains_of(heavy) == strains_of(heavy, touched=True) == SPACE
     assert make_plan(heavy).unknowns == 4 * (48 + 2 * 4)
 

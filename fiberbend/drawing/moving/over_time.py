@@ -126,7 +126,8 @@ def _written(axes: Any, events: Sequence[tuple[float, str]]) -> None:
     Where none has, an event is counted in the name before it.
     """
     page, free = axes.figure, [-np.inf] * _LINES
-    name, first, line, more = None, "", 0, 0
+    name: Any = None
+    first, line, more = "", 0, 0
     for when, text in events:
         place = float(axes.transData.transform((when, 0.0))[0])
         new = axes.annotate(
