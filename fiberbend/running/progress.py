@@ -189,7 +189,8 @@ class Progress:
         if self._bar is None:
             self._bar = self._new_bar()
         task = self._bar.task_ids[0]
-        done = None if fraction is None else min(max(fraction, 0.0), 1.0)
+        # rounded: a bar that round-off leaves short of its end has a gap there
+        done = None if fraction is None else round(min(max(fraction, 0.0), 1.0), 9)
         # at once: a solver that computes lets no thread draw
         self._bar.update(task, completed=done, description=text, refresh=self._place is None)
         if self._place is None:
