@@ -99,11 +99,13 @@ def _alone(folder: Path, name: str) -> Iterator[None]:
     """
     path = folder / f"{name}.lock"
     while True:
-        lock = path.open("w")
+        lock = None
         try:
+            lock = path.open("w")
             fcntl.flock(lock, fcntl.LOCK_EX)
         except OSError as error:
-            lock.close()
+            if lock is not None:
+                lock.close()
             text = f"{folder} cannot be locked: {error.strerror}"
             raise MachineError(f"{text}; set {folders.CACHE} to another folder") from None
         with contextlib.suppress(FileNotFoundError):

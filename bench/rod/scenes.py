@@ -154,14 +154,6 @@ _STRIPS = [
     {"blocked-tip": {"roof_width": "4 mm", "post_length": "2 mm"}},
 ]
 _HELIX = {"at_pressures": [f"{p} kPa" for p in range(10, 110, 10)]}
-_BONDED = [
-    {"length": "40 mm"},
-    {
-        "length": "60 mm",
-        "strip": {"at": "bottom", "width": "5 mm", "thickness": "0.2 mm", "modulus": "1 GPa"},
-    },
-    {"winding": WINDING | {"pattern": "single-helix-left", "pitch": "6 mm"}},
-]
 _THUMB = {"at_pressures": [f"{p} kPa" for p in range(2, 26, 2)]}
 
 SCENES = (
@@ -209,10 +201,6 @@ SCENES = (
     Scene(
         "helix", "one helix alone", "single_helix", {"output": _HELIX}, (8.0, 4.0), (1, 1),
         band=3.0,
-    ),
-    Scene(
-        "thumb_bonded", "the thumb, its strip bonded", "thumb",
-        {"output": _THUMB, "zones": _BONDED}, band=3.0,
     ),
     Scene(
         "thumb", "a thumb of three zones", "thumb", {"output": _THUMB}, (4.0, 2.0), (1, 1),
