@@ -150,7 +150,7 @@ def _written(axes: Any, events: Sequence[tuple[float, str]]) -> None:
         else:
             name, first, line, more = new, text, found, 0
             name.set_ha("right" if left else "left")
-            name.xyann = (-2 if left else 2, 3 + 12 * line)
+            name.set_position((-2 if left else 2, 3 + 12 * line))
         name.set_text(_counted(first, more))
         # a name that is counted on grows
         free[line] = name.get_window_extent().x1 + 0.005 * page.bbox.width
